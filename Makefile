@@ -1,12 +1,12 @@
-# make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
+# make demo   builds the library and two C programs; runs a lighting transfer and a stylisation, which write into out/
 # make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI) and runs every test
 # make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
-# make trade  measures every stage's error against its time, over its knobs, and writes the plots and fronts into the guide
-#             (the benches' sections that draw them; make bench ONLY=stylit:knobs runs one)
+# make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
+#             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
-# make clean  removes what was built
+# make clean  removes all built files
 #
 # make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
 
@@ -15,7 +15,7 @@ CC      ?= cc
 PROFILE := target/release
 LIB     := $(PROFILE)/libluxfer.so
 VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
-# What the SONAME ends in, as build.rs has it: before 1.0 libraries of one minor version are compatible.
+# The ending of the SONAME, as in build.rs. Before 1.0, libraries with equal minor versions are compatible.
 ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
 SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
 PACKAGES := cmake g++ clang binutils abigail-tools libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
@@ -30,7 +30,7 @@ TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
-# No folder of the machine that built the library stands in it: dependencies state their files with the folder of cargo.
+# Remove folders of this machine from the library: panic messages of dependencies would name cargo's folder.
 CARGO_HOME ?= $(HOME)/.cargo
 ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
 lib: export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
@@ -50,7 +50,7 @@ demo: out/lighting_transfer out/stylize
 	./out/stylize --out out
 	@echo "look at out/overview.png and out/stylize.png"
 
-# Installs Debian packages only when one is missing, the renderer that one test compares with, and what the Python package needs.
+# Installs missing Debian packages, the renderer that tests compare with, and the requirements of the Python package.
 setup:
 	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
@@ -62,7 +62,7 @@ setup:
 	fi
 	@benches/peers/install.sh mitsuba python dask exr usd report onnx docs
 
-# Rustup's minimal profile has neither rustfmt nor clippy: a tool that is not installed is named and skipped.
+# Rustup's minimal profile lacks rustfmt and clippy, so a missing tool is reported and skipped.
 format:
 	@if $(CARGO) fmt --version >/dev/null 2>&1; then $(CARGO) fmt --check; else echo "skipped: cargo fmt is not installed"; fi
 
@@ -78,8 +78,8 @@ test: setup format lib
 	cmake --build build -j 2
 	ctest --test-dir build -j 2 --output-on-failure
 
-# The benches run one after the other, so that they do not disturb each other. benches/table.py writes the figures into
-# docs/figures.md and README.md.
+# The benches run one after the other, so that they do not disturb each other's times. benches/table.py writes the
+# figures into docs/figures.md and README.md.
 bench: SHELL := /bin/bash -o pipefail
 bench: peers
 	@mkdir -p out/bench
@@ -96,7 +96,7 @@ blender: lib
 	@benches/peers/install.sh python
 	@target/peers/python/bin/python bindings/blender/build.py out/blender
 
-# The pictures are drawn by the guide's own blocks of code, by the examples that it shows, and by Blender where it is installed.
+# The guide's code blocks, the examples and, if it is installed, Blender draw the pictures of the guide.
 docs: lib $(addprefix out/,$(GUIDE))
 	@benches/peers/install.sh docs
 	@rm -rf target/docs

@@ -1,4 +1,5 @@
-//! Gives the shared library its SONAME (`libluxfer.so.MAJOR`, before 1.0 `libluxfer.so.0.MINOR`): rustc sets none.
+//! Sets the SONAME of the shared library, because rustc sets none: `libluxfer.so.MAJOR`, or `libluxfer.so.0.MINOR`
+//! before 1.0.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -7,7 +8,8 @@ fn main() {
         let minor = std::env::var("CARGO_PKG_VERSION_MINOR").unwrap_or_default();
         let abi = if major == "0" { format!("0.{minor}") } else { major };
         println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libluxfer.so.{abi}");
-        // A host may still hold thread-local destructors of the standard library when it calls dlclose.
+        // Keep the library in memory after dlclose: threads of the host may still have to run thread-local destructors
+        // of Rust's standard library.
         println!("cargo:rustc-cdylib-link-arg=-Wl,-z,nodelete");
     }
 }

@@ -1,8 +1,9 @@
-//! Emissive textures: quality of continued patterns against patches alone and another program, and their time and
-//! memory.
+//! Benchmark of emissive textures: the quality of continued lamp patterns, compared with patch quilting alone and with
+//! another program, and their time and memory.
 //!
-//! Designs with known statistics are cut from a larger ceiling, continued, and compared with their own statistics.
-//! `cargo bench --bench emission -- SECTION …` runs some sections only.
+//! The designs have known statistics. An exemplar of each design is cut from a larger ceiling and continued to a
+//! texture, whose statistics are compared with those of the design. `cargo bench --bench emission -- SECTION …` runs
+//! some sections only.
 
 mod harness;
 #[path = "emission/photos.rs"]
@@ -28,14 +29,15 @@ use std::path::Path;
 use std::process::Command;
 
 const ROUNDS: usize = 5;
-/// Sides of patches in working pixels, as in Fig. 11 of the paper.
+/// Sides of patches in working pixels; the sizes of Fig. 11 of the paper.
 const BLOCKS: [usize; 8] = [25, 50, 75, 100, 125, 150, 175, 200];
 
 fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
     let pool = Pool::new(2).expect("two threads");
-    // The section that measures peak memory runs first: a process keeps some of the memory that it has once used.
+    // The section that measures peak memory runs first, because a process keeps some of the memory that it has once
+    // used.
     let sections: [(&str, fn()); 8] = [
         ("tiles", tiles::tiles),
         ("patterns", patterns),
@@ -58,20 +60,21 @@ fn main() {
     }
 }
 
-/// A design: a lattice with a lamp of one of two kinds at each node, or lamps at random places.
+/// A design: a ceiling with a lamp at the sites of a lattice, of one or two kinds, and possibly with some sites left
+/// empty.
 struct Design {
     name: &'static str,
     periods: [DVec2; 2],
-    /// Whether a point, relative to the place of a lamp with these indices, belongs to the lamp; and the area of the
-    /// lamp.
+    /// Whether a point belongs to the lamp of a lattice site. Takes the point relative to the site in pixels, and the
+    /// indices of the site.
     lamp: fn(DVec2, [i64; 2]) -> bool,
     /// Mean, minimum and maximum area of a lamp, in pixels.
     areas: [f64; 3],
-    /// Share of places that have a lamp.
+    /// Share of the lattice sites that have a lamp.
     filled: f64,
 }
 
-/// Position of the place (0, 0) of a design, in pixels.
+/// Position of the lattice site (0, 0) of a design, in pixels.
 const ORIGIN: DVec2 = DVec2::new(17.0, 11.0);
 
 const DISC: f64 = std::f64::consts::PI * 81.0;
@@ -124,7 +127,7 @@ const DESIGNS: [Design; 6] = [
     },
 ];
 
-/// An exemplar: the unwarped photo, its light and where it is valid.
+/// An exemplar: the unwarped photo, the confidence of light at its pixels, and the mask of its valid pixels.
 struct Exemplar {
     unwarped: Image,
     light: Image,
@@ -132,7 +135,7 @@ struct Exemplar {
 }
 
 impl Design {
-    /// Whether a point of the ceiling, in pixels, is on a lamp.
+    /// Whether a point of the ceiling, in pixels, lies on a lamp.
     fn is_lit(&self, p: DVec2) -> bool {
         let p = p - ORIGIN;
         let base = (DMat2::from_cols(self.periods[0], self.periods[1]).inverse() * p).floor();
@@ -143,7 +146,7 @@ impl Design {
         })
     }
 
-    /// The places of lamps in a part of the ceiling of the given size.
+    /// Positions of the lamps in a part of the ceiling of the given size, relative to a lattice site at its corner.
     fn places(&self, size: DVec2) -> Vec<DVec2> {
         let reach = 60;
         (-reach..=reach)
@@ -156,7 +159,7 @@ impl Design {
             .collect()
     }
 
-    /// Share of the places in an exemplar that have a lamp: designs with random gaps differ from exemplar to exemplar.
+    /// Share of the lattice sites inside an exemplar that have a lamp; with random gaps it differs between exemplars.
     fn filled_in(&self, exemplar: &Exemplar) -> f64 {
         let (width, height) = (exemplar.valid.width as f64, exemplar.valid.height as f64);
         let is_shown = |p: DVec2| {
@@ -170,8 +173,8 @@ impl Design {
         f64::from(lit as u32) / f64::from(all)
     }
 
-    /// A part of the ceiling with the noise of a photo, a mask that is uncertain by this noise, and two corners
-    /// outside the photo.
+    /// Cuts an exemplar from the ceiling. It has the noise of a photo, an uncertain light mask, and two corners that
+    /// count as outside the photo.
     fn exemplar(&self, side: usize) -> Exemplar {
         let is_lit = |x: usize, y: usize| self.is_lit(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
@@ -201,17 +204,17 @@ impl Exemplar {
     }
 }
 
-/// Luminance of a lamp of a synthetic exemplar, with its noise.
+/// Luminance of a lamp in a synthetic exemplar: its colour plus the mean of the noise.
 fn luminance() -> f64 {
     f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)))
 }
 
-/// Every design by three methods, for all sizes of patches.
+/// Compares every design with its textures by three methods, for all sizes of patches.
 fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
-        ("as in the paper", Params { least_regularity: 1.0, whole_lamps: false, ..Params::default() }),
-        ("quilting", Params { least_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
+        ("as in the paper", Params { min_regularity: 1.0, whole_lamps: false, ..Params::default() }),
+        ("quilting", Params { min_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
     ];
     let mut table = Table::new(["design", "method"].into_iter().chain(STATISTICS).chain(["broken", "stated error %"]));
     let (mut ours, mut behind) = (Score::default(), 0);
@@ -243,7 +246,7 @@ fn patterns() {
     figure("emission.behind_quilting", behind as f64, "statistics");
 }
 
-/// Time over texture size.
+/// Measures the time of a synthesis against the size of the texture.
 fn seconds() {
     let exemplar = DESIGNS[1].exemplar(512);
     let sides = [512, 1024, 2048, 4096];
@@ -264,8 +267,8 @@ fn seconds() {
     figure("emission.2048.seconds", times.median(2), "s");
 }
 
-/// Quality against time over the working resolution, the size of patches and the number of candidates for each, with
-/// patches at free positions, which take all of the time.
+/// Measures quality against time for three settings: the working resolution, the size of patches and the number of
+/// candidates per patch. The patches are at free positions, where synthesis takes nearly all of the time.
 fn knobs() {
     let mut plot = Plot::new("Emission: statistics against time", "seconds", "worst statistic");
     let mut table =
@@ -275,7 +278,7 @@ fn knobs() {
     let filled = design.filled_in(&exemplar);
     let mut point = |working_side: usize, relative: f64, candidates: usize| {
         let block = (relative * 60.0 * working_side as f64 / 480.0) as usize;
-        let free = Params { width: 1024, height: 1024, least_regularity: 1.0, ..Params::default() };
+        let free = Params { width: 1024, height: 1024, min_regularity: 1.0, ..Params::default() };
         let params = Params { working_side, block, candidates, ..free };
         let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
         let score = Score::of(&result, design, filled, luminance());
@@ -296,7 +299,7 @@ fn knobs() {
     }
 }
 
-/// Runs the program of the crate texture-synthesis on the same exemplar.
+/// Compares with the program of the crate texture-synthesis on the same exemplar.
 fn peer(pool: &Pool) -> Result<(), String> {
     let program = Path::new("target/peers/texture_synthesis/bin/texture-synthesis");
     if !program.exists() {
@@ -320,7 +323,7 @@ fn peer(pool: &Pool) -> Result<(), String> {
     let (ours, result) = pool.run(|| time(Clock::Wall, || exemplar.run(&params)));
     let bytes = std::fs::read("out/bench/emission_peer.png").map_err(|e| e.to_string())?;
     let picture = io::decode(&bytes, io::Encoding::Srgb).map_err(|e| e.to_string())?;
-    // Lamps are pixels brighter than one half.
+    // Treat pixels brighter than one half as lamps, and set all others to black.
     let mut lamps = picture.to_rgb().map_err(|e| e.to_string())?;
     for pixel in lamps.data.chunks_exact_mut(3) {
         if pixel[1] < 0.5 {

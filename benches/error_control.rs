@@ -1,9 +1,9 @@
-//! Accuracy of the renderer's own error estimates, and their uses.
+//! Benchmark of the renderer's own error estimates: their accuracy and their uses.
 //!
-//! Compares intervals and errors stated by single renders with a reference of many more paths; measures the saving and
-//! the bias of an error target, the accuracy of time budgets, the gain, cost and bias of the preview filter, and the
-//! cost of a path that hits nothing. Means over seeds have the half width of their 95 % interval (Student's t). Takes
-//! about two minutes on two idle cores.
+//! Intervals and errors that single renders state are compared with a reference of many more paths. Further parts
+//! measure the saving and the bias of an error target, the accuracy of time budgets, the gain, cost and bias of the
+//! preview filter, and the cost of a path that hits nothing. Means over seeds are printed with the half-width of their
+//! 95 % interval (Student's t). Takes about two minutes on two idle cores.
 
 mod harness;
 
@@ -19,13 +19,13 @@ use luxfer::scene::{Camera, Environment, Material, Mesh, Scene};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// Number of renders, per scene and path count, that measure the coverage of intervals.
+/// Number of renders, per scene and number of paths, that measure the coverage of intervals.
 const SEEDS: u64 = 32;
-/// Number of renders per scene and target.
+/// Number of renders, per scene and error target, that measure paths and bias.
 const TARGETED: u64 = 10;
-/// Number of renders, per scene and path count, that measure the bias of previews.
+/// Number of renders, per scene and number of paths, that measure the bias of previews.
 const PREVIEWS: u64 = 10;
-/// Paths per pixel of references.
+/// Paths per pixel of the reference images.
 const REFERENCE: u32 = 2048;
 
 fn main() {
@@ -71,7 +71,8 @@ fn squared_distance(a: &Image, b: &Image) -> f64 {
     a.data.iter().zip(&b.data).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>() / a.data.len() as f64
 }
 
-/// Mean squared difference relative to the pixels of the truth, as `relative_error` defines it.
+/// Mean over the pixels of the squared difference, relative to the true pixel, as the report's `relative_error`
+/// defines it.
 fn squared_relative_distance(image: &Image, truth: &Image) -> f64 {
     let least = 0.01 * mean(truth);
     let pixels = image.data.chunks_exact(3).zip(truth.data.chunks_exact(3));
@@ -83,19 +84,19 @@ fn squared_relative_distance(image: &Image, truth: &Image) -> f64 {
     3.0 * pixels.map(of_pixel).sum::<f64>() / image.data.len() as f64
 }
 
-/// Mean of independent values, and the half width of its 95 % interval.
+/// Mean of independent values, and the half-width of its 95 % interval.
 fn mean_and_interval(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    // The two-sided 5 % point of Student's t, accurate to 1 % (Abramowitz and Stegun 26.7.5, from the normal
-    // quantile).
+    // Compute the two-sided 5 % point of Student's t from the normal quantile, accurate to 1 % (Abramowitz and Stegun
+    // 26.7.5).
     let (z, f) = (1.96f64, n - 1.0);
     let t = z + (z.powi(3) + z) / (4.0 * f) + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * f * f);
     (mean, t * (variance / n).sqrt())
 }
 
-/// The share of pixels whose interval contains the truth, among pixels with noise.
+/// Measures coverage: the share of pixels with noise whose interval contains the true value.
 fn coverage(ready: &[Ready]) {
     let mut table =
         Table::new(["scene", "paths", "in interval", "±", "least quarter", "own 1.96", "error stated / true"]);
@@ -105,8 +106,9 @@ fn coverage(ready: &[Ready]) {
         let truth = shoot(world, camera, &Params { samples: REFERENCE, seed: 1 << 40, ..size.clone() }).beauty;
         for samples in [8, 16, 64] {
             let (mut squares, mut stated) = (0.0, 0.0);
-            // Count per pixel and channel the renders whose interval contains the truth: for the stated interval and
-            // for one from the pixel's own variance. Count per render the pixels too.
+            // For each pixel and channel, count the renders whose interval contains the true value, once for the
+            // interval that the renderer states and once for 1.96 standard errors of the pixel. For each render,
+            // compute the share of the pixels whose stated interval contains the true value.
             let mut inside = vec![[0u32; 2]; truth.data.len()];
             let mut random = vec![false; truth.data.len()];
             let mut renders = Vec::new();
@@ -156,7 +158,8 @@ fn coverage(ready: &[Ready]) {
     figure("render.interval_coverage.worst_distance", worst, "%");
 }
 
-/// Paths and bias with an error target, against the same number of paths in every pixel.
+/// Measures paths and bias of renders with an error target, against renders with the same mean number of paths in
+/// every pixel.
 fn targets(ready: &[Ready]) {
     let mut table = Table::new(["scene", "target", "paths", "true error", "even", "saved", "bias", "±"]);
     let (mut gains, mut most) = ([Vec::new(), Vec::new()], 0.0f64);
@@ -179,7 +182,7 @@ fn targets(ready: &[Ready]) {
             }
             let even = even_error((world, camera), &size, paths, &distance);
             let (bias, interval) = mean_and_interval(&shifts);
-            // A target on every pixel does not reduce the error of the whole image, because it optimises another
+            // A target for every pixel does not reduce the error of the whole image, because it optimises another
             // error.
             let saved = even / squares;
             if pixel_error == 0.0 {
@@ -211,8 +214,8 @@ fn targets(ready: &[Ready]) {
     figure("render.adaptive.bias", most, "%");
 }
 
-/// The squared error of a mean number of paths in every pixel: interpolates logarithms between powers of two, where
-/// points are stratified best.
+/// Squared error of renders with `paths` paths in every pixel. Between powers of two the error is interpolated in
+/// logarithms, because points are stratified best at powers of two.
 fn even_error((world, camera): (&World, &Camera), size: &Params, paths: f64, distance: &dyn Fn(&Film) -> f64) -> f64 {
     let below = 1u32 << (paths as u32).max(1).ilog2();
     let [low, high] = [below, 2 * below].map(|samples| {
@@ -223,7 +226,7 @@ fn even_error((world, camera): (&World, &Camera), size: &Params, paths: f64, dis
     low * (high / low).powf((paths / f64::from(below)).log2())
 }
 
-/// Error of previews against a reference, their bias, and their time.
+/// Measures the error of previews against a reference, their bias, and their time.
 fn previews(ready: &[Ready]) {
     let mut table = Table::new([
         "scene",
@@ -272,20 +275,20 @@ fn previews(ready: &[Ready]) {
     time_preview(&ready[0]);
 }
 
-/// Means over the renders of a scene with previews.
+/// Means over the renders of a scene with preview.
 #[derive(Default)]
 struct PreviewErrors {
-    /// Relative mean squared error before the filter, and after it at strengths 0.3, 1 and 3.
+    /// Mean squared error relative to the truth, before the filter, and after the filter at strengths 0.3, 1 and 3.
     before: f64,
     after: [f64; 3],
-    /// Mean squared error of the filtered image, and the squared bias that it states, at strength 1.
+    /// Mean squared error of the filtered image at strength 1, and the square of the bias that the preview states.
     left: f64,
     stated: f64,
     /// The filtered images at strength 1.
     smoothed: Vec<Image>,
 }
 
-/// Compares previews with the truth; saves the first render with 8 paths per pixel.
+/// Compares previews with the true image; saves the first render with 8 paths per pixel.
 fn preview_errors(name: &str, (world, camera): (&World, &Camera), params: &Params, truth: &Image) -> PreviewErrors {
     let mut errors = PreviewErrors::default();
     for seed in 0..PREVIEWS {
@@ -306,7 +309,7 @@ fn preview_errors(name: &str, (world, camera): (&World, &Camera), params: &Param
     errors
 }
 
-/// Times the filter alone.
+/// Times the preview filter alone.
 fn time_preview((_, world, camera): &Ready) {
     let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
     let film = |seed| shoot(world, camera, &Params { samples: 2, seed, outputs: outputs.clone(), ..Params::default() });
@@ -315,8 +318,8 @@ fn time_preview((_, world, camera): &Ready) {
     figure("render.preview.ms", 1e3 * times.iter().copied().fold(f64::INFINITY, f64::min), "ms");
 }
 
-/// Bias of the mean of images: root mean square over squares of pixels, relative to the mean of the truth, minus the
-/// contribution of the scatter of the images.
+/// Bias of the mean of several images: the root mean square of its error over squares of `side` pixels, relative to
+/// the mean of the truth. The part that comes from the scatter between the images is subtracted.
 fn bias(images: &[Image], truth: &Image, side: usize) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for top in (0..truth.height).step_by(side) {
@@ -352,14 +355,14 @@ fn relative_error(image: &Image, truth: &Image) -> f64 {
     image.data.iter().zip(&truth.data).map(square).sum::<f64>() / truth.data.len() as f64
 }
 
-/// Side of a pixel of the pictures of previews.
+/// Number of picture pixels that show one pixel along each side in saved previews.
 const ZOOM: usize = 4;
 
-/// Saves the image before and after the filter and the truth, one above the other, in `out/bench`.
+/// Saves three images in `out/bench`, one above the other: before the filter, after the filter, and the truth.
 fn save(name: &str, before: &Image, after: &Image, truth: &Image) {
     let (width, height) = (truth.width, truth.height);
     let exposure = (0.3 / mean(truth)) as f32;
-    // Enlarge each pixel to a square, for inspection.
+    // Enlarge each pixel to a square, for inspection by eye.
     let all = Image::from_fn(ZOOM * width, 3 * ZOOM * height, |x, y| {
         [before, after, truth][y / ZOOM / height].rgb(x / ZOOM, y / ZOOM % height).to_array()
     });
@@ -369,7 +372,8 @@ fn save(name: &str, before: &Image, after: &Image, truth: &Image) {
     std::fs::write(folder.join(format!("preview_{name}.png")), bytes).expect("out/bench can be written to");
 }
 
-/// Time used against the time budget. The minimum is one path for one pixel in many, and an image from them.
+/// Measures the time that a render takes against its time budget. The shortest render traces one path for a few of the
+/// pixels and makes an image from them.
 fn budgets((_, world, camera): &Ready) {
     let mut table = Table::new(["image", "budget", "least", "taken", "paths per pixel", "over"]);
     let (mut ratios, mut over) = (Vec::new(), 0.0f64);
@@ -382,7 +386,7 @@ fn budgets((_, world, camera): &Ready) {
         for budget in [20, 40, 100, 500] {
             let (seconds, film) = shoot_for(budget);
             let given = f64::from(budget) / 1e3;
-            // Only budgets above the minimum count.
+            // Count only budgets that are clearly above the time of the shortest render.
             if given > 1.5 * least {
                 ratios.push(seconds / given);
                 over = over.max(seconds - given);
@@ -402,7 +406,7 @@ fn budgets((_, world, camera): &Ready) {
     figure("render.budget.over_most", 1e3 * over, "ms");
 }
 
-/// Cost of a path that hits nothing: random numbers, camera and sums.
+/// Measures the cost of a path that hits nothing: random numbers, camera and sums.
 fn empty() {
     let pool = Pool::new(1).expect("a thread");
     let scene = Scene { environment: Some(Environment::Constant(Vec3::ONE)), ..Scene::default() };
@@ -415,7 +419,8 @@ fn empty() {
     });
 }
 
-/// A box with a metal block and a polished floor under a small lamp: some light arrives over mirrors.
+/// A box with a metal block and a polished floor under a small lamp, in which some light arrives over glossy
+/// reflections.
 fn glossy() -> Setting {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let mut meshes: Vec<Mesh> = vec![

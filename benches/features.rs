@@ -1,5 +1,6 @@
-//! Features: time per megapixel; normals against Open3D on rooms with known normals and on RGB-D pairs; the room
-//! layout from the lines of those pairs, and from strokes. `knobs`: normals over their window alone.
+//! Benchmark of features: the time per megapixel; normals compared with Open3D on rooms with known normals and on
+//! RGB-D pairs; the room layout from the lines of those pairs and from strokes. With the argument `knobs`: only the
+//! error of normals against the window.
 
 mod harness;
 
@@ -19,21 +20,21 @@ use luxfer::segment::{StrokeSet, strokes};
 use std::path::{Path, PathBuf};
 
 const SIZE: [usize; 2] = [1152, 868];
-/// Open3D's usual number of neighbours, and a larger one: its accuracy with noise rises with the number, and so does
-/// its time.
+/// Numbers of neighbours for Open3D: its usual number, and a larger one. With noise, its accuracy rises with the
+/// number, and so does its time.
 const NEIGHBOURS: [usize; 2] = [30, 100];
 const ROUNDS: usize = 5;
-/// Half-widths of the windows that normals are fitted in.
+/// Half-widths in pixels of the windows in which normals are fitted.
 const RADII: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
-/// A depth map with its camera and, where they are known, the true normals.
+/// A depth map with its camera and, if they are known, the true normals.
 struct Case {
     name: String,
     photo: Image,
     depth: Image,
     camera: Perspective,
     truth: Option<Vec<Vec3>>,
-    /// Strokes on one of its planes and elsewhere.
+    /// Strokes on one of the planes of the photo, and elsewhere.
     strokes: StrokeSet,
 }
 
@@ -53,7 +54,8 @@ fn main() {
     pool.run(|| layouts(&pairs));
 }
 
-/// The built-in depth from lines and strokes, with and without lines, against the measured depth. The scale is free.
+/// Compares the library's own depth with the measured depth, up to scale: depth from lines and strokes, from lines
+/// alone, and from neither.
 fn layouts(pairs: &[&Case]) {
     if pairs.is_empty() {
         return absent("features.layout.depth_error", "the RGB-D pairs are not there");
@@ -98,7 +100,7 @@ fn layouts(pairs: &[&Case]) {
     figure("features.layout.depth_error", median(&errors), "%");
 }
 
-/// Median error of the depth of a layout in %, and the cells of its row in the table.
+/// Median error of the depth of a layout in %, and the cells of its table row.
 fn layout_row(case: &Case, found: &features::Features, measured: &Image) -> (f64, [String; 5]) {
     // Invert Eq. 1: from screen depth to inverse depth.
     let Params { near, far, .. } = Params::default();
@@ -114,7 +116,7 @@ fn layout_row(case: &Case, found: &features::Features, measured: &Image) -> (f64
         let of_half = pixels.iter().zip(&logs).filter(|p| (trust(*p.0) > typical) == trusted);
         of_half.map(|p| *p.1).collect()
     };
-    // Without any lines or strokes all pixels have equal confidence.
+    // Without lines and strokes, all pixels have equal confidence and one half is empty.
     let percent = |values: &[f64]| match values.is_empty() {
         true => "-".into(),
         false => format!("{:.0}", 100.0 * (median(values).exp() - 1.0)),
@@ -138,13 +140,13 @@ fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {
     Perspective { focal, focal_source: FocalSource::Given, principal, axes }
 }
 
-/// A box with a table in it, seen at an angle; z depth with noise whose relative size grows with depth, as sensors
-/// have it.
+/// A box-shaped room with a table in it, seen at an angle. The depth along z has noise whose relative size grows with
+/// depth, as that of depth sensors.
 fn room(noise: f64) -> Case {
     let [width, height] = SIZE;
     let axes = DMat3::from_rotation_y(0.4) * DMat3::from_rotation_x(-0.2);
     let camera = looking(900.0, DVec2::new(width as f64, height as f64) / 2.0, DMat3::IDENTITY);
-    // Faces as axis, position on the axis, and bounds on the other two axes.
+    // Faces: the axis of the normal, the position on this axis, and the bounds on the other two axes.
     let all = [(-9.0, 9.0), (-9.0, 9.0)];
     let faces = [
         (0, -2.0, all),
@@ -155,7 +157,7 @@ fn room(noise: f64) -> Case {
         (1, 0.4, [(2.2, 3.4), (-0.8, 0.9)]),
         (2, 2.2, [(-0.8, 0.9), (0.4, 0.55)]),
     ];
-    // Depth and normal of the surface at a pixel.
+    // Returns the depth and the normal of the surface at a pixel.
     let seen = |x: usize, y: usize| {
         let toward = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let ray = axes.transpose() * toward;
@@ -182,7 +184,7 @@ fn room(noise: f64) -> Case {
     Case { name, photo, depth: depth.unwrap(), camera, truth: Some(truth), strokes: StrokeSet::default() }
 }
 
-/// The RGB-D pairs, if the data is present.
+/// Loads the RGB-D pairs; empty if the data is missing.
 fn pairs() -> Vec<Case> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
@@ -215,12 +217,12 @@ impl Case {
         features::run(&input, params, Monitor::default().job()).unwrap().image
     }
 
-    /// Pixels with a measured depth.
+    /// Indices of the pixels with a measured depth.
     fn measured(&self) -> Vec<usize> {
         (0..self.depth.data.len()).filter(|&i| self.depth.data[i] > 0.0).collect()
     }
 
-    /// Points of these pixels in camera space.
+    /// Points of the measured pixels in camera space.
     fn cloud(&self) -> Vec<[f32; 3]> {
         let point = |i: usize| {
             let at = DVec2::new((i % self.depth.width) as f64 + 0.5, (i / self.depth.width) as f64 + 0.5);
@@ -230,8 +232,9 @@ impl Case {
         self.measured().into_iter().map(point).collect()
     }
 
-    /// Angles in degrees to the truth. Without truth: between normals eight pixels apart, which mostly share a
-    /// surface; a bound of the noise, but not of common errors.
+    /// Angles in degrees between the normals and the true normals. Without true normals: angles between the normals of
+    /// pixels eight pixels apart, which mostly show one surface; they indicate noise, but not errors that both normals
+    /// share.
     fn angles(&self, normal_of: &dyn Fn(usize) -> Vec3) -> Vec<f64> {
         let angle = |a: Vec3, b: Vec3| f64::from(a.cross(b).length().atan2(a.dot(b).abs()).to_degrees());
         let measured = self.measured();
@@ -246,13 +249,13 @@ impl Case {
     }
 }
 
-/// The normal: the last three of a pixel's ten features.
+/// The normal of a pixel: the last three of its ten features.
 fn normal(features: &Image, pixel: usize) -> Vec3 {
     Vec3::from_slice(&features.data[pixel * 10 + 7..pixel * 10 + 10])
 }
 
-/// All features over the window of the normals, the only setting; its cost is nearly constant, because sums are
-/// updated along a row. Reports the mean angle, not the median, because wide windows round off few pixels.
+/// Measures all features against the window of the normals. The cost is nearly constant, because sums are updated
+/// along a row. Reports the mean angle, not the median, because wide windows affect only few pixels, near edges.
 fn knobs(rooms: &[Case]) {
     let mut plot = Plot::new("Normals of a megapixel", "half-width of the window, pixels", "mean error, degrees");
     let mut table = Table::new(["half-width of the windows of normals", "ms, all features"]);
@@ -312,7 +315,7 @@ fn normals(cases: &[Case]) -> Result<(), String> {
         let bytes: Vec<u8> = case.cloud().iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
         std::fs::write(&points, bytes).map_err(|e| e.to_string())?;
         let measured = case.measured();
-        // Timed in turns: all of our channels, not only the normals, against the peer's normals.
+        // Time the two in turns: all ten channels of luxfer, not only the normals, against the normals of Open3D.
         let (mut ours, mut theirs) = (Vec::new(), [Vec::new(), Vec::new()]);
         let mut errors = [0.0; 3];
         for round in 0..if case.truth.is_some() { ROUNDS } else { 1 } {

@@ -1,8 +1,10 @@
-//! Cost of many lights: the error of irradiance at equal time against the number of lamps, as separate meshes and as
-//! spots of one texture, with equal total flux; and the time to prepare the lights of a scene. One thread.
+//! Benchmark of many lights: the error of irradiance at equal time against the number of lamps, once with separate
+//! meshes as lamps and once with spots of one emission texture, at equal total flux. Also the time to prepare the
+//! lights of a scene. One thread.
 //!
-//! The room is 30 × 30 × 4 m with grey walls. The error is that of single paths, relative to the mean, over points of
-//! the whole floor; at equal time it is proportional to the root of the variance times the time of a path.
+//! The room is 30 × 30 × 4 m with grey walls. The error is the relative standard deviation of single paths, over
+//! points of the whole floor. At equal time it is proportional to the square root of the variance times the time of a
+//! path.
 
 mod harness;
 
@@ -19,15 +21,15 @@ use std::sync::Arc;
 
 const SIDE: f32 = 30.0;
 const HEIGHT: f32 = 4.0;
-/// Share of the ceiling that emits light.
+/// Share of the ceiling's area that emits light.
 const LIT: f32 = 0.01;
-/// Texels along the side of a texture of lamps.
+/// Number of texels along a side of the emission texture with lamps.
 const TEXELS: usize = 2048;
 const POINTS: u32 = 64;
 const PATHS: u32 = 1024;
 const ROUNDS: u64 = 3;
 
-/// The radiance of one path.
+/// Sums the radiance of one path, in the green channel.
 #[derive(Default)]
 struct Path(f64);
 
@@ -39,12 +41,12 @@ impl PathSink for Path {
 
 struct Measured {
     seconds_per_path: f64,
-    /// Variance of a path over the square of the mean.
+    /// Variance of the radiance of a path, divided by the square of the mean.
     variance: f64,
 }
 
 impl Measured {
-    /// Error at equal time, relative to another measurement.
+    /// Error of this measurement at equal time, divided by the error of `other`.
     fn error_over(&self, other: &Self) -> f64 {
         (self.variance * self.seconds_per_path / (other.variance * other.seconds_per_path)).sqrt()
     }
@@ -60,7 +62,7 @@ fn main() {
     ] {
         let mut table = Table::new(["lamps", "build ms", "us per path", "variance", "error at equal time"]);
         let worlds: Vec<(f64, World)> = counts.iter().map(|&n| build(scene(n))).collect();
-        // Measured in turns, so that other work on the machine affects all equally.
+        // Measure the scenes in turns, so that other work on the machine affects all of them equally.
         let mut measured: Vec<Vec<Measured>> = worlds.iter().map(|_| Vec::new()).collect();
         for round in 0..ROUNDS {
             for (world, results) in worlds.iter().zip(&mut measured) {
@@ -91,7 +93,7 @@ fn main() {
     if let Err(error) = plot.write("lights") {
         println!("# no plot: {error}");
     }
-    // A large texture, all of it lit, with a different value in each texel.
+    // Time the preparation of a large texture that is lit everywhere, with different values in neighbouring texels.
     let (seconds, _) = build(textured(
         Image::from_fn(4096, 4096, |x, y| [0.5 + ((x * 7 + y * 13) % 11) as f32 / 10.0]).expect("an image"),
         1.0,
@@ -106,7 +108,7 @@ fn build(scene: Scene) -> (f64, World) {
     (seconds, world.expect("the scene is valid"))
 }
 
-/// Traces paths from points of the floor, each a separate sample.
+/// Traces paths from random points of the floor; each point has a variance and a mean of its own.
 fn measure(world: &World, round: u64) -> Measured {
     let (seconds, relative) = time(Clock::Thread, || {
         let mut relative = 0.0;
@@ -131,7 +133,7 @@ fn measure(world: &World, round: u64) -> Measured {
     Measured { seconds_per_path: seconds / f64::from(POINTS * PATHS), variance: relative }
 }
 
-/// The floor is the first mesh, the ceiling the last; material 1 emits light.
+/// The empty room. The floor is the first mesh, the ceiling the last; material 1 emits light.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * HEIGHT, Vec3::Z * SIDE);
     let sides = [(Vec3::ZERO, z, x), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y), (y, x, z)];
@@ -143,17 +145,17 @@ fn room() -> Scene {
     }
 }
 
-/// Positions of the lamps: `count` cells of the smallest square grid with at least as many cells.
+/// Positions of `count` lamps in `[0, 1]²`: cells of the smallest square grid with at least `count` cells.
 fn places(count: usize) -> impl Iterator<Item = Vec2> {
     let grid = (count as f64).sqrt().ceil() as usize;
     (0..count).map(move |i| {
-        // Spread the lamps evenly over the cells.
+        // Spread the lamps evenly over the cells of the grid.
         let cell = i * grid * grid / count;
         (Vec2::new((cell % grid) as f32, (cell / grid) as f32) + 0.5) / grid as f32
     })
 }
 
-/// The room with `count` square lamps as meshes under the ceiling.
+/// The room with `count` square lamps that are meshes under the ceiling.
 fn mesh_lamps(count: usize) -> Scene {
     let mut scene = room();
     let side = SIDE * (LIT / count as f32).sqrt();
@@ -180,7 +182,7 @@ fn texture_lamps(count: usize) -> Scene {
             image.pixel_mut(x.min(TEXELS - 1), y.min(TEXELS - 1))[0] = 1.0;
         }
     }
-    // The sides are rounded to texels, which changes the flux; scale the emission to compensate.
+    // Rounding the sides of lamps to texels changes the flux; scale the emission to compensate.
     let lit = image.data.iter().sum::<f32>() / (TEXELS * TEXELS) as f32;
     textured(image, LIT / lit)
 }

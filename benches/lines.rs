@@ -1,5 +1,6 @@
-//! Line detection against OpenCV's `LineSegmentDetector` (LSD), in turns: recall within a pixel on drawings with known
-//! edges, the share of lines that run to the true vanishing points of re-projected panoramas, and time.
+//! Benchmark of line detection against OpenCV's `LineSegmentDetector` (LSD), in turns: recall within a pixel on
+//! drawings with known edges, the length of the lines that run to the true vanishing points of re-projected panoramas,
+//! and time.
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -17,20 +18,23 @@ use luxfer::rng::Rng;
 use std::path::{Path, PathBuf};
 use truth::labelled_photos;
 
-/// Size of a drawing of one megapixel, with a rectangle in each cell, and the contrasts and noise levels of its edges
-/// in grey levels of 255.
+/// Width and height of a drawing in pixels: one megapixel.
 const SIZE: [usize; 2] = [1152, 864];
+/// Side in pixels of the cells of a drawing; each cell has a rectangle.
 const CELL: usize = 96;
+/// Contrasts of the drawings between rectangles and background, in grey levels of 255.
 const STEPS: [f64; 4] = [15.0, 20.0, 30.0, 60.0];
+/// Standard deviations of the noise of the drawings, in grey levels of 255.
 const NOISES: [f64; 3] = [0.0, 3.0, 8.0];
 
-/// Maximum distance of a segment from its edge in pixels, and maximum angle between them in radians.
+/// Maximum distance in pixels of a found segment from its edge, and maximum angle between them in radians.
 const MAX_DISTANCE: f64 = 1.0;
 const TURNED: f64 = 0.09;
 
 const ROUNDS: usize = 5;
 
-/// OpenCV's pixel centres are at whole coordinates.
+/// Offset from OpenCV's coordinates, in which pixel centres are at whole numbers, to luxfer's, in which they are at
+/// halves.
 const HALF: DVec2 = DVec2::splat(0.5);
 
 fn main() {
@@ -48,21 +52,22 @@ fn main() {
     }
 }
 
-/// Our detector with two threads and with one, and OpenCV's, which has one.
+/// The detectors: luxfer's with two threads and with one thread, and OpenCV's, which has one thread.
 struct Detectors {
     pools: [Pool; 2],
     peer: Peer,
     folder: PathBuf,
 }
 
-/// Milliseconds over the rounds of ours with two threads, ours with one, and OpenCV's; segments of both.
+/// Milliseconds of each round, for luxfer's detector with two threads, for luxfer's with one thread, and for OpenCV's;
+/// and the segments that luxfer's and OpenCV's detector have found.
 struct Found {
     ms: [Vec<f64>; 3],
     segments: [Vec<Segment>; 2],
 }
 
 impl Found {
-    /// OpenCV's time over ours with two threads and with one.
+    /// Median ratios between OpenCV's time and luxfer's, with two threads and with one thread.
     fn ratios(&self) -> [f64; 2] {
         [0, 1].map(|k| median(&self.ms[2].iter().zip(&self.ms[k]).map(|(t, o)| t / o).collect::<Vec<_>>()))
     }
@@ -75,7 +80,7 @@ impl Detectors {
         Ok(Self { pools: [2, 1].map(|n| Pool::new(n).unwrap()), peer: Peer::start("segment", "lsd.py")?, folder })
     }
 
-    /// Detects segments in 8-bit grey levels with all of them, in turns.
+    /// Detects the segments of an image with all detectors in turns; `grey` and `photo` hold the same image.
     fn run(&mut self, grey: &[u8], photo: &Image) -> Result<Found, String> {
         let [image, out] = ["image", "segments"].map(|name| self.folder.join(name));
         std::fs::write(&image, grey).map_err(|e| e.to_string())?;
@@ -112,7 +117,8 @@ impl Drop for Detectors {
     }
 }
 
-/// Grey levels of rotated rectangles on grey, with a white margin on the right; and their edges.
+/// Makes a drawing of rotated rectangles on grey, with a white margin on the right. Returns its grey levels and its
+/// edges.
 fn drawing(step: f64, noise: f64) -> (Vec<u8>, Vec<Segment>) {
     let [width, height] = SIZE;
     let mut rng = Rng::new(7, &[]);
@@ -156,7 +162,7 @@ fn drawing(step: f64, noise: f64) -> (Vec<u8>, Vec<Segment>) {
     ((0..width * height).map(pixel).collect(), edges)
 }
 
-/// Share of the length of `a` that lies along some segment of `b`.
+/// Share of the length of the segments `a` that lies along some segment of `b`.
 fn covered(a: &[Segment], b: &[Segment]) -> f64 {
     let (mut hits, mut all) = (0usize, 0usize);
     for s in a {
@@ -252,7 +258,7 @@ fn panoramas(detectors: &mut Detectors) -> Result<(), String> {
     Ok(())
 }
 
-/// Distance of the ends of a segment from the line through its midpoint and a homogeneous point.
+/// Distance in pixels of the ends of a segment from the line through its midpoint and a homogeneous point.
 fn end_distance(s: &Segment, point: DVec3) -> f64 {
     let away = point.truncate() - s.midpoint() * point.z;
     (s.b - s.a).perp_dot(away.normalize_or_zero()).abs() / 2.0

@@ -1,7 +1,8 @@
-//! Cost of images by light path expression beside the main image, and the error of the sum of a complete set.
+//! Benchmark of light path expressions: their cost beside the main image, and the error of the sum of a complete set
+//! of expressions.
 //!
-//! The five images of StyLit (section 3.2) on a sphere on a table and on rooms are compared with the main image alone,
-//! in turns on one thread; so are sixteen expressions and all surface images. The pictures go to `out/bench/`.
+//! The five images of StyLit (section 3.2), sixteen expressions, and all AOVs are compared with the main image alone,
+//! in turns on one thread, on a sphere on a table and on rooms. The pictures go to `out/bench/`.
 
 mod harness;
 
@@ -17,10 +18,10 @@ use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The paper's images, including the full image.
+/// The images of the StyLit paper, including the full image.
 const FIVE: [(&str, &str); 5] =
     [("FULL", "L.*E"), ("LDE", "LDE"), ("LSE", "LSE"), ("LDDE", "L.*DDE"), ("LD12E", "LD{1,2}E")];
-/// A complete set without overlap.
+/// A complete set of expressions without overlap: every path matches exactly one.
 const PARTS: [(&str, &str); 5] =
     [("LE", "LE"), ("LDE", "LDE"), ("LSE", "LSE"), ("LDDE", "L.*DDE"), ("rest", "L.*SDE|L.*.SE")];
 const SIXTEEN: [(&str, &str); 16] = [
@@ -45,7 +46,7 @@ const ROUNDS: usize = 7;
 const SAMPLES: u32 = 16;
 
 fn main() {
-    // With one thread, the thread's own clock measures all of the work.
+    // One thread: the clock of this thread then measures all work.
     let pool = Pool::new(1).expect("a thread");
     let settings: [(&str, Result<Setting, Absent>); 4] = [
         ("table", Ok(sphere_on_table())),
@@ -77,7 +78,7 @@ fn params(setting: &Setting, expressions: &[(&str, &str)], aovs: &[Aov]) -> Para
     Params { width, height, samples: SAMPLES, outputs, ..Params::default() }
 }
 
-/// The cost of five expressions in %, and the largest relative error of a sum.
+/// Returns the additional cost of five expressions in %, and the largest relative error of the sum of a complete set.
 fn measure(setting: &Setting, table: &mut Table) -> (f64, f64) {
     let monitor = Monitor::default();
     let world = World::build(Arc::new(setting.scene.clone()), monitor.job()).expect("a world");
@@ -113,7 +114,7 @@ fn measure(setting: &Setting, table: &mut Table) -> (f64, f64) {
     (cost(1), sum)
 }
 
-/// Largest relative difference of a pixel between the image and the sum of the layers.
+/// Largest relative difference of a pixel between the main image and the sum of all layers.
 fn sum_error(film: &Film) -> f64 {
     let errors = film.beauty.data.iter().enumerate().map(|(i, &whole)| {
         let sum: f64 = film.layers.iter().map(|layer| f64::from(layer.image.data[i])).sum();
@@ -122,7 +123,7 @@ fn sum_error(film: &Film) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Writes the layers as pictures: light at the exposure of the full image, the others scaled to their range.
+/// Saves the layers as pictures: layers of light at the exposure of the main image, AOVs scaled to their range.
 fn save(setting: &Setting, film: &Film) {
     let exposure = 0.3 / mean(&film.beauty).max(1e-9);
     for layer in &film.layers {
@@ -153,7 +154,7 @@ fn shifted(image: &Image) -> Image {
     Image { data, ..*image }
 }
 
-/// The exemplar of StyLit: a glossy sphere on a table, a second colour beside it, and a lamp.
+/// The exemplar scene of StyLit: a glossy sphere on a table before a wall, and a lamp.
 fn sphere_on_table() -> Setting {
     let mut scene = Scene::default();
     let paint =

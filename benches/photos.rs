@@ -1,36 +1,45 @@
-//! The photo laboratory: how often the light of a photo comes out right, on real photographs and on generated ones.
+//! Laboratory for photos: measures how often a lighting transfer gets the lamps of a photo right, on real photographs
+//! and on generated ones.
 //!
 //! `cargo bench --bench photos -- SECTION …`, or `make bench ONLY=photos:SECTION`:
-//! - `real` runs the photos of the test data by their strokes, end to end with default settings, but for the quarter of the
-//!   corpus that is set aside; `real:WORD` runs those whose name contains the word. Contact sheets go to `out/bench/photos/`.
-//! - `nostrokes` runs the same photos without any stroke; `nostrokes:tune:COUNT` does so with generated photos.
-//! - `made` runs 200 generated photos of the evaluation seeds; `made:40` the first 40 of them, without figures. Photos are
-//!   kept under `target/photolab`, so that they are made once.
+//! - `real` runs the photos of the test data with their strokes, end to end with default settings, but not the quarter
+//!   of the corpus that is set aside; `real:WORD` runs the photos whose name contains the word. Contact sheets go to
+//!   `out/bench/photos/`.
+//! - `nostrokes` runs the photos of `real` without any stroke; `nostrokes:tune:COUNT` runs generated photos without
+//!   any stroke.
+//! - `made` runs 200 generated photos of the evaluation seeds; `made:40` runs the first 40 of them and prints no
+//!   figures. Generated photos are kept under `target/photolab`, so that each is made only once.
 //! - `tune` runs generated photos of the tuning seeds: `tune`, `tune:COUNT`, `tune:SEED`, `tune:FIRST:COUNT`.
-//! - `contact` makes a contact sheet of 40 tuning photos with their strokes and one of their truths.
-//! - `perfect` puts the judges on trial: perfect answers must come out right, spoilt ones must not; and tells what the library
-//!   makes of perfect masks.
-//! - `export:FOLDER:COUNT:FIRST` writes photos of the learning seeds with their labels (`photos/export.rs` says how).
-//! - `held` runs the quarter that is set aside: to be looked at when all is done, never tuned on.
+//! - `contact` makes a contact sheet of 40 tuning photos with their strokes, and one of their true lamps.
+//! - `perfect` tests the judges: perfect answers must be judged right, spoilt answers must not. It also shows how well
+//!   the library does with perfect masks.
+//! - `export:FOLDER:COUNT:FIRST` writes photos of the learning seeds with their labels (see `photos/export.rs`).
+//! - `held` runs the quarter of the corpus that is set aside: look at it only when all work is done, and never tune on
+//!   it.
 //!
 //! # Verdicts
-//! They are computed (`photos/judge.rs`); no list of opinions is read.
-//! - *Precision* is the share of the mask of lights that lies on a true lamp or within 6 pixels of one; *found* the share of the
-//!   true lamps of at least 4 pixels across half of whose pixels lie in the mask.
-//! - A lamp that the corpus lists by hand reaches as far as its luminance is above half way from its surroundings' to its own
-//!   (`photos/outline.rs`); one that was measured in the ceiling seen straight on has the median size of that ceiling's lamps.
-//! - The *texture* is held against the true lamps in their plane where the camera is known, both in units of the camera's
-//!   distance from the plane, so that a wrong focal length or unwarping counts too: median area of the whole lamps, median
-//!   aspect ratio, median distance to the nearest lamp, and lit share of the plane. Lamps longer than six times their width are
-//!   lines: their width and their distance across are compared instead.
-//! - *Right*: precision above 0.8, found at least 90 %, and the texture's area and aspect within a factor of 1.25, its spacing
-//!   of 1.1, its lit share of 1.35.
+//! Verdicts are computed (`photos/judge.rs`); no list of opinions is read.
+//! - *Precision* is the share of the mask of lights that lies on a true lamp or within 6 pixels of one. *Found* is the
+//!   share of the true lamps at least 4 pixels wide of which half the pixels lie in the mask.
+//! - The outline of a lamp that the corpus lists by hand is drawn where its luminance is half way between its
+//!   surroundings and its own (`photos/outline.rs`). A lamp that was measured in a ceiling seen straight on has the
+//!   median size of the lamps of that ceiling.
+//! - The *texture* is compared with the true lamps in their plane if the camera is known. Both are measured in units
+//!   of the camera's distance from the plane, so that errors of the focal length and of the unwarping count too. The
+//!   statistics are the median area of whole lamps, the median aspect ratio, the median distance to the nearest lamp,
+//!   and the lit share of the plane. Lamps longer than six times their width are lines: for lines the width and the
+//!   distance between neighbouring lines are compared instead.
+//! - *Right*: precision above 0.8, found at least 90 %, and the texture's area and aspect within a factor of 1.25, its
+//!   spacing within 1.1, its lit share within 1.35.
 //! - *Usable*: precision above 0.5, found at least 70 %, and factors of 2, 1.6, 1.3 and 2.
-//! - *Wrong*: everything else, also a run that ends in an error. *Wrong, unwarned* where neither an error nor a warning says so.
-//! - A trap, a photo that holds no pattern of lamps, is right where the run declines or warns, else judged as the others are.
-//! - A photo whose lamps lie on no plane, or shine away from the camera, is right where the run ends in an error, or
-//!   warns by `DIM_LAMPS` or `NO_PATTERN` that its texture is not to be used; else it is judged as the others are.
-//! - Where nothing is known of a photo's lamps there is no verdict; where the camera is not known the masks alone decide.
+//! - *Wrong*: everything else, also a run that ends in an error. *Wrong, unwarned*: wrong without an error and without
+//!   a warning.
+//! - A trap is a photo without a pattern of lamps. It is right if the run ends in an error or warns; otherwise it is
+//!   judged like other photos.
+//! - A photo whose lamps lie on no plane, or shine away from the camera, is right if the run ends in an error, or
+//!   warns by `DIM_LAMPS` or `NO_PATTERN` that its texture should not be used; otherwise it is judged like other
+//!   photos.
+//! - A photo whose true lamps are not known has no verdict; if only its camera is not known, the masks alone decide.
 
 #[path = "photos/camera.rs"]
 mod camera;

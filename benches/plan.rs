@@ -1,10 +1,10 @@
-//! Accuracy of plans: seconds and errors that `plan` expects, against those of the planned runs.
+//! Benchmark of plans: compares the seconds and errors that `plan` predicts with those of the planned runs.
 //!
-//! Plans renderings, the light of whole transfers, and stylisations, on scenes, sizes and photos to which nothing was
-//! fitted. Times are processor times of one thread, so other work on the machine does not count; time budgets, which
-//! use the wall clock, are removed, and the limits of paths that they imply remain. The error of a picture needs no
-//! reference: it is half the mean square of the difference of two pictures with different seeds. The error of a
-//! stylisation is the root of its energy.
+//! It plans renderings, the light of whole transfers, and stylisations, on scenes, sizes and photos to which nothing
+//! in `plan` was fitted. Times are processor times of one thread, so other work on the machine does not count. Time
+//! budgets use the wall clock and are therefore removed; the numbers of paths that they imply remain. The error of a
+//! picture needs no reference: it is half the mean square of the difference between two pictures with different seeds.
+//! The error of a stylisation is the square root of its energy.
 //!
 //! `cargo bench --bench plan -- renderings`, `-- transfers` or `-- stylisations` runs one section.
 
@@ -48,7 +48,7 @@ fn main() {
     });
 }
 
-/// Expected value, actual value, and their ratio.
+/// Cells of a table: predicted value, actual value, and their ratio.
 fn columns([expected, found]: [f64; 2]) -> [String; 3] {
     [format!("{expected:.4}"), format!("{found:.4}"), format!("{:.2}", found / expected)]
 }

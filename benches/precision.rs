@@ -1,9 +1,10 @@
-//! Precision of each quantity: error and time of a narrower and a wider number type.
+//! Benchmark of precision: for each quantity, the error and the time with a narrower and a wider number type.
 //!
 //! Each kernel is generic over the number type, follows the arithmetic of its stage, and runs in f32 and in f64 on the
-//! same data; distances of patches run in the library's integers, in f32 and in halves. Errors are against the exact
-//! value, or against f64 where the exact value is unknown. Times are of one thread, interleaved, relative to the
-//! library's choice; no kernel is written for wide registers, so types differ only by the compiler's vectorisation.
+//! same data. Distances of patches run in the library's integers, in f32 and in half floats. Errors are relative to
+//! the exact value, or to the result in f64 if the exact value is unknown. Times are of one thread, measured in turns,
+//! and relative to the type that the library uses. No kernel is written for vector registers, so the types differ only
+//! by the compiler's vectorisation.
 
 #[path = "precision/film.rs"]
 mod film;
@@ -27,7 +28,7 @@ mod vanishing;
 use harness::{Clock, Table, interleaved};
 use std::hint::black_box;
 
-/// One number format: its name, bytes per stored element, error, and the timed work.
+/// A kernel with one number type: name of the type, bytes per stored element, error, and the work to be timed.
 struct Way<'a> {
     name: &'a str,
     bytes: usize,
@@ -35,18 +36,18 @@ struct Way<'a> {
     work: &'a mut dyn FnMut(),
 }
 
-/// Wraps work so that the compiler does not remove it.
+/// Wraps work so that the compiler cannot remove it.
 fn timed<T>(mut work: impl FnMut() -> T) -> impl FnMut() {
     move || {
         black_box(work());
     }
 }
 
-/// Rows of the table.
+/// The table of all quantities.
 struct Study(Table);
 
 impl Study {
-    /// Adds the formats of one quantity; `kept` is the index of the library's choice.
+    /// Adds a row for each number type of one quantity; `kept` is the index of the type that the library uses.
     fn add(&mut self, what: &str, error_of: &str, kept: usize, ways: &mut [Way]) {
         let mut work: Vec<&mut dyn FnMut()> = Vec::new();
         let mut about = Vec::new();

@@ -1,9 +1,9 @@
-//! Rays per second and building time against Embree 3, in one process, in turns.
+//! Benchmark of ray tracing against Embree 3: rays per second and build time, in one process, in turns.
 //!
-//! Three kinds of rays per scene: camera rays (coherent), rays after the first hit of a path, cosine-distributed over
-//! the surfaces (incoherent), and shadow rays between surfaces and lights or other surfaces (any hit). All are traced
-//! on one thread. The main ratio is against Embree with default settings, whose triangle test is not watertight; the
-//! ratio against its robust mode, which corresponds to this library, is printed beside it.
+//! Each scene has three kinds of rays: camera rays (coherent); rays after the first hit of a path, cosine-distributed
+//! over the surfaces (incoherent); and shadow rays between surfaces and lights or other surfaces (any hit). All rays
+//! are traced on one thread. The headline ratio is against Embree with default settings, whose triangle test is not
+//! watertight. The ratio against Embree's robust mode, which corresponds to this library, is printed beside it.
 
 mod harness;
 
@@ -24,11 +24,11 @@ use obvhs::triangle::Triangle;
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// Rays of each kind.
+/// Number of rays of each kind.
 const RAYS: usize = 100_000;
 const ROUNDS: usize = 9;
 
-/// Argument for the process that only loads a scene of ten million triangles.
+/// Argument that makes the process only load a scene of ten million triangles and print its peak memory.
 const LOAD_10M: &str = "--load-10m";
 
 fn main() {
@@ -36,11 +36,11 @@ fn main() {
     if std::env::args().any(|arg| arg == LOAD_10M) {
         return load_10m(&pool);
     }
-    // Names on the command line choose among the scenes: `cargo bench --bench rays -- demo kitchen`.
+    // Names on the command line select scenes: `cargo bench --bench rays -- demo kitchen`.
     let chosen: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).collect();
     let all = chosen.is_empty();
-    // Run on a thread of the pool, as the library builds: handing over the work takes as long as building 38
-    // triangles.
+    // Run on a thread of the pool, as the library builds its structures: handing work over to the pool would take as
+    // long as building a structure for 38 triangles.
     pool.run(|| compare(|name| all || chosen.iter().any(|c| c == name)));
     if all {
         ties(&pool);
@@ -48,7 +48,7 @@ fn main() {
     }
 }
 
-/// All measurements against Embree.
+/// Measures all chosen scenes against Embree.
 fn compare(is_chosen: impl Fn(&str) -> bool) {
     let engines = Embree::open(2);
     if let Err(reason) = &engines {
@@ -84,7 +84,7 @@ fn compare(is_chosen: impl Fn(&str) -> bool) {
     built.print("Building on two threads; ratios are our time over Embree's");
 }
 
-/// Peak memory of preparing a scene of ten million triangles for rendering, in a separate process.
+/// Measures the peak memory of preparing a scene of ten million triangles for rendering, in a separate process.
 fn peak_of_10m() {
     const NAME: &str = "peak.scene_10m_tris.mb";
     let run = || {
@@ -104,9 +104,9 @@ fn load_10m(pool: &Pool) {
     println!("{:.0}", peak_memory().map_or(f64::NAN, |bytes| bytes as f64 / 1e6));
 }
 
-/// The hardest case for binary trees on rooms: on regular grids all merges of neighbours have equal cost. Compares
-/// trees of obvhs over exact boxes and over boxes enlarged by up to 1/1000 (so that no two are equal), both traced by
-/// obvhs, with this library's structure over the exact boxes.
+/// Measures the hardest case for binary trees on rooms: regular grids, where all merges of neighbouring boxes have
+/// equal cost. The trees of the crate obvhs over exact boxes, and over boxes enlarged by up to 1/1000 so that no two
+/// are equal, are traced by obvhs and compared with this library's structure over the exact boxes.
 fn ties(pool: &Pool) {
     const TIE_RAYS: usize = 5_000;
     let mut table =
@@ -156,7 +156,7 @@ fn enlarged(shape: Aabb, index: usize, amount: f32) -> Aabb {
     Aabb::new(shape.min - grow, shape.max + grow)
 }
 
-/// Expected number of boxes that a random line through the scene hits (the surface area heuristic without constants).
+/// Expected number of boxes that a random line through the scene hits (surface area heuristic without constants).
 fn tree_cost(tree: &Bvh2) -> f32 {
     tree.nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>() / tree.nodes[0].aabb().half_area()
 }
@@ -176,7 +176,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     let build = || Accel::build(&triangles, monitor.job()).expect("a scene to trace");
     let accel = build();
 
-    // Time building.
+    // Time the builds.
     let mut row = vec![setting.name.to_string(), triangles.len().to_string()];
     let per_triangle = |bytes: usize| format!("{:.1}", bytes as f64 / triangles.len() as f64);
     match &embree {
@@ -208,7 +208,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     row.push(accel.dropped().to_string());
     built.row(row);
 
-    // Time tracing.
+    // Time the tracing.
     let rays = Rays::new(setting, &accel, &triangles);
     let peers = embree.map(|e| [false, true].map(|robust| e.build(&positions, &indices, robust)));
     for (kind, rays, any) in
@@ -218,7 +218,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     }
 }
 
-/// Number of rays that hit the scene, traced by the library.
+/// Number of rays that hit the scene, traced by this library.
 fn our_hits(accel: &Accel, rays: &[Ray], any: bool) -> usize {
     match any {
         false => rays.iter().filter(|ray| accel.closest(ray, |_| true).is_some()).count(),
@@ -239,7 +239,7 @@ fn embree_hits(scene: &embree::Scene, rays: &[Ray], any: bool) -> usize {
     rays.iter().filter(|ray| is_hit(ray)).count()
 }
 
-/// Times the tracing of one kind of rays; `peers` are Embree's default scene and its robust one.
+/// Times the tracing of one kind of rays; `peers` are Embree's scenes in default mode and in robust mode.
 fn measure_tracing(
     scene: &str,
     kind: &str,
@@ -289,7 +289,8 @@ fn measure_tracing(
     }
 }
 
-/// Check that both do equal work: hits at other distances, or in one of them only, may come only from rounding.
+/// Checks that this library and Embree do equal work. A warning is printed if more than a thousandth of the rays hit
+/// in only one of them or at another distance, which is more than rounding causes.
 fn check(kind: &str, scene: &str, accel: &Accel, robust: &embree::Scene, rays: &[Ray], any: bool) {
     let mut differ = 0;
     for ray in rays {
@@ -316,7 +317,7 @@ struct Rays {
 impl Rays {
     fn new(setting: &Setting, accel: &Accel, triangles: &[[Vec3; 3]]) -> Self {
         let mut rng = Rng::new(3, &[]);
-        // A grid of pixels, in scan order.
+        // Camera rays: a grid of pixels in scan order.
         let side = (RAYS as f64).sqrt() as usize;
         let mut camera = Vec::with_capacity(RAYS);
         for i in 0..side * side {
@@ -324,7 +325,7 @@ impl Rays {
             let direction = setting.camera.direction(x / side as f32, y / side as f32, setting.aspect());
             camera.push(Ray::new(setting.camera.position, direction.normalize()));
         }
-        // Paths of up to five bounces; a path that leaves the scene is followed by the next from the camera.
+        // Other rays: from paths of up to five bounces, each starting with a random camera ray.
         let (low, high) = accel.bounds();
         let step = (high - low).length() * 1e-5;
         let lights = setting.light_points();
@@ -356,7 +357,7 @@ impl Rays {
     }
 }
 
-/// A cosine-distributed direction about a normal.
+/// A random direction with cosine distribution around a normal.
 fn cosine(normal: Vec3, rng: &mut Rng) -> Vec3 {
     let z = 2.0 * rng.next_f32() - 1.0;
     let (sin, cos) = (std::f32::consts::TAU * rng.next_f32()).sin_cos();
@@ -364,7 +365,7 @@ fn cosine(normal: Vec3, rng: &mut Rng) -> Vec3 {
     (normal + Vec3::new(r * cos, r * sin, z) * 0.9999).normalize_or(normal)
 }
 
-/// The whole scene as one mesh, for Embree.
+/// The whole scene as one mesh, which Embree takes.
 fn one_mesh(setting: &Setting) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for mesh in &setting.scene.meshes {

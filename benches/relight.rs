@@ -1,6 +1,6 @@
-//! Solving for the emission: error against time in the demonstration room and in scenes of others, coverage of the
-//! intervals, and the cost of many lamps. Two threads; times include the preparation of the scene unless stated
-//! separately.
+//! Benchmark of relighting: the error of the emission against time in the demonstration room and in scenes by others,
+//! the coverage of the confidence intervals, and the cost of many lamps. Two threads; times include the preparation of
+//! the scene unless it is stated separately.
 
 mod harness;
 
@@ -19,19 +19,19 @@ use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
 use std::sync::Arc;
 
-/// Solves per target of the curve.
+/// Number of solves for each target error of the curve.
 const ROUNDS: usize = 5;
 /// Number of solves for the coverage, and their target error.
 const SEEDS: u64 = 1000;
 const COVERAGE_ERROR: f32 = 0.05;
-/// Targets of the curve.
+/// Target errors of the curve.
 const ERRORS: [f32; 6] = [0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
 
-/// Figures of the demonstration room.
+/// Names of the figures of the demonstration room.
 const FIGURES: [&str; 4] =
     ["relight.to_1pct.seconds", "relight.to_5pct.seconds", "relight.coverage", "relight.vs_mitsuba_prb"];
 
-/// A room, its emitter, and the target surface.
+/// A scene, the index of its emitting material, and the target surface.
 struct Case {
     scene: Arc<Scene>,
     emitter: usize,
@@ -84,7 +84,7 @@ fn demo() -> Result<Case, String> {
     Ok(Case { scene: Arc::new(setting.scene), emitter, target: ceiling.triangles })
 }
 
-/// The result with very many paths.
+/// Solves with so many paths that the result serves as the reference.
 fn truth(case: &Case) -> DVec3 {
     let params = Params { paths: 1 << 22, target_error: 0.0, seed: 1 << 40, ..Params::default() };
     let (seconds, solution) = time(Clock::Wall, || case.solve(&case.world(), &params));
@@ -92,7 +92,7 @@ fn truth(case: &Case) -> DVec3 {
     solution.scale
 }
 
-/// Measures error against time; returns the seconds to 1 %.
+/// Measures the error against time; returns the seconds that a target error of 1 % takes.
 fn curve(case: &Case, truth: DVec3) -> f64 {
     let mut table =
         Table::new(["asked for %", "seconds", "paths", "interval %", "worst channel off %", "colour dE2000 95 %"]);
@@ -137,8 +137,8 @@ fn curve(case: &Case, truth: DVec3) -> f64 {
     to_one_percent
 }
 
-/// Time to 5 % and 1 % in scenes of others. The target is the upward-facing part of the mesh that receives most of the
-/// light of the lamp above it: a floor or the ground.
+/// Measures the time to 5 % and 1 % in scenes by others. The target is a floor or the ground: of the meshes that the
+/// lamp reaches, the one with the largest area that faces up.
 fn others() {
     let heads = ["scene", "triangles", "scene ready s", "then to 5 % s", "then to 1 % s", "paths", "interval %"];
     let mut table = Table::new(heads);
@@ -184,7 +184,7 @@ fn others() {
     table.print("scenes of others");
 }
 
-/// The upward-facing triangles of each mesh, the largest first.
+/// The triangles of each mesh that face up; the mesh with the largest such area comes first.
 fn floors(scene: &Scene, emitter: usize) -> Vec<Vec<(usize, usize)>> {
     let up = |mesh: usize| {
         let all = 0..scene.meshes[mesh].triangles.len();
@@ -201,15 +201,16 @@ fn floors(scene: &Scene, emitter: usize) -> Vec<Vec<(usize, usize)>> {
     sized.into_iter().map(|(_, mesh)| up(mesh).map(|(triangle, _)| triangle).collect()).collect()
 }
 
-/// Gradient descent through Mitsuba's adjoint (`prb`) in the same room, with its best settings. Ours states an
-/// interval of 1 %; the peer is stopped within 1 % of the known truth.
+/// Compares with gradient descent through Mitsuba's adjoint integrator (`prb`) in the same room, with the best of its
+/// settings. Our time ends when the stated interval is 1 %, the time of Mitsuba when its result is within 1 % of the
+/// known truth.
 fn adjoint(case: &Case, ours: f64) -> Result<(), String> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let python = root.join("target/peers/mitsuba/bin/python");
     if !python.exists() {
         return Err("mitsuba is not installed; `make peers` installs it".into());
     }
-    // Give the ceiling its own material, by which the peer's script finds it.
+    // Give the ceiling a material of its own, by which Mitsuba's script finds it.
     let mut scene = (*case.scene).clone();
     let (ceiling, _) = *case.target.first().ok_or("the room has no ceiling")?;
     let paint = scene.materials[scene.meshes[ceiling].material].clone();
@@ -244,7 +245,7 @@ fn adjoint(case: &Case, ours: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// Share of intervals that contain the truth, over seeds and channels.
+/// Measures coverage: the share of confidence intervals that contain the truth, over seeds and channels.
 fn coverage(case: &Case, truth: DVec3) {
     let world = case.world();
     let mut inside = [0u32; 3];
@@ -265,9 +266,9 @@ fn coverage(case: &Case, truth: DVec3) {
     figure("relight.coverage", inside.iter().map(|&c| share(c)).sum::<f64>() / 3.0, "%");
 }
 
-/// Time of a map of the importance, and of one lookup in it.
+/// Measures the time of an importance map, and of one texture's response from it.
 fn map(case: &Case) {
-    // The map needs texture coordinates, so the lamp gets some.
+    // Give the lamp texture coordinates, which the map needs.
     let mut scene = (*case.scene).clone();
     for mesh in scene.meshes.iter_mut().filter(|m| m.material == case.emitter) {
         mesh.uvs[0] = mesh.positions.iter().map(|p| Vec2::new((p.x - 2.2) / 1.6, (p.z - 1.2) / 1.6)).collect();
@@ -305,13 +306,14 @@ fn map(case: &Case) {
     );
 }
 
-/// Texels along the side of a texture of lamps, and the side of the hall in metres.
+/// Number of texels along a side of the emission texture with lamps, and side of the hall in metres.
 const TEXELS: usize = 2048;
 const SIDE: f32 = 30.0;
-/// Share of the ceiling that emits light.
+/// Share of the ceiling's area that emits light.
 const LIT: f32 = 0.01;
 
-/// Time from the scene to the powers of all lamps to 1 %, for 1 and for 10,000 lamps of equal total flux.
+/// Measures the time from the scene to the powers of all lamps with an error of 1 %, for 1, 100 and 10,000 lamps of
+/// equal total flux.
 fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
@@ -351,7 +353,7 @@ fn lamps() {
     figure("relight.lamps_10000_over_1", timings.ratio(2, 0), "ratio of time");
 }
 
-/// A grey hall of 30 × 30 × 4 m whose ceiling has `count` square lamps in its texture.
+/// A grey hall of 30 × 30 × 4 m with `count` square lamps in the emission texture of its ceiling.
 fn hall(count: usize) -> Scene {
     let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * 4.0, Vec3::Z * SIDE);
     let sides = [(Vec3::ZERO, z, x), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y), (y, x, z)];
@@ -364,7 +366,7 @@ fn hall(count: usize) -> Scene {
             image.pixel_mut(corner[0] + i % side, corner[1] + i / side)[0] = 1.0;
         }
     }
-    // The sides are rounded to texels, which changes the flux; scale the emission to compensate.
+    // Rounding the sides of lamps to texels changes the flux; scale the emission to compensate.
     let lit = image.data.iter().sum::<f32>() / (TEXELS * TEXELS) as f32;
     let shining = Material {
         emission: Vec3::splat(1e4 * LIT / lit),

@@ -1,14 +1,14 @@
-//! Error against time of path tracing, against Mitsuba 3 (`llvm_ad_rgb`, `scalar_rgb`) and Cycles.
+//! Benchmark of path tracing: error against time, compared with Mitsuba 3 (`llvm_ad_rgb`, `scalar_rgb`) and Cycles.
 //!
-//! All renderers get the same GLB, image size and two threads, and render in turns. The error needs no reference:
-//! several images that differ only in the seed scatter about their mean. The relative error is the root of the mean
-//! over the pixels of the variance divided by the square of the pixel's value (the value of the mean image, plus 1 %
-//! of the mean pixel for pixels near black). The bench also checks that all renderers converge to the same picture: it
-//! prints mean values, and the difference of the means of blocks of pixels.
+//! All renderers get the same GLB file and image size and two threads, and render in turns. The error needs no
+//! reference, because it is measured from several images that differ only in the seed. The relative error is the
+//! square root of the mean, over the pixels, of the variance divided by the square of the pixel's value; 1 % of the
+//! mean pixel is added to the value for pixels near black. The bench also checks that all renderers converge to the
+//! same picture: it prints their mean values, and the differences between the means of blocks of pixels.
 //!
-//! "luxfer" distributes a given mean number of paths per pixel so as to minimise the relative error
-//! (`relative_error`); "luxfer, even" traces that number in every pixel, like Mitsuba. Loading the scene, building
-//! acceleration structures and compiling kernels are not counted.
+//! "luxfer" distributes a given mean number of paths per pixel so that the relative error is smallest
+//! (`relative_error`); "luxfer, even" traces this number of paths in every pixel, as Mitsuba does. Loading the scene,
+//! building acceleration structures and compiling kernels are not timed.
 
 mod harness;
 
@@ -26,13 +26,13 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Paths per pixel of the points of a curve.
+/// Paths per pixel at the points of a curve.
 const LADDER: [u32; 4] = [16, 64, 256, 1024];
-/// A relative error that no number of paths in the ladder reaches.
+/// Target error that no number of paths in the ladder reaches.
 const UNREACHED_ERROR: f32 = 1e-6;
-/// Images per point.
+/// Number of images for each point.
 const SEEDS: u32 = 4;
-/// Maximum seconds per image: from the third point on, a renderer is not asked for four times as many paths if they
+/// Maximum seconds per image: from the third point on, a renderer gets no more points if four times as many paths
 /// would take longer.
 const MAX_SECONDS: f64 = 10.0;
 
@@ -44,7 +44,7 @@ fn main() {
         if !chosen.is_empty() && !chosen.iter().any(|c| c == key) {
             continue;
         }
-        // Mitsuba's scalar back end would take most of the time in the kitchen.
+        // Leave out Mitsuba's scalar variant for the kitchen, where it would take most of the time of the bench.
         let names = if key == "kitchen" { &["mitsuba_llvm", "cycles"][..] } else { &names };
         match scene {
             Ok(setting) => compare(&setting, key, names),
@@ -55,7 +55,7 @@ fn main() {
     }
 }
 
-/// The same scene in a smaller image, so that 1 % is reached within minutes.
+/// Returns the scene with a smaller image, so that an error of 1 % is reached within minutes.
 fn small(setting: Result<Setting, Absent>, width: usize) -> Result<Setting, Absent> {
     setting.map(|s| Setting { size: [width, width * s.size[1] / s.size[0]], ..s })
 }
@@ -76,7 +76,7 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
             Err(reason) => absent(&format!("render.time_to_1pct.{key}.vs_{name}"), &reason),
         }
     }
-    // In turns: each renderer makes one image before the next seed.
+    // Render in turns: each renderer makes one image before the next seed.
     let mut curves: Vec<Curve> = renderers.iter().map(|_| Curve::default()).collect();
     for spp in LADDER {
         for curve in &mut curves {
@@ -101,8 +101,8 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     report(setting, key, &renderers, &mut curves);
 }
 
-/// Renders an image with a maximum number of paths per pixel and a seed; returns the seconds, the pixels, and the mean
-/// number of paths per pixel.
+/// Renders an image; takes the maximum number of paths per pixel and a seed, and returns the seconds, the pixels, and
+/// the mean number of paths per pixel.
 type Render = Box<dyn FnMut(u32, u32) -> (f64, Vec<Vec3>, f64)>;
 
 struct Renderer {
@@ -143,7 +143,7 @@ fn ours(setting: &Setting, name: &str, relative_error: f32) -> Renderer {
     Renderer { name: name.into(), render: Box::new(render) }
 }
 
-/// Another renderer, in a separate process that takes jobs line by line.
+/// Another renderer, in a separate process that takes one job per line of its input.
 struct Peer {
     process: Child,
     jobs: Option<ChildStdin>,
@@ -158,7 +158,7 @@ impl Drop for Peer {
     }
 }
 
-/// Starts a peer if `make peers` has installed it.
+/// Starts another renderer, if `make peers` has installed it.
 fn peer(name: &str, scene: &Path, [width, height]: [usize; 2]) -> Result<Renderer, Absent> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let (package, script, variant) = match name {
@@ -188,7 +188,7 @@ fn peer(name: &str, scene: &Path, [width, height]: [usize; 2]) -> Result<Rendere
 }
 
 impl Peer {
-    /// The next line of JSON; skips lines that libraries print.
+    /// Reads the next line of JSON; skips other lines, which libraries print.
     fn answer(&mut self) -> Result<serde_json::Value, Absent> {
         let mut line = String::new();
         loop {
@@ -231,7 +231,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
     }
     table.print(&format!("{key}, {width} x {height}, 2 threads"));
     plot.write(&format!("render_{key}")).expect("out/bench can be written to");
-    // Compare the means of the images.
+    // Compare the mean images of the renderers.
     let reference = mean_image(&curves[0]);
     for (renderer, curve) in renderers.iter().zip(curves.iter()) {
         let image = mean_image(curve);
@@ -243,7 +243,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
             100.0 * blocks
         );
     }
-    // Compute the time to reach an error.
+    // Compute the times that the renderers take to reach an error.
     for percent in [5, 1] {
         let error = f64::from(percent) / 100.0;
         let times: Vec<(f64, bool)> = curves.iter().map(|c| time_to(&c.points, error)).collect();
@@ -257,7 +257,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
     }
 }
 
-/// The mean of all images of a curve, by paths.
+/// Mean of all images of a curve, weighted by their numbers of paths.
 fn mean_image(curve: &Curve) -> Vec<Vec3> {
     let images = || curve.points.iter().flat_map(|p| p.images.iter().map(|i| (p.paths as f32, i)));
     let total: f32 = images().map(|(weight, _)| weight).sum();
@@ -279,7 +279,7 @@ fn relative_error(images: &[Vec<Vec3>], mean: &[Vec3]) -> f64 {
     ((0..mean.len()).map(of_pixel).sum::<f64>() / mean.len() as f64).sqrt()
 }
 
-/// Median over blocks of 16 × 16 pixels of the relative difference of their means.
+/// Median, over blocks of 16 × 16 pixels, of the relative difference between the means of two images.
 fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 {
     const SIDE: usize = 16;
     let mut differences = Vec::new();
@@ -298,8 +298,9 @@ fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 
     harness::median(&differences)
 }
 
-/// Time at which a curve reaches an error, and whether that was measured or extrapolated. Interpolates paths against
-/// error linearly in logarithms, and multiplies by the usual time per path (errors scatter less than single times).
+/// Time at which a curve reaches an error, and whether the time was measured or extrapolated. The number of paths is
+/// interpolated against the error linearly in logarithms, and multiplied by the median time per path, because errors
+/// scatter less than single times.
 fn time_to(points: &[Point], error: f64) -> (f64, bool) {
     let logs: Vec<[f64; 2]> = points.iter().map(|p| [p.paths.ln(), p.error.ln()]).collect();
     let target = error.ln();

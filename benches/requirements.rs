@@ -1,5 +1,5 @@
-//! Gain of the analysis of the scene: paths per second with it, over paths per second with every feature enabled; and
-//! the features that it disables. One thread, in turns.
+//! Benchmark of the renderer's analysis of a scene: the ratio of paths per second with it to paths per second with
+//! every feature enabled, and the features that the analysis disables. One thread, in turns.
 
 mod harness;
 
@@ -25,7 +25,7 @@ fn main() {
 
 fn measure(setting: Setting) {
     let monitor = Monitor::default();
-    // Only the builder uses this pool: rendering runs on the timed thread.
+    // This pool only builds; rendering runs in a pool of one thread.
     let builder = Pool::new(0).expect("threads");
     let scene = Arc::new(setting.scene.clone());
     let build = || builder.run(|| World::build(scene.clone(), monitor.job())).expect("the scene is valid");

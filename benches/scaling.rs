@@ -1,7 +1,9 @@
-//! Growth of time and memory with triangles and with pixels. (For growth with lights see the bench `lights`.)
+//! Benchmark of growth: time and memory against the number of triangles and of pixels. (The bench `lights` measures
+//! growth with lights.)
 //!
-//! The room of tessellated sheets is rendered with a fixed number of paths for every number of triangles, and the
-//! office for every image size. The last column is the local exponent of the time per path: 0 for constant time.
+//! For each number of triangles, the room of tessellated sheets is rendered with a fixed number of paths; for each
+//! image size, the office is rendered. The last column is the local exponent of growth of the time per path: 0 stands
+//! for constant time.
 
 mod harness;
 

@@ -1,5 +1,6 @@
-//! Segmentation: time per megapixel; masks against GrabCut, a random forest and an RBF support vector machine with the
-//! same strokes; calibration; and the paper's Figs. 5 (samples) and 6 (channels) on rooms with exact masks.
+//! Benchmark of segmentation: the time per megapixel; masks compared with GrabCut, a random forest and a support
+//! vector machine with RBF kernel from equal strokes; calibration; and the paper's Figs. 5 (samples) and 6 (channels)
+//! on rooms with exact masks.
 
 mod harness;
 
@@ -22,13 +23,13 @@ const SIZE: [usize; 2] = [1152, 868];
 const PEERS: [&str; 3] = ["grabcut", "rf", "svm"];
 const ROUNDS: usize = 5;
 
-/// A true mask with its strokes.
+/// A photo with strokes and its true mask.
 struct Case {
     name: String,
     photo: Image,
     features: Image,
     strokes: Vec<Stroke>,
-    /// For lights: the strokes of the plane that contains them.
+    /// For a mask of lights: the strokes of the plane that contains the lights.
     plane: Option<Vec<Stroke>>,
     truth: Image,
 }
@@ -74,8 +75,8 @@ fn iou(a: &Image, b: &Image) -> f64 {
 /// Index of the lamps among the surfaces of a room, after its six faces.
 const LAMP: usize = 6;
 
-/// A room with lamps in its ceiling, whose walls are nearly the ceiling's colour; once with a stroke on every surface,
-/// once with strokes only on the ceiling, its lamps and one wall.
+/// A generated room with lamps in its ceiling, whose walls have nearly the ceiling's colour. It gives two cases: one
+/// with a stroke on every surface, and one with strokes only on the ceiling, its lamps and one wall.
 fn room(seed: u64) -> [Case; 2] {
     let [width, height] = SIZE;
     let mut draw = Rng::new(seed, &[]);
@@ -135,7 +136,7 @@ fn room(seed: u64) -> [Case; 2] {
     })
 }
 
-/// The longest of several random lines that stay on a face; `face_of` is the face of each pixel.
+/// The longest of several random lines that stay on one face; `face_of` holds the face of each pixel.
 fn longest_line(face_of: &[usize], face: usize, mut rng: Rng) -> Option<[DVec2; 2]> {
     let [width, height] = SIZE;
     let mut pick = || DVec2::new(rng.next_f64() * width as f64, rng.next_f64() * height as f64);
@@ -152,7 +153,7 @@ fn longest_line(face_of: &[usize], face: usize, mut rng: Rng) -> Option<[DVec2; 
     best
 }
 
-/// Lights of real photos, with the strokes of the tests.
+/// Loads photos with true masks of their lights, with the strokes of the tests.
 fn photos() -> Vec<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let data = std::env::var_os("LUXFER_TEST_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
@@ -179,14 +180,14 @@ fn photos() -> Vec<Case> {
     names.iter().filter_map(case).collect()
 }
 
-/// Times a run, a run with an additional stroke, and a run with more strokes over the same pixels. Returns the
-/// milliseconds of the first.
+/// Times three runs: with the strokes of the case, with one more stroke, and with more strokes over the same pixels.
+/// Returns the milliseconds of the first.
 fn timing(case: &Case) -> f64 {
     let [width, height] = SIZE;
     let line = [DVec2::new(100.0, 700.0), DVec2::new(300.0, 760.0)];
     let mut more = case.strokes.clone();
     more.push(Stroke::polyline(&line, 5.0, false, width, height).unwrap());
-    // Split strokes into many over the same pixels.
+    // Split each stroke into many strokes that cover the same pixels.
     let pieces = |s: &Stroke| {
         s.pixels.chunks(s.pixels.len().div_ceil(20)).map(|p| Stroke { pixels: p.to_vec(), ..*s }).collect::<Vec<_>>()
     };
@@ -213,7 +214,7 @@ fn timing(case: &Case) -> f64 {
     1e3 * timings.median(0)
 }
 
-/// Files for the exchange with the peers.
+/// The process of the peers, and the folder of the files that are exchanged with it.
 struct Exchange {
     folder: PathBuf,
     peer: Peer,
@@ -232,7 +233,7 @@ impl Exchange {
         Ok(path)
     }
 
-    /// Seconds and mask of one phase.
+    /// Runs one phase (plane or lights) in the peer; returns its seconds and the mask.
     fn phase(
         &mut self,
         case: &Case,
@@ -261,7 +262,7 @@ impl Exchange {
         Ok((seconds, mask.map_err(|e| e.to_string())?))
     }
 
-    /// Seconds and mask of a case, in as many phases as our method has.
+    /// Runs a case in the peer, in as many phases as our method has; returns the seconds and the mask.
     fn run(&mut self, case: &Case, method: &str) -> Result<(f64, Image), String> {
         let floats = case.features.data.iter().flat_map(|v| v.to_le_bytes()).collect();
         self.write("features", floats)?;
@@ -270,8 +271,8 @@ impl Exchange {
         self.write("photo", bgr.collect())?;
         let Some(plane) = &case.plane else { return self.phase(case, method, &case.strokes, None) };
         if method == "grabcut" {
-            // The peer has no features that describe the plane, so all strokes outside the plane count as negative for
-            // lights.
+            // GrabCut has no features that describe the plane, so strokes beside the plane count as negative strokes
+            // for the lights.
             let others = plane.iter().filter(|s| !s.positive);
             let all: Vec<Stroke> = others.chain(&case.strokes).cloned().collect();
             return self.phase(case, method, &all, None);
@@ -306,7 +307,7 @@ fn masks(pool: &Pool, cases: &[Case], ours_ms: f64) {
         let mut cells = vec![case.name.clone()];
         cells.extend(found.iter().map(|f| format!("{:.4}", f.1)));
         cells.extend(found.iter().map(|f| format!("{:.0}", 1e3 * f.0)));
-        // Peers take minutes: print the results so far.
+        // Print each row at once, because the peers take minutes.
         println!("# {}", cells.join("  "));
         table.row(cells);
     }
@@ -329,7 +330,7 @@ fn masks(pool: &Pool, cases: &[Case], ours_ms: f64) {
     }
 }
 
-/// Share of wrong pixels within four pixels of the true border.
+/// Share of wrong pixels among the pixels within four pixels of the true border.
 fn border_error(mask: &Image, truth: &Image) -> f64 {
     let [width, height] = [truth.width, truth.height];
     let is_in = |x: usize, y: usize| truth.data[y * width + x] > 0.5;
@@ -343,7 +344,7 @@ fn border_error(mask: &Image, truth: &Image) -> f64 {
     wrong as f64 / at.len().max(1) as f64
 }
 
-/// The edge-aware refinement over its settings.
+/// Measures the edge-aware refinement for several radii and tolerances.
 fn refinement(cases: &[Case]) {
     let mut table = Table::new(["radius", "tolerance", "IoU rooms", "photos", "border error % rooms", "photos", "ms"]);
     let kinds: [Vec<&Case>; 2] =
@@ -397,7 +398,7 @@ fn refinement(cases: &[Case]) {
     table.print("Edge-aware refinement");
 }
 
-/// Share of positive pixels for each stated probability, over all rooms.
+/// Measures calibration: the share of positive pixels for each stated probability, over all rooms.
 fn calibration(rooms: &[&Case]) {
     const BINS: usize = 10;
     let mut bins = [[0.0f64; 3]; BINS];
@@ -429,11 +430,11 @@ fn written(plot: &Plot, name: &str) {
     }
 }
 
-/// Strokes of the rooms, in the order of their cases.
+/// Names of the two cases of each room, in their order.
 const STROKES: [&str; 2] = ["every surface", "one wall only"];
 const SAMPLES: [usize; 8] = [5, 10, 25, 100, 250, 1000, 5000, 25_000];
 
-/// Median seconds and mean error (1 - IoU) of every other room.
+/// Median seconds and mean error (1 - IoU) over every second case, from case `half` on.
 fn seconds_and_error(rooms: &[&Case], half: usize, params: &Params) -> [f64; 2] {
     let run = |case: &&Case| {
         let (seconds, found) = time(Clock::Wall, || segmented(case, params));
@@ -444,7 +445,7 @@ fn seconds_and_error(rooms: &[&Case], half: usize, params: &Params) -> [f64; 2] 
     [median(&runs.iter().map(|r| r.0).collect::<Vec<_>>()), error]
 }
 
-/// The paper's Fig. 5.
+/// Measures error and time against the number of samples, as in the paper's Fig. 5.
 fn samples(rooms: &[&Case]) {
     let mut error = Plot::new("Samples of each class", "samples", "1 - IoU");
     let mut took = Plot::new("Time of training and inference", "samples", "ms");
@@ -466,8 +467,8 @@ fn samples(rooms: &[&Case]) {
     written(&took, "segment_samples_time");
 }
 
-/// Error against time over the samples of each class, with selected channels and with all of them, and over the
-/// refinement's windows.
+/// Measures error against time for the number of samples per class, with selected channels and with all channels, and
+/// for the windows of the refinement.
 fn knobs(rooms: &[&Case]) {
     let mut plot = Plot::new("Segmentation of a megapixel", "seconds", "1 - IoU");
     let all = (1 << CHANNELS) - 1;
@@ -485,7 +486,7 @@ fn knobs(rooms: &[&Case]) {
     written(&plot, "segment_knobs");
 }
 
-/// The paper's Fig. 6.
+/// Measures the error for subsets of the channels, as in the paper's Fig. 6.
 fn channels(rooms: &[&Case]) {
     const COLOUR: u32 = 0b111;
     const DEPTH: u32 = 1 << 3;

@@ -1,16 +1,16 @@
-//! Stylisation of the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides): time and quality
-//! of the presets; time and memory up to 70 megapixels; comparison with plain EM and ebsynth; other methods in the
-//! same engine; quality against time over every setting. Arguments select sections: `presets`, `update`, `sizes`,
-//! `rivals`, `methods` and `knobs`.
+//! Benchmark of stylisation on the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides).
+//! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
+//! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`rivals`); other methods in the same
+//! engine (`methods`); quality against time for every setting (`knobs`).
 //!
-//! Pictures are scored by `tools/stylit_judge.py` beside the test data, which sees images only, and by
-//! `harness/judge.rs`. The script runs where `LUXFER_PYTHON`, `target/peers/judge` or `python3` has numpy, scipy and
-//! pillow. It searches nearest patches at even offsets of the exemplar only, so three of four patches of a perfect
-//! copy lie between them: the scores of the artwork itself (`stylit.artwork.*`) are the floor of `coherence` (117) and
-//! near the floor of `guide` (731). Lower values come from smoother paint. Its samples fall on 44.3 % of its cells on
-//! average if all exemplar patches are used equally (`stylit.bound.used`), and on fewer otherwise, so no picture
-//! reaches 45 %. `guide` has a standard error of 13 and consists mostly of similar patches under different light: see
-//! `docs/notes/stylize.md`. Pictures go to `out/bench/`.
+//! Pictures are scored by two judges: `harness/judge.rs`, and `tools/stylit_judge.py` beside the test data, which sees
+//! images only. The script runs with `LUXFER_PYTHON`, `target/peers/judge` or `python3`, if it has numpy, scipy and
+//! pillow. It searches nearest patches only at even offsets of the exemplar, so three of four patches of a perfect
+//! copy lie between these offsets. The scores of the artwork itself (`stylit.artwork.*`) are therefore the floor of
+//! `coherence` (117) and near the floor of `guide` (731); lower values come from smoother paint. If all exemplar
+//! patches are used equally, the script's samples fall on 44.3 % of its cells on average (`stylit.bound.used`),
+//! otherwise on fewer, so no picture reaches 45 %. `guide` has a standard error of 13 and consists mostly of similar
+//! patches under different light: see `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
 mod harness;
 
@@ -62,7 +62,7 @@ fn main() {
     if wants("rivals") {
         rivals(&pair, &pool);
     }
-    // Settings and methods at half size, where a run takes a quarter of the time.
+    // Try methods and settings at half size, where a run takes a quarter of the time.
     let half = Pair::load(2).expect("it was there before");
     if wants("methods") {
         methods(&half, &pool);
@@ -85,7 +85,7 @@ impl Pair {
         Ok(Self { artwork: read("source_style.png".into())?, guides, folder: folder.clone() })
     }
 
-    /// The pair with guides reduced to a number of bits per channel, with display encoding.
+    /// The pair with guides that are rounded to `bits` bits per channel in display encoding.
     fn coarsened(&self, bits: u32) -> Self {
         let steps = ((1 << bits) - 1) as f32;
         let coarse = |image: &Image| {
@@ -113,7 +113,7 @@ fn input<'a>(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Input<'a> {
     Input::new(artwork, guides)
 }
 
-/// Time of each preset, in turns, and its results.
+/// Times the presets in turns, and scores their results.
 fn presets(pair: &Pair, pool: &Pool) {
     let presets = [("full", Params::default()), ("fast", Params::fast()), ("preview", Params::preview())];
     let outputs = std::cell::RefCell::new([None, None, None]);
@@ -143,7 +143,7 @@ fn presets(pair: &Pair, pool: &Pool) {
         Ok(line) => judged("full", &line),
         Err(reason) => judged_absent(&reason),
     }
-    // The scores of a perfect copy, and the maximum number of cells on which the script's samples can fall.
+    // Score a perfect copy, and compute the maximum share of cells on which the script's samples can fall.
     if let Ok(line) = judge(pair, &pair.folder.join("source_style.png")) {
         judged("artwork", &line);
     }
@@ -151,7 +151,8 @@ fn presets(pair: &Pair, pool: &Pool) {
     figure("stylit.bound.used", 100.0 * (1.0 - (1.0 - 1.0 / cells).powf(JUDGE_SAMPLES)), "%");
 }
 
-/// Energy of Eq. 3, use of the exemplar, guide error, and texture kept.
+/// Cells of a table: energy (Eq. 3), share of the exemplar that is used, entropy of its use, guide error, and share of
+/// the texture that is kept.
 fn numbers(output: &Output, artwork: &Image) -> Vec<String> {
     let energy = output.report.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0);
     let guide = &output.report.guide_error.data;
@@ -166,7 +167,7 @@ fn numbers(output: &Output, artwork: &Image) -> Vec<String> {
     ]
 }
 
-/// Power of the encoded green channel's Laplacian.
+/// Mean square of the Laplacian of the encoded green channel: the power of fine texture.
 fn texture(image: &Image) -> f64 {
     let green = |x: usize, y: usize| f64::from(linear_to_srgb(image.pixel(x, y)[1]));
     let mut sum = 0.0;
@@ -190,7 +191,8 @@ fn save(name: &str, image: &Image) {
     println!("picture out/bench/{name}.png");
 }
 
-/// The line that the script prints for a picture of the pair. The artwork itself is scored against its own scene.
+/// Line that the script prints for a picture of the pair. If the picture is the artwork itself, it is scored against
+/// its own scene.
 fn judge(pair: &Pair, picture: &Path) -> Result<String, String> {
     let program = scenes::data("../tools/stylit_judge.py")?;
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/judge/bin/python");
@@ -214,7 +216,7 @@ fn judge(pair: &Pair, picture: &Path) -> Result<String, String> {
     }
 }
 
-/// Figures of the script: the text before each number in its line, and its unit.
+/// Scores that the script prints: the name of each, the text before its number in the line, and its unit.
 const JUDGED: [(&str, &str, &str); 5] = [
     ("coherence", "coherence ", "-"),
     ("guide", "guide ", "-"),
@@ -226,12 +228,12 @@ const JUDGED: [(&str, &str, &str); 5] = [
 /// Number of patches of the picture that the script samples.
 const JUDGE_SAMPLES: f64 = 40_000.0;
 
-/// The number that follows `before` in the judge's line.
+/// The number that follows `before` in the script's line.
 fn number<'a>(line: &'a str, before: &str) -> Option<&'a str> {
     line.split(before).nth(1)?.split([' ', '%', ')', '\n']).next()
 }
 
-/// Prints the scores of the picture called `of`.
+/// Prints the script's scores of a picture as figures; `of` is the name of the picture.
 fn judged(of: &str, line: &str) {
     for (name, before, unit) in JUDGED {
         match number(line, before).and_then(|n| n.parse().ok()) {
@@ -247,7 +249,7 @@ fn judged_absent(reason: &str) {
     }
 }
 
-/// Time to follow a brush stroke in the artwork, in preview.
+/// Measures the time to update the picture after a brush stroke in the artwork, in preview.
 fn update(pair: &Pair, pool: &Pool) {
     let guides = pair.guides();
     let monitor = Monitor::default();
@@ -273,8 +275,8 @@ fn update(pair: &Pair, pool: &Pool) {
     figure("stylit.update.seconds", harness::median(&seconds), "s");
 }
 
-/// Time and memory over the size of the target, at fast quality, up to 70 megapixels, with a fixed exemplar. Bytes per
-/// pixel are relative to the smallest target.
+/// Measures time and memory against the size of the target, in fast quality, up to 70 megapixels, with a fixed
+/// exemplar. The bytes per pixel are the growth of memory since the smallest target, without the input.
 fn sizes(pair: &Pair, pool: &Pool) {
     let mut smallest = None;
     let mut table = Table::new([
@@ -301,7 +303,7 @@ fn sizes(pair: &Pair, pool: &Pool) {
         let megapixels = (width * height) as f64 * 1e-6;
         let input: usize = larger.guides.iter().map(|(a, b)| 4 * (a.data.len() + b.data.len())).sum();
         let mib = |bytes: u64| format!("{:.0}", bytes as f64 / f64::from(1 << 20));
-        // Read the peak of the run before the other runs are timed.
+        // Read the peak memory of this run before further runs.
         let peak = harness::peak_memory();
         let here = peak.map(|peak| (megapixels * 1e6, peak as f64 - input as f64));
         smallest = smallest.or(here);
@@ -323,8 +325,8 @@ fn sizes(pair: &Pair, pool: &Pool) {
     table.print("fast quality, 2 threads");
 }
 
-/// The longest time in seconds from a cancel request to the end of the run. Requests come while it reads the input, on
-/// the coarse levels, and early and late on the finest.
+/// Longest time in seconds from a cancel request to the end of the run. The requests come while the run reads its
+/// input, on the coarse levels, and early and late on the finest level.
 fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     let guides = pair.guides();
     let wait = |after: f64| {
@@ -345,14 +347,14 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     [0.0, 0.02, 0.15, 0.3, 0.45].into_iter().map(wait).fold(0.0, f64::max)
 }
 
-/// Plain EM with a cost for usage (Kaspar et al. 2015).
+/// Settings of plain EM with a cost for the usage of patches (Kaspar et al. 2015).
 fn occurrence(weight: f32) -> Params {
     let params = Params { mode: Mode::Occurrence, occurrence: weight, ..Params::default() };
     Params { vote: Vote::Plain, final_vote: Vote::Plain, ..params }
 }
 
-/// Ours against plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. Ours runs
-/// before and after the others, so that other work on the machine affects all.
+/// Compares luxfer with plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. luxfer
+/// runs before and after the others, so that other work on the machine affects all of them.
 fn rivals(pair: &Pair, pool: &Pool) {
     let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
     let stylise = |file: &str, params: &Params| {
@@ -362,7 +364,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     };
     let (before, ours) = stylise("stylit_full", &Params::default());
 
-    // Plain EM with our number of iterations, and with as many as fit into our time.
+    // Run plain EM with luxfer's numbers of iterations, and with as many iterations as fit into luxfer's time.
     let plain =
         Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() };
     let (seconds, file) = stylise("stylit_plain_em", &plain);
@@ -379,7 +381,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     let (seconds, file) = stylise("stylit_plain_em_long", &longer);
     made.push((&name, Some(seconds), file));
 
-    // Uniform usage, enforced and as a cost.
+    // Run uniform usage, as a constraint and as a cost.
     let uniform = Params { mode: Mode::Uniform, ..Params::default() };
     for (name, file, params) in [
         ("uniform (Jamriska 2015)", "stylit_uniform", uniform),
@@ -412,7 +414,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     score(pair, pool, &made);
 }
 
-/// Prints the scores of pictures, each with its name and the seconds it took.
+/// Prints the scores of pictures; each has a name, the seconds it took, and a file.
 fn score(pair: &Pair, pool: &Pool, made: &[(&str, Option<f64>, PathBuf)]) {
     let head =
         ["", "seconds", "coherence", "guide", "used %", "hf", "hf worst", "Eq. 3", "verbatim %", "at all offsets"];
@@ -435,7 +437,8 @@ fn score(pair: &Pair, pool: &Pool, made: &[(&str, Option<f64>, PathBuf)]) {
     table.print("rivals, 1200 x 912, 2 threads; five columns by stylit_judge.py, three by harness/judge.rs");
 }
 
-/// Runs ebsynth with its defaults and the weights of our guides; returns its time and the path of its picture.
+/// Runs ebsynth with its default settings and the weights of our guides; returns its seconds and the path of its
+/// picture.
 fn ebsynth(pair: &Pair) -> Result<(f64, PathBuf), String> {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/ebsynth/bin/ebsynth");
     if !program.exists() {
@@ -458,7 +461,7 @@ fn ebsynth(pair: &Pair) -> Result<(f64, PathBuf), String> {
     }
 }
 
-/// Other methods of matching in the same engine.
+/// Compares other methods of matching in the same engine.
 fn methods(pair: &Pair, pool: &Pool) {
     let mut table = Table::new(["method", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
     let of = |mode| Params { mode, ..Params::default() };
@@ -480,8 +483,8 @@ fn methods(pair: &Pair, pool: &Pool) {
     table.print("methods, 600 x 456");
 }
 
-/// Energy against time, one setting at a time. The energy is computed from the picture, because some settings change
-/// the sum that a run itself reports.
+/// Measures the energy against time, varying one setting at a time. The energy is computed from the picture, because
+/// some settings change the energy that a run itself reports.
 fn knobs(pair: &Pair, pool: &Pool) {
     let mut knobs: Vec<(&str, Vec<(String, Params)>)> = Vec::new();
     let mut knob = |name: &'static str, values: &[usize], set: fn(&mut Params, usize)| {

@@ -1,4 +1,4 @@
-//! The whole transfer from a photo to a lit picture: time, memory, and error against time.
+//! Benchmark of the whole transfer, from a photo to a lit picture: time, memory, and error against time.
 //!
 //! `cargo bench --bench transfer -- demonstration` or `-- curves` runs one section.
 
@@ -30,7 +30,7 @@ fn main() {
     });
 }
 
-/// A transfer from a photo of the office to the demonstration's room.
+/// A transfer from a photo of the demonstration office to the demonstration room.
 fn transfer(photo: Image, params: Params) -> Transfer {
     let office = demo::exemplar_room().expect("a room");
     let strokes = demo::strokes(&office, photo.width, photo.height).expect("strokes");
@@ -42,9 +42,9 @@ fn run(transfer: &mut Transfer, from: Stage, to: Stage) {
     transfer.run(from, to, Monitor::default().job(), |_| ()).expect("a transfer");
 }
 
-/// The work of `make demo` without its files: the photo of an office, and the picture of a room in its light, 640 x
-/// 360. Once at final quality, and once as a preview: two paths per pixel, filtered, and the strength to 5 %; the
-/// preview also from an existing photo.
+/// Times the work of `make demo` without its files: the photo of an office, and a picture of a room in its light, 640
+/// x 360. It is timed at final quality, and as a preview with two filtered paths per pixel and an error of 5 % of the
+/// strength; the preview is timed also without making the photo.
 fn demonstration() {
     let final_quality = |params: &mut Params| {
         (params.render.width, params.render.height, params.render.samples) = (640, 360, 12);

@@ -1,5 +1,6 @@
-//! Vanishing points: accuracy by method on labelled sets of segments and on the pixels of re-projected panoramas, and
-//! error against time with fewer lines or pixels; the latter also on generated rooms, whose directions are exact.
+//! Benchmark of vanishing points: the accuracy of several methods on labelled sets of segments and on the pixels of
+//! re-projected panoramas, and the error against time with fewer lines or pixels. The latter is measured also on
+//! generated rooms, whose directions are known exactly.
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -18,12 +19,12 @@ use luxfer::scene::Camera;
 use std::sync::Arc;
 use truth::{GivenSet, Labelled, area, errors, given_set, labelled_photos};
 
-/// Number of segments for the figure `vp.ms`, and number of images for its median.
+/// Number of segments per image for the figure `vp.ms`, and number of images over which its median is taken.
 const SEGMENTS: usize = 500;
 const TIMED: usize = 25;
-/// Factors by which the sides of photos are reduced.
+/// Factors by which the sides of photos are multiplied.
 const SCALES: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
-/// Size of generated photos.
+/// Size of generated photos in pixels.
 const SIZE: [usize; 2] = [900, 600];
 /// Rotations of the generated cameras, to the left and up, in radians.
 const TURNS: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, 0.1], [-0.25, -0.15], [0.8, 0.0]];
@@ -85,7 +86,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     }
     if let Some(set) = given_set("yud_dev") {
         // York Urban's own labels (Denis et al. 2008) are three directions per photo, and published figures refer to
-        // them. A few photos have further directions in YUD+, some with half a dozen lines.
+        // these labels. A few photos have further directions in YUD+, some of them with only half a dozen lines.
         let auc = row("yud_dev", "default, its first three directions only", &set.first_three(), &Params::default());
         headline.push(("vp.yud_dev.auc10".into(), auc));
     }
@@ -96,7 +97,8 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     plot_longest(sets);
 }
 
-/// Prints the lowest errors that the lines allow: the directions fitted to the labelled lines by a known camera.
+/// Prints the lowest errors that the lines allow: errors of directions that are fitted to the labelled lines with a
+/// known camera.
 fn print_bounds(sets: &[Option<GivenSet>; 2]) {
     let mut bound = Table::new(["set and directions", "labels", "AUC@10", "AUC@5", "AUC@3", "median deg"]);
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
@@ -117,7 +119,7 @@ fn print_bounds(sets: &[Option<GivenSet>; 2]) {
     bound.print("Lower bound of the error: directions fitted to the lines labelled with them, the camera known");
 }
 
-/// Times photos with `SEGMENTS` segments.
+/// Times the search for vanishing points on images with `SEGMENTS` segments.
 fn time_segments(sets: &[Option<GivenSet>; 2]) {
     let Some(set) = &sets[0] else { return absent("vp.ms", "the labelled segments are not there") };
     let many: Vec<Vec<Segment>> =
@@ -139,7 +141,7 @@ fn time_segments(sets: &[Option<GivenSet>; 2]) {
     figure("vp.ms", quantile(&ms, 0.5), "ms");
 }
 
-/// Plots error against time when the shortest lines are left out.
+/// Plots the error against time if only the longest segments are used.
 fn plot_longest(sets: &[Option<GivenSet>; 2]) {
     let mut plot = Plot::new("Vanishing points from the longest segments", "seconds", "100 - AUC@10, %");
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
@@ -164,7 +166,8 @@ fn longest(segments: &[Segment], count: usize) -> Vec<Segment> {
     segments.iter().filter(|s| s.length() > min_length).copied().collect()
 }
 
-/// Errors in degrees of the directions found in a photo, each with its stated error.
+/// Finds the vanishing points of a photo. Returns the milliseconds, and for each true direction the error of the
+/// nearest point and its stated error, in degrees.
 fn found(photo: &Labelled, params: &Params) -> (f64, Vec<[f64; 2]>) {
     let monitor = Monitor::default();
     let (seconds, view) = time(Clock::Wall, || rectify::find_view(&photo.photo, params, monitor.job()));
@@ -215,8 +218,8 @@ fn panoramas(photos: &[Labelled]) {
     figure("vp.megapixel.ms", megapixel(photos), "ms");
 }
 
-/// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median over the photos, each
-/// the median of five runs.
+/// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median over the photos of the
+/// median of five runs.
 fn megapixel(photos: &[Labelled]) -> f64 {
     let params = Params::default();
     let each = photos.iter().map(|photo| {
@@ -230,14 +233,14 @@ fn megapixel(photos: &[Labelled]) -> f64 {
     quantile(&ms, 0.5)
 }
 
-/// Error against time over the reduction of photos, by method.
+/// Plots the error against time for photos reduced in size, by method.
 fn reductions(plot: &mut Plot, photos: &[Labelled]) {
     for (method, params) in methods().iter().filter(|(_, params)| params.metric == Metric::Segment) {
         plot.add(method, SCALES.map(|scale| reduced(photos, params, scale)));
     }
 }
 
-/// Median seconds and median error on photos reduced to a share of their sides.
+/// Median seconds and median error on photos whose sides are multiplied by `scale`.
 fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
     let (mut seconds, mut angles) = (Vec::new(), Vec::new());
     for photo in photos {
@@ -249,8 +252,8 @@ fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
     [quantile(&seconds, 0.5), quantile(&angles, 0.5)]
 }
 
-/// Photos of the generated rooms: everything except furniture is parallel to the axes of the world, which give the
-/// true directions in camera space.
+/// Photos of the generated rooms. Everything except furniture is parallel to the axes of the world, so these axes are
+/// the true directions.
 fn rooms() -> Vec<Labelled> {
     let settings = [scenes::demo_office(), scenes::demo_room()].into_iter().flatten();
     settings
@@ -284,7 +287,7 @@ fn intrinsics(camera: &Camera) -> DMat3 {
     DMat3::from_cols(DVec3::X * focal, DVec3::Y * focal, DVec3::new(width / 2.0, height / 2.0, 1.0))
 }
 
-/// The axes of the world in camera space: right, down, forward.
+/// The axes of the world in camera space (x right, y down, z forward).
 fn axes(camera: &Camera) -> Vec<DVec3> {
     let [right, down, ahead] = [camera.forward.cross(camera.up), -camera.up, camera.forward].map(|v| v.as_dvec3());
     DVec3::AXES.map(|axis| DVec3::new(right.dot(axis), down.dot(axis), ahead.dot(axis)).normalize()).to_vec()

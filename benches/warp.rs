@@ -1,11 +1,11 @@
-//! Warping by homographies against OpenCV's `warpPerspective`: time, and the difference from the exact picture for
-//! magnification and for minification.
+//! Benchmark of warping by homographies against OpenCV's `warpPerspective`: the time, and the difference from the
+//! exact picture under magnification and under minification.
 //!
-//! Both get an image of three floats per pixel, equal result sizes and two threads. Ours interpolates or averages as
-//! needed; OpenCV's warp does not average (it takes `INTER_AREA` as linear). Its linear and its cubic interpolation
-//! are timed; the headline figure compares with the cubic one, which equals ours without minification. The truth is
-//! the mean of a hundred points in each pixel. The filter has no settings; the curve of error against time, with more
-//! pixels than needed and averaging, or with fewer and enlarging, shows whether one would help.
+//! Both get an image of three floats per pixel, equal result sizes and two threads. luxfer interpolates or averages as
+//! needed; OpenCV's warp does not average (it treats `INTER_AREA` as linear). OpenCV's linear and cubic interpolation
+//! are timed. The headline figure compares with the cubic one, which equals luxfer's result where nothing is minified.
+//! The truth is the mean of a hundred points in each pixel. The filter has no settings; a curve of error against time,
+//! with more pixels than needed and averaging, or with fewer pixels and enlarging, shows whether a setting would help.
 
 mod harness;
 
@@ -25,11 +25,12 @@ const OUT: [usize; 2] = [1024, 768];
 const ROUNDS: usize = 7;
 const INTERPOLATIONS: [&str; 2] = ["linear", "cubic"];
 
-/// Source pixels per result pixel, along a side: minimum of minification, and maximum of magnification.
+/// Limits in source pixels per result pixel, along a side: pixels above the first count as minified, pixels below the
+/// second as magnified.
 const MINIFIED: f64 = 1.5;
 const MAGNIFIED: f64 = 1.0;
 
-/// Sides of the result relative to the wanted ones.
+/// Sides of the computed result, relative to the sides of the wanted result.
 const DENSITIES: [f64; 6] = [0.25, 0.5, 0.75, 1.0, 2.0, 3.0];
 
 fn main() {
@@ -44,7 +45,7 @@ fn main() {
     }
 }
 
-/// A ceiling of square lamps and thin gaps between its tiles.
+/// Colour of the test picture at a point: a ceiling of square lamps, with thin gaps between its tiles.
 fn picture(p: DVec2) -> [f32; 3] {
     let tile = DVec2::new(p.x.rem_euclid(36.0), p.y.rem_euclid(36.0));
     let is_lamp = tile.min_element() > 8.0 && tile.max_element() < 24.0;
@@ -57,7 +58,7 @@ fn picture(p: DVec2) -> [f32; 3] {
     }
 }
 
-/// Mean of the picture over the pixel (x, y) of a warped image.
+/// Mean of the picture over pixel (x, y) of a warped image, from `sub` x `sub` points.
 fn exact(to_picture: &Homography, x: usize, y: usize, sub: usize) -> [f32; 3] {
     let mut sum = [0.0f32; 3];
     for k in 0..sub * sub {
@@ -68,7 +69,7 @@ fn exact(to_picture: &Homography, x: usize, y: usize, sub: usize) -> [f32; 3] {
     sum.map(|s| s / (sub * sub) as f32)
 }
 
-/// Planes seen at an angle, and one that is minified everywhere.
+/// Homographies from the result to the source: two planes seen at an angle, and one plane that is minified everywhere.
 fn maps() -> [(&'static str, Homography); 3] {
     let [w, h] = OUT.map(|v| v as f64);
     let [sw, sh] = SOURCE.map(|v| v as f64);
@@ -85,7 +86,7 @@ fn maps() -> [(&'static str, Homography); 3] {
     ]
 }
 
-/// Shrinks a rectangle to a half of its size, and its lower side to a quarter.
+/// Homography that shrinks a rectangle to half its size, and its lower side to a quarter.
 fn keystone(w: f64, h: f64) -> DMat3 {
     let from = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
     let size = DVec2::new(w, h) / 2.0;
@@ -94,14 +95,14 @@ fn keystone(w: f64, h: f64) -> DMat3 {
     Homography::from_corners(from, to).unwrap().0
 }
 
-/// Source pixels per pixel of the result, along a side.
+/// Number of source pixels per result pixel at the point `p`, along a side.
 fn minification(map: &Homography, p: DVec2) -> f64 {
     let at = |d: DVec2| map.apply(p + d);
     let [u, v] = [DVec2::X, DVec2::Y].map(|d| at(d / 2.0) - at(-d / 2.0));
     u.perp_dot(v).abs().sqrt()
 }
 
-/// Source pixels per result pixel, along a side, for pixels whose neighbourhood lies inside the source.
+/// Number of source pixels per result pixel, along a side; NaN for pixels whose neighbourhood leaves the source.
 fn minifications(map: &Homography) -> Vec<f64> {
     let limit = DVec2::new(SOURCE[0] as f64, SOURCE[1] as f64) - 16.0;
     let inside = |p: DVec2| {
@@ -114,12 +115,12 @@ fn minifications(map: &Homography) -> Vec<f64> {
     places.map(|p| if inside(p) { minification(map, p) } else { f64::NAN }).collect()
 }
 
-/// The exact warped picture.
+/// The exact result of a warp.
 fn truth(map: &Homography) -> Image {
     Image::from_fn(OUT[0], OUT[1], |x, y| exact(map, x, y, 10)).unwrap()
 }
 
-/// Error against time over the number of computed pixels.
+/// Measures error against time for several numbers of computed pixels.
 fn densities(source: &Image) {
     let monitor = Monitor::default();
     let mut plot = Plot::new("Warping, 1024 x 768 from 2048 x 1536", "seconds", "root mean square error");
@@ -146,7 +147,7 @@ fn densities(source: &Image) {
     plot.write("warp_density").unwrap();
 }
 
-/// Peak signal-to-noise ratio in dB of the pixels that the mask admits.
+/// Peak signal-to-noise ratio in dB, over the pixels that the mask admits.
 fn psnr(found: &[f32], truth: &[f32], admitted: &[bool]) -> f64 {
     let mut squares = (0.0, 0.0);
     for ((a, b), _) in found.chunks_exact(3).zip(truth.chunks_exact(3)).zip(admitted).filter(|p| *p.1) {
@@ -161,7 +162,7 @@ fn write(path: &Path, image: &Image) -> Result<(), String> {
         .map_err(|e| e.to_string())
 }
 
-/// The process of the peer, and the files through which it gets the source and returns its results.
+/// The peer's process (OpenCV), and the files through which it gets the source image and returns its results.
 struct Exchange {
     peer: Peer,
     image: PathBuf,
@@ -178,7 +179,7 @@ impl Exchange {
         Ok(Self { peer, image, out })
     }
 
-    /// A request to the peer as JSON.
+    /// Makes a request to warp the source image, as JSON.
     fn request(&self, map: &Homography, interpolation: &str) -> String {
         let half = DMat3::from_translation(DVec2::splat(0.5));
         let matrix = half.inverse() * map.0 * half;
@@ -190,7 +191,7 @@ impl Exchange {
         .to_string()
     }
 
-    /// The peer's latest result.
+    /// Reads the result of the peer's latest warp.
     fn result(&self) -> Result<Vec<f32>, String> {
         let bytes = std::fs::read(&self.out).map_err(|e| e.to_string())?;
         let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
@@ -198,7 +199,7 @@ impl Exchange {
     }
 }
 
-/// The library's warp of one map, followed by the peer's with each of `INTERPOLATIONS`.
+/// Measurements of one homography: of luxfer's warp, then of OpenCV's warp with each of `INTERPOLATIONS`.
 #[derive(Default)]
 struct Measured {
     /// Wall-clock seconds of each round.
@@ -208,7 +209,7 @@ struct Measured {
     found: [Vec<f32>; 3],
 }
 
-/// Times the library and the peer in turns; the first round warms up.
+/// Times luxfer and OpenCV in turns; the first round is not counted.
 fn measure(pool: &Pool, source: &Image, map: &Homography, exchange: &mut Exchange) -> Result<Measured, String> {
     let monitor = Monitor::default();
     let mut measured = Measured::default();

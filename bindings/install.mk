@@ -1,13 +1,15 @@
-# Installing and handing on, part of the Makefile: `make`, then
+# Part of the Makefile: installation and distribution. Run `make` first, then:
 #
 # make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
 #                   of the shared library go into .debug/ beside it, where gdb looks for them
-# make uninstall    removes what install has put there
-# make dist         out/luxfer-VERSION.tar.gz of the last commit
+# make uninstall    removes the installed files
+# make dist         packs the last commit into out/luxfer-VERSION.tar.gz
 #
-# PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR and DOCDIR below it
-# DESTDIR=            a folder to stage it in, for packages
-# DEBUG=split         keep: the libraries are installed as built, with their symbols, for packagers whose tools split them
+# PREFIX=/usr/local   folder of the installation; its subfolders LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu),
+#                     INCLUDEDIR and DOCDIR can be set too
+# DESTDIR=            folder in which the installation is staged, for packages
+# DEBUG=split         with DEBUG=keep, the libraries are installed as built, with their debug symbols: for packagers
+#                     whose tools split them
 
 PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
@@ -24,9 +26,9 @@ INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer
                  $(SYMBOLS) cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
                $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS)))
 
-# The path from one folder to another, which need not exist.
+# relative(from, to): the relative path between two folders, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
-# fill(template, folder it goes to)
+# fill(template, folder): fills in a template and installs it into the folder.
 fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' \
          $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
 
@@ -36,7 +38,7 @@ SYMBOLS   = .debug/libluxfer.so.$(VERSION).debug
 
 .PHONY: install uninstall dist
 
-# Only where it is missing: `make` as oneself, then `sudo make install`, which needs no cargo.
+# Builds the library only if it is missing, so that after `make`, `sudo make install` needs no cargo.
 $(LIB) $(PROFILE)/libluxfer.a:
 	$(MAKE) lib
 
@@ -64,7 +66,7 @@ endif
 	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
 	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
 
-# Only what install has put there by name, and its folders if they are empty then.
+# Removes the files that `make install` has installed, and their folders if they are then empty.
 uninstall:
 	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
 	rmdir $(foreach folder,$(FOLDERS) $(LIBDIR)/.debug,'$(DESTDIR)$(folder)') 2>/dev/null || true

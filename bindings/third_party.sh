@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints the crates that are linked into the library, and their licence texts, for those who hand it on.
+# Prints the crates that are linked into the library and their licence texts, for everyone who distributes the library.
 set -eu
 cd "$(dirname "$0")/.."
 sources="${CARGO_HOME:-$HOME/.cargo}/registry/src"

@@ -1,4 +1,5 @@
-/* Functions of all examples: end the program on an error, with the library's message, and wait for jobs. */
+/* Functions that all examples share: they end the program with the library's message on an error, and wait for
+ * jobs. */
 #ifndef COMMON_H
 #define COMMON_H
 
@@ -56,7 +57,7 @@ static inline void print_warnings(luxfer_warnings *warnings) {
 }
 /* --8<-- [end:warnings] */
 
-/* A photo of the generated office. To load your own photo, use luxfer_image_load. */
+/* Takes a photo of the generated office. To load your own photo, use luxfer_image_load. */
 static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t samples) {
     luxfer_demo_photo_params params;
     luxfer_demo_photo *demo = NULL;

@@ -2,7 +2,7 @@
  *
  * A segmentation learns from a few strokes and estimates its error, so a painting program can show the mask while the
  * user paints. This program has fixed strokes. It writes custom_strokes.png: the photo; the ceiling after the first
- * strokes, and after one more stroke; the lamps.
+ * strokes, and after more strokes; the lamps.
  */
 #include "common.h"
 #include "panels.h"
@@ -25,7 +25,8 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
 }
 
 int main(void) {
-    /* Polylines: x and y in pixels of the photo; the centre of the top-left pixel is (0.5, 0.5). */
+    /* Strokes as polylines: x and y of each point in pixels of the photo, whose top-left pixel has its centre at
+     * (0.5, 0.5). */
     static const float ceiling[] = {50, 11, 90, 40, 128, 58}, beside_lamps[] = {214, 89, 253, 73};
     static const float far_wall[] = {50, 163, 167, 160}, cupboards[] = {190, 185, 292, 171};
     static const float left_wall[] = {5, 152, 7, 179};

@@ -12,7 +12,7 @@
 static luxfer_context *context;
 
 /* --8<-- [start:report] */
-/* Handles a failure: the program decides by the status, people read the message. */
+/* Handles a failure: the program decides by the status, and people read the message. */
 static void report(const char *attempt, luxfer_status status, luxfer_status expected) {
     char *message;
     size_t needed = 0;

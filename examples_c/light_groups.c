@@ -1,8 +1,7 @@
 /* Light groups: renders the light of each lamp as a layer of its own, and mixes the layers without rendering again.
  *
- * Light path expressions select the light of a lamp by its
- * name. Writes light_groups.png (all light, three groups, and two
- * mixtures of them) and light_groups.exr with every group as a layer, as compositing programs read it.
+ * Light path expressions select the light of a lamp by its name. Writes light_groups.png (all light, three groups, and
+ * two mixtures of them) and light_groups.exr, which has every group as a layer that compositing programs can read.
  */
 #include "common.h"
 #include "panels.h"
@@ -61,7 +60,7 @@ int main(void) {
     finish(job, "rendering");
 
     /* --8<-- [start:layers] */
-    /* The picture, and its groups by their names. */
+    /* Get the picture, then find the groups by their names. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     panels_add(&s, 0, 0, image, 1 / WHITE);
     all = panels_pixels(image, &view);

@@ -70,7 +70,7 @@ static char *read_text(const char *name) {
     return text;
 }
 
-/* An empty set of strokes for a photo. */
+/* Creates an empty set of strokes for a photo. */
 static luxfer_strokes *strokes_for(luxfer_image *photo) {
     luxfer_strokes *strokes = NULL;
     uint32_t width, height;
@@ -79,7 +79,7 @@ static luxfer_strokes *strokes_for(luxfer_image *photo) {
     return strokes;
 }
 
-/* Photo, strokes and scene from the user's files. */
+/* Loads photo, strokes and scene from the user's files. */
 static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
     luxfer_strokes *strokes;
     check(luxfer_image_load(context, o->photo, LUXFER_COLOUR_SRGB, photo), "photo");
@@ -157,13 +157,13 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     return image;
 }
 
-/* NaN marks an unknown error; JSON has no NaN. */
+/* Writes a number as JSON. NaN, which marks an unknown error, becomes null, because JSON has no NaN. */
 static void write_number(FILE *file, double value) {
     if (value == value && value - value == 0) fprintf(file, "%.6g", value);
     else fprintf(file, "null");
 }
 
-/* The warnings by their names and figures. */
+/* Writes the warnings as JSON, with their names and figures. */
 static void write_warnings(FILE *file, const char *const *stages, luxfer_warnings *warnings) {
     luxfer_warning w;
     uint32_t i, count = 0;
@@ -232,7 +232,7 @@ int main(int argc, char **argv) {
     else generate_input(transfer, &photo, &scene);
     check(luxfer_transfer_set_scene(transfer, scene, o.surface), "surface");
 
-    /* The whole transfer. */
+    /* Run the whole transfer. */
     check(luxfer_transfer_params_init(&params, sizeof params), "params");
     check(luxfer_render_params_init(&render, sizeof render), "params");
     render.width = o.width;
@@ -243,7 +243,7 @@ int main(int argc, char **argv) {
     check(luxfer_transfer_start(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, &params, &job), "transfer");
     finish(job, "transferring the lighting");
 
-    /* Its results. */
+    /* Get its results. */
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &lit), "render");
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_EMISSION, &emission), "emission");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit_scene), "lit scene");
@@ -258,8 +258,8 @@ int main(int argc, char **argv) {
     check(luxfer_get_warnings(transfer, &warnings), "warnings");
     write_report(&o, &report, &solution, warnings);
 
-    /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white
-     * light. */
+    /* For comparison, render the scene before the transfer (with its own lights or a light at the camera), and in
+     * white light. */
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
     check(luxfer_scene_get_camera(lit_scene, 0, &camera, sizeof camera), "camera");
     add_headlight(scene, &camera);

@@ -6,9 +6,9 @@
  */
 #include "common.h"
 
-enum { COLUMNS = 22, ROWS = 40, SCALE = 6 }; /* One point every 20 cm; SCALE x SCALE pixels for each. */
+enum { COLUMNS = 22, ROWS = 40, SCALE = 6 }; /* One point every 20 cm, drawn as SCALE x SCALE pixels. */
 
-/* Blue, green, yellow, red, for t in [0, 1]. */
+/* Colour for t in [0, 1]: from dark blue through green and yellow to red. */
 static void false_colour(float t, unsigned char *rgb) {
     static const float stops[5][3] = {{20, 20, 90}, {20, 110, 190}, {60, 180, 90}, {240, 220, 60}, {210, 40, 30}};
     const float at = (t < 0 ? 0 : t > 1 ? 1 : t) * 4;
@@ -36,8 +36,8 @@ int main(void) {
     check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
 
     /* --8<-- [start:grid] */
-    /* The grid: a corner, two edges, and the normal of the side that receives the light. Points are the centres of the
-     * cells. */
+    /* A corner, two edges, and the normal of the side that receives the light define the grid. Its points are the
+     * centres of the cells. */
     check(luxfer_illuminance_grid_init(&grid, sizeof grid), "grid");
     grid.origin[0] = 0.5f, grid.origin[1] = 1.5f, grid.origin[2] = 0.5f;
     grid.across[0] = 4.4f;
@@ -54,7 +54,7 @@ int main(void) {
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
            report.minimum, report.maximum, report.minimum / report.mean);
 
-    /* Read the values, one channel, into an array. */
+    /* Read the values, which have one channel, into an array. */
     check(luxfer_illuminance_get_image(illuminance, LUXFER_ILLUMINANCE_LUX, &image), "lux");
     check(luxfer_image_view_init(&view, sizeof view), "lux");
     view.width = COLUMNS;

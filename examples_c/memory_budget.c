@@ -9,7 +9,8 @@
 
 enum { SIDE = 512, MOST = 16 };
 
-/* A grey image of 512 x 512 pixels: 3 MiB, because the library stores 32-bit floating point for any sample type. */
+/* Creates a grey image of 512 x 512 pixels. It takes 3 MiB, because the library stores all samples as 32-bit
+ * floats. */
 static luxfer_status load(luxfer_context *context, luxfer_image **image) {
     luxfer_image_view view;
     luxfer_status status = luxfer_image_view_init(&view, sizeof view);
@@ -32,7 +33,7 @@ int main(void) {
     luxfer_status status = luxfer_context_params_init(&params, sizeof params);
     int count = 0, i;
 
-    /* Also set the number of threads; 0 is one for each core. */
+    /* Set the budget and the number of threads; 0 threads means one for each core. */
     params.memory_budget_mib = 8;
     params.num_threads = 1;
     if (status == LUXFER_OK) status = luxfer_context_create(&params, &context);

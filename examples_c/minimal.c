@@ -32,7 +32,7 @@ int main(int argc, char **argv) {
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
 
-    /* Long work is a job that runs on the library's threads. Wait for it without limit (-1). */
+    /* Long work is a job that runs on the library's threads. Wait for it without a time limit (-1). */
     if (status == LUXFER_OK) status = luxfer_render_start(render, &params, &job);
     if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL);
 

@@ -1,5 +1,6 @@
-/* A sheet of pictures with the steps of a lighting transfer. Above: photo, mask of the plane, mask of the lights, the
- * unwarped plane. Below: emissive texture, scene before, in white light, in the light of the photo. */
+/* Draws a sheet of pictures with the steps of a lighting transfer. Upper row: the photo, the mask of the plane, the
+ * mask of the lights, the unwarped plane. Lower row: the emissive texture; the scene before the transfer, in white
+ * light, and in the light of the photo. */
 #ifndef OVERVIEW_H
 #define OVERVIEW_H
 

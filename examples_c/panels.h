@@ -1,4 +1,4 @@
-/* A sheet of pictures side by side, from images of the library. */
+/* Draws images of the library side by side on a sheet. */
 #ifndef PANELS_H
 #define PANELS_H
 

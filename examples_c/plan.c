@@ -1,7 +1,7 @@
 /* Renders a picture in a given time, or of a given quality: a plan chooses the settings and predicts time and error.
  *
- * Renders the generated office twice: with at most 10 % of noise, and within a second. Prints the predicted and the
- * actual time and error, and writes plan.png.
+ * Renders the generated office twice: first with at most 10 % of noise, then within a second. Prints the predicted and
+ * the actual time and error, and writes plan.png.
  */
 #include "common.h"
 
@@ -29,7 +29,7 @@ int main(void) {
         if (i == 0) params.target_error = 0.1f; /* error of the picture, relative to its mean */
         else params.time_budget_ms = 1000;
 
-        /* Set what does not affect quality yourself: the size of the picture, the seed. */
+        /* Set the settings that do not affect quality yourself: the size of the picture, the seed. */
         check(luxfer_render_params_init(&settings, sizeof settings), "settings");
         settings.width = 160;
         settings.height = 90;

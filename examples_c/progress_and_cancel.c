@@ -6,8 +6,8 @@
 #include "common.h"
 
 /* --8<-- [start:progress] */
-/* The library calls this about 50 times a second, on the waiting thread: it may call any function of library and
- * host. */
+/* Progress function. The library calls it about 50 times a second, on the waiting thread, so it may call any function
+ * of the library and of the host. */
 typedef struct watch {
     luxfer_render *render;
     int calls;
@@ -26,7 +26,7 @@ static int32_t on_progress(void *user, double fraction) {
 /* --8<-- [end:progress] */
 
 /* --8<-- [start:work] */
-/* Runs on a thread of the library, with its result as that of the job. */
+/* The function of a job: runs on a thread of the library. Its status becomes the status of the job. */
 static luxfer_status save(void *user) {
     return luxfer_image_save(user, "progress_and_cancel.png", 1 / 450.0f);
 }

@@ -1,4 +1,4 @@
-/* A rendering on many machines: each machine renders parts into files, and one machine merges the files.
+/* Renders on many machines: each machine renders parts into files, and one machine merges the files.
  *
  *   render_parts part INDEX FILE      renders part INDEX of PARTS into FILE: a task of a farm
  *   render_parts merge FILE...        merges the parts, in any order, into render_parts.exr and render_parts.png
@@ -8,10 +8,10 @@
 
 #include <string.h>
 
-/* The image as 3 x 2 rectangles with 2 ranges of paths each. */
+/* The rendering is divided into 3 x 2 rectangles with 2 ranges of paths each. */
 enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
 
-/* Scene, camera, layers and settings must be equal in every task; the merge checks this. */
+/* Sets up the rendering. Scene, camera, layers and settings must be equal in every task; the merge checks this. */
 static luxfer_render *describe(luxfer_render_params *params) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
@@ -40,7 +40,7 @@ static void render_part(luxfer_render *render, const luxfer_render_params *param
 /* --8<-- [end:part] */
 
 /* --8<-- [start:merge] */
-/* After all tasks: merges the files. The rendering is then as if this machine had made it. */
+/* Merges the files after all tasks have ended. The result is as if this machine had rendered everything. */
 static void merge(luxfer_render *render, const luxfer_render_params *params, char **files, int count) {
     luxfer_job *job = NULL;
     int i;
@@ -67,7 +67,8 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     return view->data;
 }
 
-/* Renders all parts, the last first, and the whole in one part, and checks that the bits are equal. */
+/* Renders and merges all parts, the last part first; then renders the whole image in one part, and checks that both
+ * are equal to the bit. */
 static int demonstrate(luxfer_render *render, const luxfer_render_params *params) {
     char names[PARTS][32], *files[PARTS], *whole = "whole.part.exr";
     luxfer_image_view view;

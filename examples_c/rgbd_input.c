@@ -1,17 +1,18 @@
-/* A photo with depth, from a depth camera or a network, instead of the library's guess.
+/* Uses the depth map of a depth camera or a network instead of the library's guess.
  *
  *   rgbd_input [PHOTO DEPTH]
  *
  * Without arguments it renders a photo of the generated office and its depth. DEPTH has one channel, in any unit;
- * values that are not positive are holes. Writes rgbd_input.png: photo and depth; normals without the depth and with
- * it.
+ * values that are not positive are holes. Writes rgbd_input.png: the photo and its depth; the normals without and with
+ * the depth.
  */
 #include "common.h"
 #include "panels.h"
 
 enum { WIDTH = 300, HEIGHT = 200 };
 
-/* The distance of each pixel along the viewing axis, in metres: a layer of a rendering by the photo's camera. */
+/* Measures the depth of each pixel along the viewing axis, in metres, as a layer of a rendering with the photo's
+ * camera. */
 static luxfer_image *measure_depth(void) {
     luxfer_scene *office = NULL;
     luxfer_render *render = NULL;
@@ -36,7 +37,7 @@ static luxfer_image *measure_depth(void) {
     return depth;
 }
 
-/* Channels 7 to 9 of the features are normals, in [-1, 1]: shown in [0, 1]. */
+/* Shows the normals, channels 7 to 9 of the features: maps their range [-1, 1] to [0, 1]. */
 static void show_normals(luxfer_features *features, const char *title, sheet *s, int column) {
     luxfer_features_report report;
     luxfer_image *channels = NULL, *shown = NULL;

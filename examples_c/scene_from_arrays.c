@@ -1,17 +1,17 @@
-/* A scene from the arrays of a host: a small room with a lamp, rendered and saved as glTF.
+/* Builds a scene from the arrays of a host: a small room with a lamp, which is rendered and saved as glTF.
  *
  * Writes scene_from_arrays.png and scene_from_arrays.glb.
  */
 #include "common.h"
 
 /* --8<-- [start:mesh] */
-/* A vertex of a host: interleaved attributes, some of which the library does not need. */
+/* A vertex of a host, with interleaved attributes; the library does not need all of them. */
 typedef struct vertex {
     float position[3], uv[2];
     int selected;
 } vertex;
 
-/* Adds a rectangle: a corner and two edges; it faces along cross(u, v). */
+/* Adds a rectangle with a corner and the edges u and v; its front side faces in the direction cross(u, v). */
 static void add_quad(luxfer_scene *scene, const char *name, uint32_t material, const float *corner, const float *u,
                      const float *v) {
     static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}}; /* Counter-clockwise seen from the front. */

@@ -17,7 +17,7 @@ enum { STYLES = 3 };
 /* Luminance in cd/m2 shown as white. */
 #define EXPOSURE 450.0f
 
-/* The guides of a scene, rendered. */
+/* Renders the guides of a demonstration scene. */
 static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *params, const char *title) {
     luxfer_scene *scene = NULL;
     luxfer_guides *guides = NULL;
@@ -31,14 +31,14 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     return guides;
 }
 
-/* The full picture among guides. */
+/* Gets the guide with all light, which is the complete picture of the scene. */
 static luxfer_image *full(luxfer_guides *guides) {
     luxfer_image *image = NULL;
     check(luxfer_guides_get_image(guides, LUXFER_GUIDES_FULL, &image), "guides");
     return image;
 }
 
-/* The exemplar as a pale print between alignment marks. */
+/* Saves the sheet to print: the exemplar in pale colours between alignment marks. */
 static void print_sheet(luxfer_image *radiance, const char *out) {
     luxfer_sheet_params params;
     luxfer_image_view view;
@@ -93,8 +93,8 @@ int main(int argc, char **argv) {
     /* --8<-- [start:guides] */
     source = render(LUXFER_DEMO_SPHERE_ON_TABLE, &params, "exemplar");
     target = render(LUXFER_DEMO_STILL_LIFE, &params, "target");
-    /* All objects have one red: only edges separate a ball from the ring behind it, so they weigh more than the light
-     * guides. */
+    /* All objects have the same red, so only edges separate a ball from the ring behind it: give edges more weight
+     * than the light guides. */
     check(luxfer_stylize_add_guides(stylize, source, target, LUXFER_GUIDES_WITH_EDGES, 2.5f), "guides");
     /* --8<-- [end:guides] */
     s = panels_begin(1 + STYLES, 2, 480, 360);

@@ -3,8 +3,8 @@
 
 use std::fmt;
 
-/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended; 0 to 6 are as in
-/// Embree and Open Image Denoise.
+/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended; the values 0 to 6
+/// mean the same as in Embree and Open Image Denoise.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {

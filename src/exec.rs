@@ -47,7 +47,8 @@ impl Pool {
     }
 
     /// Like [`run`](Self::run), but drops `work` and returns `None` if `is_cancelled` becomes true while all threads
-    /// are still busy with other work. `work` must not panic. It is always dropped before this function returns.
+    /// are still busy with other work. `work` must not panic. When this function returns, `work` has been run or
+    /// dropped.
     pub fn run_unless<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -84,7 +85,8 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
         self.changed.notify_all();
     }
 
-    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before it runs.
+    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before the closure
+    /// runs.
     fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
         let mut state = lock(&self.state);
         loop {

@@ -72,8 +72,8 @@ impl<'a> Job<'a> {
         self.monitor.progress.fetch_max(whole.to_bits(), Ordering::Relaxed);
     }
 
-    /// Returns an error if the job was cancelled, or if memory was so short that the memory reserve was used since the
-    /// job started. Call it at least every few milliseconds.
+    /// Returns an error if the job was cancelled, or if memory ran so short that the memory reserve has been used
+    /// since the job started. Call it at least every few milliseconds.
     pub fn check(self) -> Result<()> {
         if self.is_cancelled() {
             Err(Error::cancelled())

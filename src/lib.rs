@@ -8,7 +8,7 @@
 //! exemplar guides + artwork, target guides ─▶ stylize ─▶ stylised image
 //! ```
 //!
-//! [`transfer`] runs the first pipeline and passes data between its stages, which do not depend on each other.
+//! [`transfer`] runs the first pipeline and passes data between its stages. The stages do not depend on each other.
 //! [`plan`] chooses settings of its last two stages for a target error or time. `ffi` is the C boundary, and the only
 //! module that deals with C. Both pipelines use these modules: [`scene`] (description, glTF, acceleration), [`render`]
 //! (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour temperature,

@@ -17,7 +17,7 @@ thread_local! {
     static IS_QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Suppresses panic messages on this thread as long as it lives.
+/// Suppresses panic messages on this thread as long as this value lives.
 pub struct Quiet {
     before: bool,
 }
@@ -46,8 +46,8 @@ pub fn outside<T>(call: impl FnOnce() -> T) -> T {
     call()
 }
 
-/// Installs the hook once per process. A panicking thread cannot install a hook; the next call on another thread then
-/// does.
+/// Installs the hook once per process. A panicking thread cannot install a hook; in that case, the next call on
+/// another thread installs it.
 fn install() {
     static INSTALLED: Once = Once::new();
     if !INSTALLED.is_completed() && !thread::panicking() {

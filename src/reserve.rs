@@ -96,7 +96,7 @@ struct Allocator(Reserve);
 // SAFETY: memory belongs to the system or to the reserve, which recognises its own by address.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller's guarantees about the layout are the ones required there.
+        // SAFETY: the caller guarantees what `System.alloc` requires of the layout.
         let start = unsafe { System.alloc(layout) };
         if start.is_null() { self.0.take(layout) } else { start }
     }

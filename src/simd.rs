@@ -4,7 +4,7 @@
 //! Results are equal bit by bit at every level: no variant fuses a multiplication and an addition where the rounding
 //! would differ, and loops keep the order of their sums.
 
-/// Instruction sets, from narrow to wide; each includes the ones before it.
+/// Instruction sets, from narrow to wide; each includes all narrower sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// The baseline of the architecture: SSE2 on x86-64, NEON on aarch64.
@@ -42,8 +42,8 @@ impl Level {
     }
 }
 
-/// Defines a function that is compiled for every level and dispatched at run time. It may have only plain arguments,
-/// and no generics.
+/// Defines a function that is compiled for every level and dispatched at run time. The function may have only plain
+/// arguments, and no generics.
 macro_rules! widest {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block) => {
         $(#[$meta])*
@@ -106,8 +106,8 @@ pub mod forced {
         ALL.into_iter().filter(|level| *level <= Level::of_processor())
     }
 
-    /// Runs `work` at a level. Calls wait for each other. Other tests that run meanwhile use the same level, which
-    /// does not change their results.
+    /// Runs `work` at a level. Concurrent calls run one after the other. Other tests that run meanwhile use this level
+    /// as well, which does not change their results.
     pub fn at<T>(level: Level, work: impl FnOnce() -> T) -> T {
         struct Widest;
         impl Drop for Widest {

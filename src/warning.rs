@@ -43,7 +43,8 @@ pub enum Code {
     PatternUncertain = 15,
     /// Emission: the photo shows fewer whole lamps than determine a pattern.
     FewLamps = 16,
-    /// Emission: the lamps form no lattice, and the texture, which patches continue, differs much from the photo.
+    /// Emission: the lamps form no lattice, so the texture is continued patch by patch, and it differs much from the
+    /// photo.
     NoLattice = 17,
     /// Relighting: a colour channel does not meet its target.
     Unreachable = 18,

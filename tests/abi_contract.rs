@@ -86,7 +86,7 @@ fn views_of_every_size_and_stride_are_read_or_refused() {
         (1, 65_537, LUXFER_INVALID_ARGUMENT),
         (u32::MAX, u32::MAX, LUXFER_INVALID_ARGUMENT),
     ] {
-        // Miri would take half an hour for this.
+        // Under Miri, test only the smallest valid image: the others would take half an hour.
         if cfg!(miri) && (width, height) != (1, 1) && want == LUXFER_OK {
             continue;
         }
@@ -149,7 +149,7 @@ fn pixels_round_trip_through_strides_and_misalignment() {
         let (x, y) = (i % 7, 4 - i / 7);
         assert_eq!(pixel, [0, 1, 2].map(|c| (x * 100 + y * 10 + c) as f32));
     }
-    // Write one of three channels back into the strided memory; the bytes between the pixels stay unchanged.
+    // Write one of the three channels back into the strided memory; all other bytes stay unchanged.
     let before = bytes.clone();
     let one = luxfer_image_view { channels: 1, data: bytes.as_mut_ptr().wrapping_add(1).cast(), ..strided };
     assert_eq!(unsafe { luxfer_image_read(image, 2, &one) }, LUXFER_OK);
@@ -361,7 +361,7 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface, size_of_val(&surface)), LUXFER_OK);
         assert!((surface.area - 1.0).abs() < 1e-5 && surface.triangles == 2);
 
-        // Save and load again; an error of the writing function ends the save.
+        // Save the scene and load it again. An error that the caller's writing function returns ends the save.
         unsafe extern "C" fn collect(user: *mut c_void, data: *const c_void, size: usize) -> i32 {
             unsafe { (*user.cast::<Vec<u8>>()).extend(std::slice::from_raw_parts(data.cast::<u8>(), size)) };
             0
@@ -420,7 +420,7 @@ fn stages_say_what_they_lack() {
     }
 }
 
-/// Strokes are copied by the stage, refused for another size, and gone with a photo of another size.
+/// Wrong parameters of strokes, a drawing of another size than the photo, and malformed text are errors.
 #[test]
 fn wrong_strokes_are_refused() {
     let context = context(1);
@@ -469,7 +469,7 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_segment_set_strokes(segment, strokes, 2), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_segment_set_strokes(segment, small.cast(), LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
 
-        // What the caller adds later, the stage does not have.
+        // The stage has a copy of the strokes, so later changes by the caller do not reach it.
         let points = [1.0f32, 1.0, 6.0, 1.0];
         assert_eq!(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 1.0, 1), LUXFER_OK);
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
@@ -479,7 +479,7 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
         assert_eq!(start(), LUXFER_DEGENERATE);
 
-        // A photo of another size, and NULL, leave no strokes.
+        // Setting a photo of another size, or NULL strokes, removes the stage's strokes.
         assert_eq!(luxfer_strokes_add_text(strokes, c"plane 1 1 1 6 1\nnot-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         for is_larger in [true, false] {
             assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);

@@ -1,6 +1,6 @@
-//! Files are read within the memory budget of the context, including the memory of decoders, and on small stacks.
+//! Tests that reading a file stays within the context's memory budget, decoders included, and works on small stacks.
 //!
-//! A separate program whose tests run one after the other, because it measures the peak memory of the process.
+//! The tests measure the peak memory of the process, so they have a program of their own and run one at a time.
 
 mod host;
 
@@ -12,23 +12,24 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard};
 
-/// The tests of this file run one after the other.
+/// Locks a mutex for the duration of a test, so that the tests of this file run one at a time.
 fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Memory that the rest of the process may take while a file is read: pages of the program and of its allocator.
+/// Bytes by which the rest of the process may grow while a file is read: pages of the program and of its allocator.
 const NOISE: u64 = 3 << 20;
 
-/// A memory figure of this process in bytes, if the system reports it.
+/// Reads the memory figure `name` (such as `VmRSS:`) of this process, in bytes; `None` if the system does not report
+/// it.
 fn figure(name: &str) -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()? * 1024)
 }
 
-/// Returns the result of the work and the growth of the process in bytes, if the system reports it.
+/// Returns the result of `work`, and by how many bytes the process grew at its peak, if the system reports it.
 fn growth<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
     // Return freed memory to the system first.
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
@@ -46,8 +47,8 @@ fn with_budget(mib: u64) -> *mut luxfer_context {
     host::made(|out| unsafe { luxfer_context_create(&params, out) })
 }
 
-/// Loads and releases a picture in memory under a budget; returns the status, the message and the growth of the
-/// process.
+/// Loads a picture from memory in a context with a budget of `mib` MiB (0 = none), and releases it. Returns the
+/// status, the message and the growth of the process in bytes.
 fn load(file: &[u8], mib: u64) -> (luxfer_status, String, Option<u64>) {
     let context = with_budget(mib);
     let mut image = null_mut();
@@ -79,7 +80,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
-/// Zeros that deflate has compressed by a factor of 1000.
+/// Returns `len` zero bytes, compressed by deflate to about a thousandth of their size.
 fn bomb(len: usize) -> Vec<u8> {
     compress_to_vec_zlib(&vec![0; len], 6)
 }
@@ -97,7 +98,7 @@ fn packed_chunks_of_a_png_stay_within_the_budget() {
             let (status, message, grown) = load(&file, mib);
             let called = String::from_utf8_lossy(name);
             assert!(grown.is_none_or(|grown| grown <= (mib << 20) + NOISE), "{called} of {mib} MiB grew {grown:?}");
-            // Text chunks need not be unpacked, so the file may load.
+            // A reader may skip text chunks without unpacking them, so the file may load.
             match (name, status) {
                 (_, LUXFER_OUT_OF_MEMORY) => assert!(message.contains("budget"), "{message}"),
                 (_, status) => assert_eq!(status, LUXFER_OK, "{called} of {mib} MiB: {message}"),
@@ -105,12 +106,13 @@ fn packed_chunks_of_a_png_stay_within_the_budget() {
         }
         assert_eq!(load(&file, 0).0, LUXFER_OK, "without a budget");
     }
-    // A chunk that unpacks to three megabytes, a thousand times its size.
+    // A small chunk that unpacks to 3 MiB exceeds a budget of 1 MiB.
     let small = [b"name\0\0", &bomb(3 << 20)[..]].concat();
     assert_eq!(load(&png_with(b"iCCP", &small), 1).0, LUXFER_OUT_OF_MEMORY);
 }
 
-/// Pictures of 800 x 700 pixels, 6.4 MiB as floating-point numbers, in each format that can be written here.
+/// Files of pictures with 800 × 700 pixels (6.4 MiB as floating-point numbers), in each format that this test can
+/// write.
 fn pictures() -> Vec<(&'static str, Vec<u8>)> {
     const SIZE: [u32; 2] = [800, 700];
     let noise = |x: u32, y: u32, c: u32| (x.wrapping_mul(31) ^ y.wrapping_mul(57).wrapping_add(c * 91)) as u8;
@@ -157,7 +159,7 @@ fn pictures() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// An uncompressed TIFF of one strip, of colours or of inks, with a profile or without.
+/// An uncompressed TIFF with one strip: RGB for 3 `samples`, CMYK for 4; with or without an ICC profile.
 fn tiff([width, height]: [u32; 2], samples: u32, pixels: &[u8], profile: Option<&[u8]>) -> Vec<u8> {
     let tags = 9 + u32::from(profile.is_some());
     let (bits, len) = (8 + 2 + tags * 12 + 4, samples * width * height);
@@ -188,7 +190,7 @@ fn tiff([width, height]: [u32; 2], samples: u32, pixels: &[u8], profile: Option<
     file
 }
 
-/// A profile that converts inks by a grid of two colours along each (ICC.1:2022, section 10.11, `lut8Type`).
+/// An ICC profile that converts CMYK by a table with two grid points per ink (ICC.1:2022, section 10.11, `lut8Type`).
 fn ink_profile() -> Vec<u8> {
     let ramp: Vec<u8> = (0..=255).collect();
     let mut table = b"mft1\0\0\0\0\x04\x03\x02\0".to_vec();
@@ -229,7 +231,7 @@ fn the_profile_of_the_inks_is_used() {
         pixel
     };
     assert!(picture(None).iter().all(|&v| v < 0.01), "black ink without a profile");
-    // The last ink runs fastest: entry 1 of the grid has a lightness of 100 (1 - 17/255).
+    // The last ink varies fastest, so entry 1 of the table is black ink alone: lightness 100 (1 - 17/255).
     let [red, green, blue] = picture(Some(&ink_profile()));
     let luminance = ((93.333f32 + 16.0) / 116.0).powi(3);
     assert!((green - luminance).abs() < 0.01 && (red - blue).abs() < 0.01, "{red} {green} {blue}");
@@ -265,7 +267,7 @@ fn nested_gltf() -> Vec<u8> {
         .into()
 }
 
-/// Loads a scene from memory; NULL if it is invalid.
+/// Loads a scene from memory and releases it; returns the status of the load.
 fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     let mut scene = null_mut();
     unsafe {
@@ -282,14 +284,14 @@ fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     }
 }
 
-/// A host's function that stores the written file.
+/// Writing function of the caller: appends the data to the `Vec<u8>` at `file`.
 unsafe extern "C" fn collect(file: *mut std::ffi::c_void, data: *const std::ffi::c_void, size: usize) -> i32 {
     let file = unsafe { &mut *file.cast::<Vec<u8>>() };
     file.extend_from_slice(unsafe { std::slice::from_raw_parts(data.cast(), size) });
     0
 }
 
-/// Makes calls that finish their work before they return.
+/// Calls functions that finish their work before they return (instead of starting a job).
 fn quick_calls(context: *mut luxfer_context) {
     let (image, scene) = (host::image(context, 320, 240, 0.5), host::scene(context));
     let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];

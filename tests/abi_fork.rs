@@ -15,11 +15,11 @@ use std::ptr::{null, null_mut};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Longest time for which a child may run, on a crowded machine.
+/// Longest time for which a child may run, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Forks, runs `work` in the child, and returns everything that the child wrote to its stderr. A check that fails
-/// there, or a child that does not end, fails here.
+/// Forks, runs `work` in the child, and returns everything that the child wrote to its stderr. Panics if `work` panics
+/// in the child, or if the child does not end.
 fn in_child(name: &str, work: impl FnOnce()) -> String {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
     let errors = fs::File::create(&path).unwrap();
@@ -45,7 +45,7 @@ fn in_child(name: &str, work: impl FnOnce()) -> String {
     written
 }
 
-/// A rendering that lasts until it is cancelled, in its first pass or later.
+/// Starts a rendering that lasts until it is cancelled.
 fn start_render(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut luxfer_render, *mut luxfer_job) {
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
@@ -57,7 +57,7 @@ fn start_render(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut
     (render, made(|out| unsafe { luxfer_render_start(render, &params, out) }))
 }
 
-/// A ray that goes up from the middle of the room.
+/// Traces a vertical ray from the middle height of the room up to its ceiling; returns the status and the distance.
 fn trace(scene: *mut luxfer_scene) -> (luxfer_status, f32) {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hit = luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 };
@@ -81,7 +81,7 @@ impl Objects {
         Self { context, image, scene, render, job }
     }
 
-    /// The status of one call to each kind of object.
+    /// Makes calls with each kind of object, and returns their statuses.
     fn call_all(&self) -> Vec<luxfer_status> {
         let (mut pixels, mut place) = ([0.5; 12], [null_mut::<c_void>(); 3]);
         let [made, job, other] = &mut place;
@@ -116,7 +116,8 @@ impl Objects {
         }
     }
 
-    /// Every call is refused at once with a message, and every release succeeds, even repeated.
+    /// Checks, in a child, objects made before the fork: calls fail at once with a message, and releases succeed even
+    /// twice.
     fn check_inherited(&self) {
         let clock = Instant::now();
         assert_eq!(self.call_all(), vec![LUXFER_INVALID_OPERATION; 12]);
@@ -161,7 +162,7 @@ fn a_fork_while_other_threads_are_in_the_library_leaves_no_lock_that_a_child_wai
     let objects = Objects::new();
     let (ends, context) = (AtomicBool::new(false), objects.context as usize);
     std::thread::scope(|scope| {
-        // Failing calls, which store messages under a lock, and image creation.
+        // Another thread makes failing calls, which store messages under a lock, and creates images.
         scope.spawn(|| {
             let context = context as *mut luxfer_context;
             while !ends.load(Ordering::Relaxed) {

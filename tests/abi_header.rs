@@ -14,14 +14,14 @@ use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A header of `include/luxfer`.
+/// A header file in `include/luxfer`.
 struct Part {
     name: &'static str,
     /// Its content in a few words.
     title: &'static str,
     /// The parts whose types it uses.
     includes: &'static [&'static str],
-    /// Its files of `src/ffi`, in order.
+    /// The files of `src/ffi` from which it is generated, in order.
     groups: &'static [&'static str],
 }
 
@@ -131,13 +131,13 @@ const PARTS: &[Part] = &[
     },
 ];
 
-/// The parts that the author of a plug-in for lighting transfers reads, and their maximum number of functions.
+/// The parts that an author of a lighting-transfer plug-in has to read, and the maximum number of functions in them.
 const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
 
 /// Maximum number of functions in all parts.
 const MAX_FUNCTIONS: usize = 230;
 
-/// Structs that occur in arrays: they have no size field and never change.
+/// Structs that callers pass in arrays. They have no size field, so their layout must never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit", "luxfer_observer", "luxfer_observer_glare"];
 
 #[test]
@@ -156,7 +156,7 @@ fn the_headers_are_what_the_sources_say() {
     }
 }
 
-/// Each part includes what it needs, and is small enough to be read.
+/// Each part of the header compiles alone, and the parts that a plug-in author reads have few enough functions.
 #[test]
 fn each_part_compiles_alone() {
     for part in PARTS {
@@ -201,7 +201,8 @@ fn check_syntax(compiler: &str, standard: &str, file: &Path) {
         .arg(file));
 }
 
-/// Each struct of settings has its inline function, and the numbers of the types never change.
+/// Each struct of settings has its inline `_init` function, and its `LUXFER_STRUCT_` constant is its position in the
+/// list.
 #[test]
 fn every_type_of_luxfer_init_has_its_inline_function() {
     let header = header();
@@ -235,7 +236,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
     let structs = structs(&header);
     assert!(structs.len() > 5);
 
-    // A C program that prints the offset and the size of each field of the header.
+    // Write a C program that prints the offset and the size of each field in the header.
     let mut source = "#include \"luxfer.h\"\n#include <stdio.h>\nint main(void) {\n".to_string();
     for (name, fields) in &structs {
         writeln!(source, "printf(\"{name} = %zu\\n\", sizeof({name}));").unwrap();
@@ -261,7 +262,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
         for (field, offset, field_size) in fields {
             writeln!(seen_by_rust, "{name}.{field} = {offset} + {field_size}").unwrap();
         }
-        // Only the struct size distinguishes new fields from old ones, so there must be no padding at the end.
+        // A larger struct size is the only sign of a new field, so no new field may hide in padding at the end.
         let (_, offset, field_size) = fields.last().unwrap();
         assert_eq!(offset + field_size, *size, "{name} has padding at its end");
         let starts_with_size = fields[0] == ("struct_size", 0, 4);
@@ -305,12 +306,12 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The text of a part.
+/// Reads the text of a header part.
 fn part(name: &str) -> String {
     std::fs::read_to_string(root().join(format!("include/luxfer/{name}.h"))).expect(name)
 }
 
-/// The text of all parts.
+/// Reads and joins the texts of all header parts.
 fn header() -> String {
     PARTS.iter().map(|p| part(p.name)).collect()
 }
@@ -337,13 +338,13 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The umbrella header and its parts: paths below `include`, and texts.
+/// Generates the umbrella header and its parts; returns their paths below `include` and their texts.
 fn generate() -> Vec<(String, String)> {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
     let umbrella = config.header.take().unwrap();
     let includes: String = PARTS.iter().map(|p| format!("#include \"luxfer/{}.h\"\n", p.name)).collect();
     let settings = settings(&section(&config, "init"));
-    // Otherwise cbindgen leaves out structs that no function of their file takes.
+    // Name the structs of settings: cbindgen leaves out structs that no function of their own file takes.
     config.export.include = settings.clone();
     let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
     for part in PARTS {
@@ -369,7 +370,7 @@ fn guarded(head: &str, guard: &str, body: &str) -> String {
     format!("{head}#ifndef {guard}\n#define {guard}\n\n{body}\n#endif /* {guard} */\n")
 }
 
-/// The items of a file of `src/ffi`, after its head comment.
+/// Generates the section of the header for the file `group` of `src/ffi`: its head comment, then its items.
 fn section(config: &cbindgen::Config, group: &str) -> String {
     let path = root().join(format!("src/ffi/{group}.rs"));
     let mut out = banner(&std::fs::read_to_string(&path).unwrap());
@@ -379,7 +380,7 @@ fn section(config: &cbindgen::Config, group: &str) -> String {
     let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
     let mut items = Vec::new();
     bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
-    // The style "both" gives structs a tag, for forward declarations, but need not use it.
+    // With the style "both", structs have a tag for forward declarations; elsewhere, use the typedef without `struct`.
     let items = String::from_utf8(items)
         .unwrap()
         .replace("struct luxfer_", "luxfer_")
@@ -387,13 +388,14 @@ fn section(config: &cbindgen::Config, group: &str) -> String {
     out + &one_line_comments(items.trim())
 }
 
-/// Names of the structs that luxfer_init fills, from the constants of their types.
+/// Names of the structs that `luxfer_init` fills, derived from the `LUXFER_STRUCT_` constants of the section.
 fn settings(section: &str) -> Vec<String> {
     let constants = section.lines().filter_map(|l| l.strip_prefix("#define LUXFER_STRUCT_"));
     constants.map(|l| format!("luxfer_{}", l.split(' ').next().unwrap().to_lowercase())).collect()
 }
 
-/// Adds an inline function after each struct of settings that fills it: luxfer_init, with a checked argument.
+/// Adds an inline function after each struct of settings. It fills the struct as `luxfer_init` does, but its parameter
+/// has the struct's type, so the compiler checks the argument.
 fn with_initialisers(section: &str, settings: &[String]) -> String {
     let mut out = String::new();
     for line in section.lines() {
@@ -412,7 +414,7 @@ fn with_initialisers(section: &str, settings: &[String]) -> String {
     out
 }
 
-/// Puts each comment that fits onto one line.
+/// Joins each comment that fits on one line into one line.
 fn one_line_comments(text: &str) -> String {
     let mut lines = text.lines();
     let mut out = String::new();
@@ -434,7 +436,7 @@ fn one_line_comments(text: &str) -> String {
     out
 }
 
-/// The head comment of a source file as a section heading.
+/// Turns the head comment (`//!`) of a source file into a section heading of the header.
 fn banner(source: &str) -> String {
     let rule = "=".repeat(116);
     let lines = source.lines().map_while(|l| l.strip_prefix("//!"));
@@ -452,7 +454,7 @@ fn version_macros() -> String {
     )
 }
 
-/// Names of the functions a header declares.
+/// Names of the functions that a header declares.
 fn functions(header: &str) -> Vec<&str> {
     let declarations = header.lines().filter(|l| !l.starts_with([' ', '#', '/']) && !l.starts_with("typedef"));
     let declarations = declarations.filter(|l| !l.starts_with("static inline "));
@@ -461,7 +463,7 @@ fn functions(header: &str) -> Vec<&str> {
     names.filter(|n| n.starts_with("luxfer_")).collect()
 }
 
-/// Fields of the structs that a header defines.
+/// Names of the fields of each struct that a header defines.
 fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
     let mut found = BTreeMap::new();
     let mut current = None;

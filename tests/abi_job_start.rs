@@ -1,4 +1,5 @@
-//! Functions of the caller that run as jobs: result, messages, progress, cancellation, waits inside, and release.
+//! Contract of `luxfer_job_start`, which runs a function of the caller as a job: result, message, progress,
+//! cancellation, waits inside the function, and release.
 
 mod host;
 
@@ -8,7 +9,7 @@ use std::ffi::c_void;
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
 
-/// What a function of a job works with.
+/// User data of a function that runs as a job.
 struct Work {
     context: *mut luxfer_context,
     scene: *mut luxfer_scene,
@@ -18,8 +19,8 @@ struct Work {
     statuses: Vec<luxfer_status>,
 }
 
-/// Runs `work` as a job with `statuses` for its notes, and cancels it `cancel_after` it has begun. Returns the status of
-/// the job, its message, the notes, and the time from the request to the end.
+/// Runs `work` as a job. With `cancel_after`, cancels it this long after it has reported its beginning. Returns the
+/// job's status, its message, the statuses that `work` recorded, and the time from the cancel request to the end.
 fn run(
     work: unsafe extern "C" fn(*mut c_void) -> luxfer_status,
     cancel_after: Option<Duration>,
@@ -46,7 +47,7 @@ fn run(
     (status, text, user.statuses, late)
 }
 
-/// The rating of an observer in the box, with so many paths that it takes minutes.
+/// Rates the glare of an observer in the box, with so many paths that the call takes minutes.
 unsafe fn rate_for_minutes(scene: *mut luxfer_scene) -> luxfer_status {
     let observer = luxfer_observer { position: [1.0, 1.0, 1.0], direction: [1.0, 0.0, 0.0] };
     let mut rating = unsafe { std::mem::zeroed::<luxfer_observer_glare>() };
@@ -59,7 +60,7 @@ unsafe extern "C" fn rate(user: *mut c_void) -> luxfer_status {
     unsafe { rate_for_minutes(work.scene) }
 }
 
-/// Starts an endless rendering and waits for it.
+/// Function of a job: starts an endless rendering and waits for it.
 unsafe extern "C" fn render(user: *mut c_void) -> luxfer_status {
     let work = unsafe { &mut *user.cast::<Work>() };
     let render = made(|out| unsafe { luxfer_render_create(work.context, out) });
@@ -86,7 +87,7 @@ fn a_cancel_ends_the_calls_and_the_jobs_of_the_function() {
             assert_eq!(*status, LUXFER_CANCELLED, "{text}");
             assert!(inside.iter().all(|status| *status == LUXFER_CANCELLED), "{inside:?}");
         }
-        // Other programs may occupy the processors for a while.
+        // Only the quickest run counts, because other programs may occupy the processors for a while.
         let quickest = runs.iter().map(|run| run.3).min().unwrap();
         assert!(quickest <= Duration::from_millis(100), "{quickest:?}");
     }
@@ -121,7 +122,8 @@ fn the_job_has_the_result_and_the_message_of_the_function() {
     assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
 }
 
-/// Waits until its job is known, waits for it, releases it, and goes on.
+/// Function of a job: waits until the handle of its own job is stored, tries to wait for that job, releases it, and
+/// continues.
 unsafe extern "C" fn release_itself(user: *mut c_void) -> luxfer_status {
     let work = unsafe { &mut *user.cast::<Work>() };
     let job: *mut luxfer_job = loop {
@@ -134,7 +136,7 @@ unsafe extern "C" fn release_itself(user: *mut c_void) -> luxfer_status {
     unsafe {
         work.statuses.push(luxfer_job_wait(job, -1, None, null_mut()));
         work.statuses.push(luxfer_release(job.cast()));
-        // The release of the last reference has cancelled the job.
+        // Releasing its last reference has cancelled the job, so this call is cancelled too.
         work.statuses.push(rate_for_minutes(work.scene));
     }
     work.begun.send(()).unwrap();

@@ -21,7 +21,7 @@ fn render_params(side: u32, samples: u32) -> luxfer_render_params {
     luxfer_render_params { width: side, height: side, samples, ..params }
 }
 
-/// A renderer of that box.
+/// Creates a renderer for the box of `host::scene`.
 fn renderer(context: *mut luxfer_context) -> *mut luxfer_render {
     let scene = scene(context);
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
@@ -36,7 +36,7 @@ fn start(render: *mut luxfer_render, params: &luxfer_render_params) -> *mut luxf
     made(|out| unsafe { luxfer_render_start(render, params, out) })
 }
 
-/// Number of paths of a job that does not end within the test.
+/// Samples per pixel of a job that does not end within the test.
 const ENDLESS: u32 = 1 << 20;
 
 fn threads() -> usize {
@@ -62,7 +62,7 @@ fn any_release_order_is_fine() {
     }
 }
 
-/// Progress that a callback has seen, and the progress at which it cancels.
+/// User data of a progress callback: the fractions it has seen, and the fraction at which it cancels.
 struct Watch {
     seen: Vec<f64>,
     thread: std::thread::ThreadId,
@@ -85,7 +85,7 @@ fn outcome(job: *mut luxfer_job) -> luxfer_status {
 unsafe extern "C" fn watch(user: *mut c_void, fraction: f64) -> i32 {
     let watch = unsafe { &mut *user.cast::<Watch>() };
     watch.seen.push(fraction);
-    // A panic must not cross C: an error is recorded as a fraction that is out of range.
+    // A panic must not cross the C boundary, so an error is recorded as a fraction that is out of range.
     if std::thread::current().id() != watch.thread || watch.cancelled.is_some() {
         watch.seen.push(-1.0);
     }
@@ -136,7 +136,7 @@ fn a_cancel_is_answered_at_any_point() {
         assert_eq!(unsafe { luxfer_release(job.cast()) }, LUXFER_OK);
         late
     });
-    // Other programs may occupy the processors for a while.
+    // Only the shortest delay counts, because other programs may occupy the processors for a while.
     assert!(*delays.iter().min().unwrap() <= Duration::from_millis(100), "{delays:?}");
     // Cancel from another thread while this one waits.
     let job = start(render, &render_params(64, ENDLESS));
@@ -171,7 +171,7 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
         assert_eq!(luxfer_render_start(render, null(), &mut second), LUXFER_INVALID_OPERATION);
         assert!(second.is_null());
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_INVALID_OPERATION);
-        // Another object is not blocked, nor is the scene.
+        // The running job blocks neither another renderer nor the scene.
         let other = renderer(context);
         let small = start(other, &render_params(8, 1));
         assert_eq!(luxfer_scene_set_environment(scene, null_mut(), 1.0, 1.0, 1.0), LUXFER_OK);
@@ -194,7 +194,7 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
 #[cfg(target_os = "linux")]
 fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
     let _alone = ALONE.lock();
-    // Other tests start and end threads meanwhile; a thousand leaked threads would still show.
+    // Other tests start and end threads at the same time; a thousand leaked threads would still be noticed.
     let before = threads();
     for i in 0..1000 {
         let context = context(1);

@@ -1,5 +1,5 @@
-//! Calls that finish their work before they return never wait for a job, and a job that waits for another can be
-//! cancelled.
+//! Tests that quick calls (calls that finish their work before they return) never wait for a running job, and that a
+//! job can be cancelled while it waits for another job.
 
 mod host;
 
@@ -9,13 +9,13 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 use std::time::{Duration, Instant};
 
-/// Maximum delay of a call by a running job.
+/// Maximum time by which a running job may delay a quick call.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
-/// Number of rounds of calls; the fastest counts, because other programs may occupy the processors for a while.
+/// Number of times the calls are timed; the fastest time counts, because other programs may occupy the processors.
 const ROUNDS: usize = 5;
 
-/// Starts a rendering in its own scene.
+/// Starts a rendering of a new scene.
 fn start_render(context: *mut luxfer_context, samples: u32) -> (*mut luxfer_render, *mut luxfer_job) {
     let (render, scene) = (made(|out| unsafe { luxfer_render_create(context, out) }), scene(context));
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
@@ -94,7 +94,7 @@ impl Objects {
     }
 }
 
-/// Traces `count` rays up from the middle of the room; returns the distance of the first hit.
+/// Traces `count` equal vertical rays from the middle height of the room; returns the distance to the ceiling.
 fn trace(scene: *mut luxfer_scene, count: usize) -> f32 {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; count];
@@ -115,7 +115,7 @@ fn requirements(scene: *mut luxfer_scene) {
     assert_eq!(unsafe { luxfer_scene_get_requirements(scene, 0.1, &mut found, size_of_val(&found)) }, LUXFER_OK);
 }
 
-/// Every quick call that works in parallel and needs no long preparation, by name.
+/// Every quick call that works in parallel and needs no long preparation, with its name.
 const CALLS: [(&str, fn(&Objects)); 9] = [
     ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
     ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
@@ -176,7 +176,7 @@ fn quick_calls_never_wait_for_a_job() {
 fn a_quick_call_never_waits_for_another() {
     let context = context(1);
     let objects = Objects::new(context);
-    // A warp of many pixels takes a while.
+    // Start a warp to many pixels, which takes a while, in another thread.
     let (image, of) = (objects.image as usize, context as usize);
     let other = std::thread::spawn(move || {
         let enlarge = [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1.0];
@@ -217,7 +217,7 @@ fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
         endless.end();
         late
     });
-    // Other programs may occupy the processors for a while.
+    // Only the quickest answer counts, because other programs may occupy the processors for a while.
     let quickest = quickest.min().unwrap();
     assert!(quickest <= Duration::from_millis(100), "{quickest:?}");
     unsafe {
@@ -237,7 +237,7 @@ fn a_job_that_waits_for_another_is_cancelled_at_once() {
         let clock = Instant::now();
         assert_eq!(luxfer_job_wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
         assert!(clock.elapsed() < Duration::from_millis(500), "{:?}", clock.elapsed());
-        // The object accepts the next job, which runs when the first one has ended.
+        // The renderer accepts the next job, which waits until the endless job has ended.
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let next = made(|out| luxfer_render_start(render, null(), out));
         endless.end();

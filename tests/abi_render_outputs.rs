@@ -1,4 +1,4 @@
-//! Contract of the layers of a rendering, of its OpenEXR file, and of illuminance at the C boundary.
+//! Contract of the outputs of rendering at the C boundary: layers, their OpenEXR file, previews, and illuminance.
 
 mod host;
 
@@ -64,7 +64,8 @@ fn layers_are_found_read_and_written() {
     }
 }
 
-/// Refuses wrong calls with a message that says where the error is, and a label that no object has at the end of the job.
+/// Checks that wrong expressions are refused with a message that says where the error is, and that an expression with
+/// an unknown object label ends the job with an error.
 fn refuse_layers(context: *mut luxfer_context, render: *mut luxfer_render, params: &luxfer_render_params) {
     let add = |name: &CStr, expression: &CStr| unsafe {
         luxfer_render_add_expression(render, name.as_ptr(), expression.as_ptr())
@@ -88,7 +89,7 @@ fn refuse_layers(context: *mut luxfer_context, render: *mut luxfer_render, param
     }
 }
 
-/// The names of the layers, each of which is found under its name.
+/// Reads the names of the layers, and checks that each layer is found under its name.
 fn layer_names(render: *mut luxfer_render, count: u32) -> Vec<String> {
     unsafe {
         let mut names = Vec::new();
@@ -106,7 +107,7 @@ fn layer_names(render: *mut luxfer_render, count: u32) -> Vec<String> {
 /// Compares the pixels of the layers with the image.
 fn compare_layers(render: *mut luxfer_render) {
     unsafe {
-        // The room is closed and its lamp is the only light, so this layer equals the image.
+        // The room is closed and its lamp is the only light, so the layer of the lamp's light equals the image.
         let beauty = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out)));
         let by_lamp = pixels(made(|out| luxfer_render_get_layer(render, 1, out)));
         assert!(beauty.1.iter().zip(&by_lamp.1).all(|(a, b)| (a - b).abs() <= 1e-5 * a));
@@ -229,7 +230,7 @@ fn previews_are_asked_for() {
         assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
         assert_eq!(count, 1, "only what was asked for");
 
-        // In a closed room of albedo up to 0.84, little light is left after some tens of bounces.
+        // In a closed room with albedos up to 0.84, little light is left after a few tens of bounces.
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
         assert_eq!(luxfer_scene_get_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
@@ -278,7 +279,8 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
             let grid = luxfer_illuminance_grid { normal: [0.0, up, 0.0], ..grid };
             assert_eq!(finish(made(|out| luxfer_illuminance_start_grid(stage, &grid, null(), out))), LUXFER_OK);
             let lux = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_LUX, out))).1;
-            // The rows at the horizon are interpolated; the cosine is small there.
+            // Between the two rows at the horizon, radiance is interpolated; the small cosine there keeps the error
+            // small.
             let expected = luminance * std::f64::consts::PI;
             assert!((mean(&lux) / expected - 1.0).abs() < 0.02, "{} lx, expected {expected}", mean(&lux));
         }

@@ -1,4 +1,4 @@
-//! Parameters for loading the file of a scene, and the warnings about a file.
+//! Contract of loading scene files at the C boundary: settings, and warnings about the file.
 
 mod host;
 
@@ -8,7 +8,8 @@ use std::ffi::{CStr, CString, c_char};
 use std::path::PathBuf;
 use std::ptr::{null, null_mut};
 
-/// A triangle that is `height` high, in a buffer beside the file, with a clear coat.
+/// A glTF file with one triangle, `height` units high, whose material has a clear coat; and the content of its buffer,
+/// which the file expects at `uri`.
 fn gltf(height: f32, uri: &str) -> (String, Vec<u8>) {
     let numbers = [0.0, 0.0, 0.0, height, 0.0, 0.0, 0.0, height, 0.0];
     let bytes = numbers.iter().flat_map(|v: &f32| v.to_le_bytes()).collect();
@@ -22,7 +23,7 @@ fn gltf(height: f32, uri: &str) -> (String, Vec<u8>) {
     (file, bytes)
 }
 
-/// A temporary folder with such a file in a subfolder and the buffer at the path that the file states.
+/// A temporary folder with the file of `gltf` in a subfolder, and its buffer at the path that the file states.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -57,7 +58,7 @@ fn params() -> luxfer_scene_load_params {
     params
 }
 
-/// Code, severity, message and advice of each warning of a scene.
+/// Code and severity of each warning of a scene, and its message and advice as one text.
 fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)> {
     let list = made(|out| unsafe { luxfer_get_warnings(scene.cast(), out) });
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! Reading scenes back through the C functions, and tracing rays.
+//! Contract of scenes at the C boundary: reading back meshes, materials and textures, and tracing rays.
 
 mod host;
 
@@ -106,11 +106,11 @@ fn rays_hit_what_they_should_after_every_change() {
         assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, hits.as_mut_ptr()), LUXFER_OK);
         assert_eq!(hits.map(|h| h.mesh), [1, LUXFER_NONE, LUXFER_NONE, LUXFER_NONE, 0]);
         assert_eq!(hits.map(|h| h.t), [0.95, f32::INFINITY, f32::INFINITY, f32::INFINITY, 1.0]);
-        // The hit at (0.6, 0.7) of the lamp is in its second triangle, whose corners are 0, 2 and 3.
+        // The ray hits the lamp at (0.6, 0.7) of its square: in the second triangle, whose corners are 0, 2 and 3.
         assert_eq!(hits[0].triangle, 1);
         assert!((hits[0].u - 0.6).abs() < 1e-5 && (hits[0].v - 0.1).abs() < 1e-5, "{} {}", hits[0].u, hits[0].v);
 
-        // After the scene changes, a quad covers the lamp.
+        // Change the scene: add a triangle that covers the lamp.
         let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
         let mut mesh: luxfer_mesh_params = zeroed();
         assert_eq!(luxfer_init(LUXFER_STRUCT_MESH_PARAMS, (&raw mut mesh).cast(), size_of_val(&mesh)), LUXFER_OK);
@@ -206,7 +206,8 @@ fn materials_are_replaced_and_keep_their_textures() {
     }
 }
 
-/// Replaces material 0. All values are returned as they were set; a refused call changes nothing.
+/// Replaces material 0, and checks that all values are read back as they were set and that a refused call changes
+/// none.
 fn replace_material(scene: *mut luxfer_scene) {
     unsafe {
         let mut given: luxfer_material_params = zeroed();

@@ -1,5 +1,5 @@
-//! Contract of stylisation at the C boundary: inputs in any order and of any size, pictures while it runs, updates,
-//! partial masks, and errors that name their cause.
+//! Contract of stylisation at the C boundary: inputs in any order and of any size, pictures that are read while the
+//! job runs, updates of the artwork, partly painted exemplars, and errors that name their cause.
 
 #![cfg(feature = "stylize")]
 
@@ -10,7 +10,7 @@ use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-/// An image of `channels` channels, filled from a function.
+/// Creates an image whose channel c of pixel (x, y) is `value(x, y, c)`.
 fn drawn(
     context: *mut luxfer_context,
     (width, height, channels): (u32, u32, u32),
@@ -34,7 +34,7 @@ fn pixels(image: *mut luxfer_image) -> (u32, u32, Vec<f32>) {
     }
 }
 
-/// A guide that shows a lit disc.
+/// A guide that shows a lit disc with its centre at x = `cx`.
 fn guide(context: *mut luxfer_context, width: u32, height: u32, cx: f32) -> *mut luxfer_image {
     drawn(context, (width, height, 3), |x, y, c| {
         let (dx, dy) = ((x as f32 - cx) / 14.0, (y as f32 - 20.0) / 14.0);
@@ -76,7 +76,8 @@ fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_s
     }
 }
 
-/// A stylisation of the moved disc, ready to start; its images are released.
+/// A stylisation whose inputs are set and released: in the target, the disc of the exemplar has moved to another
+/// place.
 fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
     let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });
     let images = [artwork(context, 60, 44), guide(context, 60, 44, 30.0), guide(context, width, 50, 40.0)];
@@ -124,7 +125,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
 
-        // Read the rounds of the level and their passes, whose coverage rises.
+        // Read the rounds of the only level, and the passes of its first round, whose coverage rises.
         let (mut width, mut rounds) = (0, 0);
         assert_eq!(luxfer_stylize_get_level(stylize, 0, &mut width, null_mut(), &mut rounds), LUXFER_OK);
         // One round under the error budget and three rounds of polish, which have no passes.
@@ -144,7 +145,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round, size_of_val(&round)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
-        // Every pixel is copied from the artwork, and the sources state its place.
+        // Every pixel is copied from the artwork, and the image `sources` states from which place.
         let art = artwork(context, 60, 44);
         let (_, _, paint) = pixels(art);
         let images = [get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE), get(stylize, LUXFER_STYLIZE_IMAGE_SOURCES)];
@@ -155,7 +156,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert!(picture.chunks_exact(3).all(|p| palette.contains(&[0, 1, 2].map(|c| (p[c] * 1e4).round() as u32))));
         assert!(sources.chunks_exact(2).all(|s| s[0] > 0.0 && s[0] < 60.0 && s[1] > 0.0 && s[1] < 44.0));
 
-        // The preview preset makes half the size.
+        // The preview preset makes a picture of half the size.
         let mut preview = params();
         assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW, 104), LUXFER_OK);
         assert_eq!(luxfer_stylize_params_preset(&mut preview, 4, 104), LUXFER_INVALID_ARGUMENT);
@@ -171,7 +172,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
     }
 }
 
-/// Cancels as soon as a picture can be read.
+/// A progress callback that cancels the job as soon as a picture can be read.
 unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
     let mut image = null_mut();
     let status = unsafe { luxfer_stylize_get_image(user.cast(), LUXFER_STYLIZE_IMAGE_PICTURE, &mut image) };
@@ -183,7 +184,7 @@ unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
 fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
     let context = context(1);
     let stylize = ready(context, 2000);
-    // Four levels, with a hundred rounds on the finest: the cancel is answered in time.
+    // Four levels, with a hundred rounds on the finest, so that the cancel comes before the end.
     let params = luxfer_stylize_params { patch: 3, finest_iterations: 100, iterations: 1, ..params() };
     unsafe {
         let job = made(|out| luxfer_stylize_start(stylize, &params, out));
@@ -209,7 +210,7 @@ fn new_paint_is_followed_where_it_is() {
     let stylize = ready(context, 70);
     let art = artwork(context, 60, 44);
     let red = drawn(context, (60, 44, 3), |_, _, c| if c == 0 { 1.0 } else { 0.0 });
-    // The pixels whose paint changes: the disc of the exemplar.
+    // The paint changes at the pixels of the exemplar's disc.
     let changed = drawn(context, (60, 44, 1), |x, y, _| f32::from((x as f32 - 30.0).hypot(y as f32 - 20.0) < 14.0));
     let update = |artwork, changed| {
         let job = made(|out| unsafe { luxfer_stylize_update(stylize, artwork, changed, out) });
@@ -304,8 +305,8 @@ fn handles_and_settings_that_are_wrong_are_refused() {
     }
 }
 
-/// Each wrong argument of a guide is refused: `two` has another number of channels than `three`, and `foreign` belongs
-/// to another context.
+/// Checks that each wrong argument of a guide is refused. `two` and `three` are images with two and three channels,
+/// and `foreign` belongs to another context.
 fn refuse_guides(
     stylize: *mut luxfer_stylize,
     three: *mut luxfer_image,
@@ -328,7 +329,7 @@ fn refuse_guides(
     }
 }
 
-/// Each setting out of range is refused, with a message.
+/// Checks that each setting that is out of range is refused with a message.
 fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
     let (good, mut job) = (params(), null_mut());
     unsafe {
@@ -358,8 +359,9 @@ fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
     }
 }
 
-/// Stylises a disc in `size` after one in `from`, with `channels` channels of guides; checks the properties of any
-/// result.
+/// Stylises a target of size `size` after an exemplar of size `from`, with `channels` channels of guides in which
+/// `broken`, if given, replaces every seventh value. Checks the properties that every result must have; returns the
+/// job's status.
 fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broken: Option<f32>) -> luxfer_status {
     let context = context(1);
     let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });

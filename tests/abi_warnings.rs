@@ -1,5 +1,5 @@
-//! Contract of warnings at the C boundary: a list that does not change, texts in the caller's memory, and errors for
-//! wrong arguments.
+//! Contract of warnings at the C boundary: a list of warnings never changes, its texts live as long as the list, and
+//! wrong arguments are errors.
 
 mod host;
 
@@ -8,7 +8,7 @@ use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::null_mut;
 
-/// A segmentation that must warn: a uniform photo with strokes of both classes.
+/// A segmentation that must warn, because its features are noise that does not separate the strokes.
 fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
     let (width, height) = (64u32, 48u32);
     let mut pixels: Vec<f32> = (0..width * height * 3).map(|i| ((i * 7919) % 101) as f32).collect();
@@ -53,7 +53,7 @@ fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
     (0..count).map(read).collect()
 }
 
-/// A text of a list that is alive.
+/// Views a text of a list of warnings, which must still be alive.
 fn text(text: *const c_char) -> &'static str {
     unsafe { CStr::from_ptr(text) }.to_str().unwrap()
 }
@@ -86,7 +86,7 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
     assert_eq!(missed.has_place, 1);
     assert!(missed.place[0] > 0.0 && missed.place[0] < 64.0 && missed.place[1] > 0.0 && missed.place[1] < 48.0);
 
-    // With a mask of the plane, the segmentation takes lights as its subject.
+    // With a mask of the plane as its region, the segmentation looks for lights, and its warnings say so.
     let mut ones = vec![1.0f32; 64 * 48];
     let within = luxfer_image_view { channels: 1, byte_size: 64 * 48 * 4, ..view(64, 48, &mut ones) };
     let within = made(|out| unsafe { luxfer_image_create(context, &within, out) });

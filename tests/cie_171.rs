@@ -1,6 +1,7 @@
-//! The analytic cases of CIE 171:2006, "Test cases to assess the accuracy of lighting computer programs" (section 5),
-//! against their closed forms. Each test names its case. The geometry and the numbers are our own, because some tables
-//! of the report are known to be wrong (Ashdown's errata); phenomena and measuring points follow the report.
+//! Compares illuminance with the closed forms of the analytic cases of CIE 171:2006, "Test cases to assess the
+//! accuracy of lighting computer programs" (section 5). Each test names its case. The phenomena and the surfaces
+//! measured follow the report; the geometry and the numbers are our own, because some of its tables are known to be
+//! wrong (Ashdown's errata).
 //!
 //! Covered: 5.2, 5.3, 5.4, 5.6, 5.7, 5.8, 5.9, 5.11, 5.13 and 5.14. Not covered: 5.5, 5.10 and 5.12, which ask for the
 //! angular transmittance of 6 mm of clear glass as a polynomial of measurements (our panes are thin and follow
@@ -18,7 +19,7 @@ use std::sync::Arc;
 type Vec3 = glam::Vec3;
 type DVec3 = glam::DVec3;
 
-/// A parallelogram whose front faces along `across × down`.
+/// A parallelogram whose front side faces in the direction `across × down`.
 fn quad(origin: Vec3, across: Vec3, down: Vec3, material: usize) -> Mesh {
     Mesh {
         positions: vec![origin, origin + across, origin + across + down, origin + down],
@@ -36,7 +37,7 @@ fn point_light(position: Vec3, candela: f32) -> PunctualLight {
     PunctualLight::Point { position, intensity: Vec3::splat(candela) }
 }
 
-/// Measures the illuminance on a grid of points; a grid of one point is the middle of the place.
+/// Computes the illuminance on a grid of `columns` × `rows` points, which are the centres of the cells of `place`.
 fn measure(scene: Scene, place: &Place, columns: usize, rows: usize, samples: u32) -> Output {
     let monitor = Monitor::default();
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
@@ -58,7 +59,8 @@ fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, shar
             let (u, v) = ((x as f32 + 0.5) / columns as f32, (y as f32 + 0.5) / rows as f32);
             let truth = expected((*origin + *across * u + *down * v).as_dvec3());
             let (lux, error) = (f64::from(output.lux.pixel(x, y)[0]), f64::from(output.error.pixel(x, y)[0]));
-            // Student's t with 15 degrees of freedom at which one of a hundred points fails with probability 1/1000.
+            // 6.4 is the quantile of Student's t (15 degrees of freedom) at which any of 100 points fails with
+            // probability 1/1000.
             assert!(
                 (lux - truth).abs() < 6.4 * error + 2e-5 * truth,
                 "point {x}, {y}: {lux} ± {error}, expected {truth}"
@@ -68,8 +70,9 @@ fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, shar
     }
 }
 
-/// Configuration factor of a polygon that lies above the horizon: the share of the hemisphere's irradiance that comes
-/// from it, by Lambert's formula (a sum over the edges of the angle that each subtends).
+/// Configuration factor of a polygon above the horizon of a point: the irradiance that it causes there, divided by
+/// that of a full hemisphere of the same radiance. Lambert's formula: sum the angle that each edge subtends, times the
+/// cosine between `normal` and the normal of the plane through the edge and the point.
 fn configuration(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     let edge = |i: usize| {
         let (a, b) = ((polygon[i] - point).normalize(), (polygon[(i + 1) % polygon.len()] - point).normalize());
@@ -78,12 +81,12 @@ fn configuration(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     ((0..polygon.len()).map(edge).sum::<f64>() / (2.0 * PI)).abs()
 }
 
-/// A horizontal rectangle from `low` to `high`, at a height.
+/// A horizontal rectangle with corners `low` and `high` (x and z) at height `y`.
 fn horizontal(low: [f64; 2], high: [f64; 2], y: f64) -> [DVec3; 4] {
     [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]].map(|[x, z]| DVec3::new(x, y, z))
 }
 
-/// 5.2, point light sources: the inverse square law and the cosine, on the floor of a black room and on a wall.
+/// 5.2, point light sources: the inverse square law and the cosine law, on the floor and a wall of a black room.
 #[test]
 fn case_5_2_point_light_sources() {
     let lamp = DVec3::new(2.0, 2.8, 1.5);
@@ -105,7 +108,7 @@ fn case_5_2_point_light_sources() {
     }
 }
 
-/// 5.3, area light sources: a matt rectangle overhead, on the floor and on walls.
+/// 5.3, area light sources: the light of a matt rectangle overhead, on the floor and on walls.
 #[test]
 fn case_5_3_area_light_sources() {
     let corners = horizontal([1.5, 1.5], [2.5, 3.0], 3.0);
@@ -161,8 +164,8 @@ fn case_5_6_light_reflection_over_diffuse_surfaces() {
     }
 }
 
-/// 5.7, diffuse reflection with an internal obstruction: a black screen hides a part of the square, which follows from
-/// its corners.
+/// 5.7, diffuse reflection with an internal obstruction: a black screen hides a part of the square. The hidden part
+/// follows from the corners of the screen.
 #[test]
 fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     let (albedo, sun) = (0.8, 5000.0);
@@ -178,7 +181,8 @@ fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     };
     let place = grid(Vec3::new(1.0, 2.0, 0.0), Vec3::X * 3.0, Vec3::Z * 2.0, -Vec3::Y);
     let expected = |p: DVec3| {
-        // The ray over the screen's edge meets the square at this height; the part below it is hidden.
+        // The line from the point over the screen's upper edge meets the square at this x; the screen hides the part
+        // between there and the screen.
         let edge = (screen - high * (p.x - screen) / (p.y - high)).max(from);
         let seen = |low: f64, high: f64| {
             if high <= low { 0.0 } else { configuration(p, -DVec3::Y, &horizontal([low, 0.0], [high, 2.0], 0.0)) }
@@ -188,8 +192,9 @@ fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     compare(&measure(scene, &place, 4, 3, 1 << 14), &place, expected, 0.04);
 }
 
-/// 5.8, internal reflected component: in a closed room of one reflectance all walls together absorb the flux of the
-/// lamp, `E = Φ / (S (1 - ρ))`; a lamp in the centre of a cube gives all walls this mean.
+/// 5.8, internal reflected component: in a closed room with walls of reflectance ρ and total area S, the walls absorb
+/// all the flux Φ of the lamp, so their mean illuminance is `E = Φ / (S (1 - ρ))`. With the lamp in the centre of a
+/// cube, each wall has this mean.
 #[test]
 fn case_5_8_internal_reflected_component() {
     for albedo in [0.1, 0.5, 0.8, 0.95] {
@@ -209,15 +214,16 @@ fn case_5_8_internal_reflected_component() {
         let place = grid(Vec3::ZERO, Vec3::X * 4.0, Vec3::Z * 4.0, Vec3::Y);
         let output = measure(scene, &place, 24, 24, 256);
         let expected = 4.0 * PI * 100.0 / (96.0 * (1.0 - f64::from(albedo)));
-        // The error of the grid itself: direct light is not uniform, and 24 cells integrate it to 1e-3.
+        // Allow for the error of the grid: direct light is not uniform, and a grid of 24 × 24 points gives its mean to
+        // 1e-3.
         let off = (output.mean - expected).abs();
         assert!(off < 4.0 * output.mean_error + 1e-3 * expected, "{albedo}: {} ± {}", output.mean, output.mean_error);
         assert!(output.mean_error < 0.005 * expected, "{albedo}: {}", output.mean_error);
     }
 }
 
-/// 5.9, sky component under an unglazed roof opening, of a uniform sky: `π L` times the opening's configuration
-/// factor, on the floor and on walls.
+/// 5.9, sky component under an unglazed roof opening: the illuminance from a uniform sky of luminance L, on the floor
+/// and on walls, is `π L` times the configuration factor of the opening.
 #[test]
 fn case_5_9_sky_component_for_a_roof_opening() {
     let (low, high) = ([1.0f32, 1.5], [3.0f32, 2.5]);
@@ -225,7 +231,7 @@ fn case_5_9_sky_component_for_a_roof_opening() {
         quad(Vec3::new(x[0], 3.0, z[0]), Vec3::X * (x[1] - x[0]), Vec3::Z * (z[1] - z[0]), 0)
     };
     let scene = || {
-        // A black room about an opening in its roof, which overlaps the walls.
+        // A black room with an opening in its roof; the roof extends beyond the walls.
         let mut meshes = vec![
             roof([-1.0, low[0]], [-1.0, 5.0]),
             roof([high[0], 5.0], [-1.0, 5.0]),
@@ -254,7 +260,7 @@ fn case_5_9_sky_component_for_a_roof_opening() {
     }
 }
 
-/// A black room behind a façade, x = 0, with a window: y from 1 to 2, z from -1 to 1.
+/// A black room behind a façade at x = 0, whose window is open from y = 1 to 2 and from z = -1 to 1.
 fn behind_a_facade() -> Vec<Mesh> {
     let wall = |y: [f32; 2], z: [f32; 2]| {
         quad(Vec3::new(0.0, y[0], z[0]), Vec3::Y * (y[1] - y[0]), Vec3::Z * (z[1] - z[0]), 0)
@@ -273,7 +279,7 @@ fn behind_a_facade() -> Vec<Mesh> {
     ]
 }
 
-/// The part of the window between two heights.
+/// The part of the window between the heights `low` and `high`.
 fn window([low, high]: [f64; 2]) -> [DVec3; 4] {
     [[low, -1.0], [low, 1.0], [high, 1.0], [high, -1.0]].map(|[y, z]| DVec3::new(0.0, y, z))
 }
@@ -299,9 +305,10 @@ fn case_5_11_sky_and_ground_through_a_facade_opening() {
     }
 }
 
-/// The floor behind the façade under a uniform sky, with an endless mask outside that hides a part of it. The line
-/// over the edge of the mask, which is `distance` before the façade and `height` high, divides the window; the mask
-/// fills the part `above` this line, or the part below.
+/// Checks the illuminance of the floor behind the façade under a uniform sky, when a mask outside, practically endless
+/// in z, hides a part of the sky. The edge of the mask is `distance` in front of the façade at the given `height`. The
+/// line from a floor point over this edge divides the window: through the part `above` the line, or otherwise through
+/// the part below, the point sees the mask.
 fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
     let (sky, luminance) = (3000.0, 400.0);
     let scene = Scene {
@@ -321,8 +328,8 @@ fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
     compare(&measure(scene, &place, 4, 3, 1 << 16), &place, expected, 0.04);
 }
 
-/// 5.13, sky and external reflected component behind a façade opening with a continuous horizontal mask: an overhang
-/// at the upper edge of the window. The case states the luminance of the overhang.
+/// 5.13, sky component and external reflected component behind a façade opening with a continuous horizontal mask: an
+/// overhang at the upper edge of the window, whose luminance is given.
 #[test]
 fn case_5_13_facade_opening_with_a_horizontal_mask() {
     let overhang = quad(Vec3::new(-1.0, 2.0, -60.0), Vec3::X, Vec3::Z * 120.0, 1);

@@ -1,16 +1,18 @@
 #!/bin/sh
-# Another compiler's opinion of what users compile: the header with every warning that clang has, as C and as C++; the wrapper with
-# every one that says something about it, in both of its modes; examples, harnesses and the guide's programs as strict users compile them.
+# Checks everything that users compile with clang: the header with all of clang's warnings, as C and as C++; the
+# wrapper with all warnings that apply to it, with and without exceptions; the examples, the harnesses and the guide's
+# programs with strict warnings.
 #
-#   clang.sh SOURCE      exits with 77 where there is no clang
+#   clang.sh SOURCE      exits with 77 if clang is not installed
 set -eu
 cd "$1"
 command -v clang >/dev/null && command -v clang++ >/dev/null || exit 77
 strict="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
-# C++98 is not meant; classes may have gaps, and virtual functions inline ones.
+# Except warnings about compatibility with C++98, padding in classes, and classes whose virtual functions are all
+# inline.
 every="-Weverything -Werror -Wno-c++98-compat -Wno-c++98-compat-pedantic -Wno-padded -Wno-weak-vtables"
 
-# The includes before the code: what is looked at is the header, not the system's.
+# Include the header from standard input: clang then warns about this header, but not about the system's headers.
 for standard in c99 c11 c17; do
   echo '#include "include/luxfer.h"' | clang -std=$standard -Weverything -Werror -fsyntax-only -x c - -I.
 done

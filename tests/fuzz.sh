@@ -1,15 +1,17 @@
 #!/bin/sh
-# Coverage-guided fuzzing of every reader and of the C ABI as a whole, with AddressSanitizer, the assertions of debugging, checks of
-# overflow, and limits on memory and time. By hand: it needs a nightly toolchain, cargo-fuzz (cargo install cargo-fuzz) and a C++
-# compiler; the seeds come from the library itself (cargo build --release, make setup).
+# Coverage-guided fuzzing of every file reader and of the C ABI, with AddressSanitizer, debug assertions, overflow
+# checks, and limits on memory and time. Run it by hand: it needs a nightly toolchain, cargo-fuzz (cargo install
+# cargo-fuzz) and a C++ compiler. The library itself writes the seed files (cargo build --release, make setup).
 #
-#   tests/fuzz.sh [SECONDS] [TARGET...]     default 600, and all targets in turn
+#   tests/fuzz.sh [SECONDS] [TARGET...]     runs each target for SECONDS (default 600); default: all targets
 #
-# image: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR, and what cameras write into them; exr; gltf: GLB and glTF; ies, ldt:
-# luminaires; onnx: networks, which are run; lpe: light path expressions, rendered by; strokes; part: parts of a rendering, merged;
-# calls: sequences of calls to all functions of the header.
+# The targets: image (PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR, and the metadata of cameras in them), exr, gltf
+# (GLB and glTF), ies and ldt (luminaires), onnx (networks, which are also run), lpe (light path expressions, which are
+# also rendered), strokes, part (parts of a rendering, which are merged), calls (sequences of calls to all functions of
+# the header).
 #
-# Corpora grow in target/fuzz/corpus from one run to the next. What fails is in target/fuzz/artifacts; to see it again, and to cut it down:
+# Corpora grow in target/fuzz/corpus from run to run. Inputs that fail are in target/fuzz/artifacts. To run one again,
+# and to minimise it:
 #
 #   target/fuzz/x86_64-unknown-linux-gnu/release/TARGET FILE
 #   target/fuzz/x86_64-unknown-linux-gnu/release/TARGET -minimize_crash=1 -max_total_time=60 FILE
@@ -23,22 +25,24 @@ targets="${*:-image exr gltf ies ldt onnx lpe strokes part calls}"
 cargo +nightly fuzz build --fuzz-dir fuzz --target-dir "$build"
 target/peers/python/bin/python fuzz/seeds.py "$build/seeds"
 
-# Files that calls write are written here.
+# Calls that write files write them into this folder.
 mkdir -p "$build/work" "$build/artifacts"
 cd "$build/work"
 failed=
 for target in $targets; do
-  # Objects are limited to 64 MiB (fuzz/src/lib.rs). A single allocation may be twice that, all of them together four times: the
-  # library's, and what the sanitizer adds. A network may take 1 GiB for its values (src/network/run.rs), and as much for a node,
-  # which it takes seconds to fill.
+  # Memory limits in MiB. Objects are limited to 64 MiB (fuzz/src/lib.rs); a single allocation may have twice as much,
+  # and the whole process more, because of the sanitizer. A network may take 1 GiB for its values (src/network/run.rs)
+  # and as much for a node, and filling that takes seconds.
   rss=768 single=128 time=10
-  # Before an image is decoded the library looks whether there is room for what the codec may take; it does not touch what it gets.
+  # Before it decodes an image, the library tests by an allocation, which it does not touch, whether the codec has
+  # enough memory.
   case "$target" in image | exr | part | gltf) single=1024 ;; esac
   [ "$target" != onnx ] || { rss=3072; single=1024; time=30; }
-  # An expression may be looked into until it has 4096 states: 0.2 s without the sanitizer, but many times that with it.
+  # An expression may grow to 4096 states, which takes 0.2 s without the sanitizer and many times as long with it.
   [ "$target" != lpe ] || time=30
   limits=
-  # A hundred calls, which may ask for pictures of any size: such allocations fail, as on a machine without memory.
+  # The hundred calls may request images of any size: too large an allocation fails, as on a machine without free
+  # memory.
   [ "$target" != calls ] || { time=60; limits=":allocator_may_return_null=1:max_allocation_size_mb=$single"; }
   mkdir -p "$build/corpus/$target"
   echo "== $target"

@@ -1,8 +1,8 @@
-//! Results do not depend on the unit of length, the place and the orientation of a scene, nor on the exposure of the
-//! photo or on mirroring and turning it.
+//! Tests that results depend neither on the unit of length, the position and the orientation of a scene, nor on the
+//! exposure of a photo, nor on whether it is mirrored or turned.
 //!
-//! Powers of two scale floating-point numbers without rounding, so results are equal to the bit where the formulas
-//! contain no absolute length.
+//! The tests scale by powers of two, which floating-point numbers represent without rounding. So results agree to the
+//! bit if no formula contains an absolute length.
 
 use glam::{DVec3, Mat3, Vec3, vec3};
 use luxfer::demo::{self, photo};
@@ -54,7 +54,7 @@ fn room() -> (Scene, Camera) {
     (scene, Camera::look_at(vec3(2.0, 1.25, 4.75), vec3(2.0, 1.0, 0.0), 1.0))
 }
 
-/// The scene and its camera with every point turned and moved by `to`, in a unit of length of `unit` metres.
+/// Rotates the scene and its camera by `turn`, scales them by `unit` and moves them by `to`.
 fn mapped((scene, camera): &(Scene, Camera), turn: Mat3, unit: f32, to: Vec3) -> (Scene, Camera) {
     let point = |p: Vec3| turn * p * unit + to;
     let mut scene = scene.clone();
@@ -64,7 +64,7 @@ fn mapped((scene, camera): &(Scene, Camera), turn: Mat3, unit: f32, to: Vec3) ->
     }
     for light in &mut scene.lights {
         if let PunctualLight::Point { position, intensity } = light {
-            // The intensity in candela is luminance times area.
+            // Intensity (luminance times area) scales as the square of length.
             (*position, *intensity) = (point(*position), *intensity * unit * unit);
         }
     }
@@ -84,15 +84,15 @@ fn picture((scene, camera): &(Scene, Camera), samples: u32) -> Film {
     pool.run(|| render::run(&world, camera, &params, monitor.job(), &mut |_| ()).unwrap())
 }
 
-/// Number of paths for comparisons in which the paths are identical.
+/// Number of paths for comparisons in which both runs trace identical paths, so that noise does not matter.
 const IDENTICAL_PATHS: u32 = 1 << 12;
 
-/// The material of the ceiling with its lamps.
+/// Index of the ceiling's material, whose emission texture shows the lamps.
 fn emitter(scene: &Scene) -> usize {
     scene.materials.iter().position(|m| m.emission_texture.is_some()).unwrap()
 }
 
-/// Solves for the factor of the lamps at which the ceiling has 40 cd/m².
+/// Solves for the factor by which the lamps' emission must be multiplied, for the ceiling to have 40 cd/m².
 fn solution((scene, _): &(Scene, Camera), paths: u32) -> Solution {
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
     let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
@@ -119,7 +119,7 @@ fn the_unit_of_length_changes_nothing() {
 fn the_place_changes_nothing() {
     let here = room();
     let (film, solved) = (picture(&here, 8), solution(&here, IDENTICAL_PATHS));
-    // At these distances coordinates are multiples of 1/16 m, as are all lengths of the room.
+    // All lengths of the room are multiples of 1/16 m, so f32 represents its coordinates exactly even this far away.
     for place in [vec3(1e6, 0.0, 0.0), vec3(-1e6, 2e5, 1e6)] {
         let moved = mapped(&here, Mat3::IDENTITY, 1.0, place);
         assert_eq!(picture(&moved, 8).beauty, film.beauty, "{place}");
@@ -127,7 +127,7 @@ fn the_place_changes_nothing() {
     }
 }
 
-/// The paths differ, so results agree within their confidence intervals.
+/// In a rotated scene the paths differ, so results agree only within their confidence intervals.
 #[test]
 fn the_orientation_changes_nothing_but_the_paths() {
     let upright = room();
@@ -137,8 +137,8 @@ fn the_orientation_changes_nothing_but_the_paths() {
         let again = solution(&turned, 1 << 16);
         let joint = (solved.half_width / solved.scale + again.half_width / again.scale) * 1.5;
         assert!((again.scale / solved.scale - 1.0).abs().cmple(joint).all(), "{solved:?} {again:?}");
-        // Pixels share samples, so the limit is 4.5 standard errors of the mean, with the errors of pixels taken as
-        // independent.
+        // The standard error of the mean takes the pixels' errors as independent; but pixels share samples, so allow
+        // 4.5 standard errors.
         let other = picture(&turned, 64);
         let mean = |film: &Film| film.beauty.data.iter().map(|v| f64::from(*v)).sum::<f64>();
         let variance = |film: &Film| film.variance.data.iter().map(|v| f64::from(*v)).sum::<f64>();
@@ -163,7 +163,7 @@ fn the_strength_of_the_lamps_changes_nothing_but_the_answer() {
     }
 }
 
-/// Results of the stages for the photo of the demonstration, with default settings.
+/// Results of the stages for a photo: room axes, and masks of the plane and of its lights.
 struct Reading {
     /// Directions of the room's axes in camera space.
     axes: [DVec3; 3],
@@ -189,7 +189,8 @@ fn read_with(photo: Image, strokes: StrokeSet, params: Params) -> Reading {
     }
 }
 
-/// The largest angle in degrees between an axis of one reading and the nearest axis of the other, which `back` maps.
+/// The largest angle in degrees between an axis of `a` and the nearest axis of `b`; `back` maps the axes of `b` to the
+/// camera space of `a`.
 fn angle(a: &Reading, b: &Reading, back: impl Fn(DVec3) -> DVec3) -> f64 {
     let nearest = |axis: &DVec3| b.axes.iter().map(|other| back(*other).dot(*axis).abs().min(1.0)).fold(0.0, f64::max);
     a.axes.iter().map(|axis| nearest(axis).acos().to_degrees()).fold(0.0, f64::max)
@@ -212,7 +213,7 @@ fn photograph() -> (Image, StrokeSet) {
     (picture, demo::strokes(&room, size.width, size.height).unwrap())
 }
 
-/// The image whose pixel (x, y) is the pixel `from(x, y)` of `image`, with its strokes.
+/// Rearranges an image and its strokes: pixel (x, y) of the result is pixel `from(x, y)` of `image`.
 fn rearranged(
     (image, strokes): &(Image, StrokeSet),
     [width, height]: [usize; 2],
@@ -236,7 +237,7 @@ fn rearranged(
     (picture.unwrap(), StrokeSet { plane: moved(&strokes.plane), lights: moved(&strokes.lights) })
 }
 
-/// Difference of two readings: angle of the axes, and intersection over union of the masks.
+/// Difference of two readings: the largest angle between their axes, and the intersection over union of their masks.
 struct Difference {
     degrees: f64,
     plane: f64,
@@ -244,8 +245,8 @@ struct Difference {
 }
 
 impl Reading {
-    /// Difference to a reading of the rearranged photo, whose pixel (x, y) is at `place(x, y)`; `turn` maps its axes
-    /// back.
+    /// Compares this reading with `other`, the reading of the rearranged photo. Pixel (x, y) of this photo is at
+    /// `place(x, y)` in the rearranged photo, and `turn` maps the rearranged photo's axes back.
     fn differs(
         &self,
         other: &Self,
@@ -267,8 +268,8 @@ impl Reading {
     }
 }
 
-/// Line detection uses relative brightness. CIELAB is nonlinear with a linear dark end, so masks of underexposed
-/// photos may differ at their edges.
+/// The axes do not change, because line detection uses relative brightness. The masks may change at their edges,
+/// because CIELAB is linear instead of a cube root for dark colours, which shifts the features of underexposed photos.
 #[test]
 fn the_exposure_changes_nothing() {
     let (photo, strokes) = photograph();
@@ -283,8 +284,8 @@ fn the_exposure_changes_nothing() {
     }
 }
 
-/// By colour alone, and with the depth and the normals of the room layout: of two boxes that fit about equally well,
-/// the mirrored photo must get the mirrored box.
+/// Segments by colour alone, and also with the depth and the normals of the room layout. If two boxes fit about
+/// equally well, the layout of the mirrored photo must be the mirror image of the same box.
 #[test]
 fn a_photo_may_lie_any_way_round() {
     let shot = photograph();

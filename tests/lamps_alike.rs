@@ -1,4 +1,5 @@
-//! A bare ceiling of equal round lamps: its few edges show a wrong camera, and the lamps correct it within the transfer.
+//! Tests that a transfer corrects the camera from lamps of equal shape: a bare ceiling has too few edges for a good
+//! camera estimate, but its lamps are all round and equal.
 
 use glam::{DMat3, DVec2, DVec3};
 use luxfer::exec::Pool;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 
 const SIZE: [usize; 2] = [640, 480];
 const LAMP_RADIUS: f64 = 0.06;
-/// Centres of the lamps on the plane at distance 1 above the camera: right and ahead.
+/// Centres of the lamps (right, ahead) on the ceiling plane, in units of its height above the camera.
 const LAMPS: [[f64; 2]; 8] =
     [[-0.5, 0.6], [0.1, 0.5], [0.45, 0.8], [-0.3, 1.0], [0.2, 1.2], [-0.6, 1.4], [0.6, 1.5], [-0.1, 1.7]];
 
@@ -30,10 +31,10 @@ fn on_ceiling(pixel: DVec2) -> DVec2 {
     DVec2::new(camera.axes.col(0).dot(ray), camera.axes.col(2).dot(ray)) / -camera.axes.col(1).dot(ray)
 }
 
-/// Distance along the ceiling at which a wall hides it.
+/// Distance ahead at which the ceiling ends at a wall.
 const WALL: f64 = 2.0;
 
-/// Bright lamps on a dim ceiling, and a wall below.
+/// Draws bright lamps on a dim ceiling, and the brighter wall where the ceiling ends.
 fn photo() -> Image {
     Image::from_fn(SIZE[0], SIZE[1], |x, y| {
         let at = on_ceiling(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
@@ -44,13 +45,14 @@ fn photo() -> Image {
     .unwrap()
 }
 
-/// Standard deviation in radians of axes that few edges show.
+/// Standard deviation in radians that an estimate from few edges states for its axes.
 const DOUBT: f64 = 0.15;
 
-/// Angle in radians by which the edges show the camera turned.
+/// Angle in radians by which the wrong estimate is turned from the true camera.
 const TURN: f64 = 0.5;
 
-/// The camera as a few edges show it: turned about its own axis across, and with doubt.
+/// The wrong camera that a few edges suggest: turned about its x axis, with a wrong focal length and large stated
+/// errors.
 fn wrong_view() -> View {
     let edge = |ax, ay, bx, by| Segment { a: DVec2::new(ax, ay), b: DVec2::new(bx, by) };
     let edges = [edge(40.0, 60.0, 150.0, 55.0), edge(400.0, 440.0, 520.0, 447.0)];
@@ -64,7 +66,7 @@ fn wrong_view() -> View {
     view
 }
 
-/// Strokes on two of the lamps, beside two, and on the wall.
+/// Light strokes on two of the lamps, plane strokes beside two others, and a negative plane stroke on the wall.
 fn strokes() -> StrokeSet {
     let to_photo = |[u, v]: [f64; 2]| {
         let camera = camera();
@@ -87,7 +89,7 @@ fn transfer() -> Transfer {
     transfer
 }
 
-/// The camera after the lights are found.
+/// Runs the transfer until the lights are found; returns the camera that it has then.
 fn found(transfer: &mut Transfer) -> Perspective {
     let monitor = Monitor::default();
     let run = || transfer.run(Stage::Features, Stage::Lights, monitor.job(), |_| {});
@@ -106,7 +108,7 @@ fn lamps_that_are_alike_correct_the_camera() {
     assert_eq!(right.focal_source, FocalSource::Lamps);
     assert_eq!(transfer.results.view_by_lines.as_ref().unwrap().perspective, wrong);
 
-    // Once more, from the strokes on: the same camera, whatever was found before.
+    // Run these stages again: they give the same camera, although they now start from the corrected one.
     assert_eq!(found(&mut transfer), right);
 }
 

@@ -1,5 +1,5 @@
-//! Rules of the source code: which module may use which, which files may contain `unsafe`, which words never occur,
-//! the length of files, and the origin of float constants.
+//! Checks rules of the source code: which module may use which, which files may contain `unsafe`, which macros are
+//! banned, how long files may be, and that float constants state their origin.
 
 #[path = "layering/circles.rs"]
 mod circles;
@@ -54,11 +54,11 @@ const ARROWS: &[(&str, &[&str])] = &[
             "photometry",
         ],
     ),
-    // Chooses settings of the pipelines.
+    // Chooses the settings of the pipelines.
     ("plan", &["error", "job", "scene", "render", "relight", "transfer", "stylize"]),
 ];
 
-/// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.
+/// Files outside `ffi` that may contain `unsafe`: SIMD kernels, chosen at run time, and the memory that they work on.
 const UNSAFE: &[&str] = &[
     "reserve.rs",
     "simd.rs",
@@ -76,10 +76,10 @@ const UNSAFE: &[&str] = &[
     "patch/kernel.rs",
 ];
 
-/// The only thread-local state: whether the thread is inside the library.
+/// The only allowed thread-local state, and its module: whether the thread is inside the library.
 const PER_THREAD: (&str, &str) = ("thread_local!", "quiet");
 
-/// Modules whose float constants all state their origin (docs/glossary.md, "Tags of constants").
+/// Modules in which every float constant must state its origin (docs/glossary.md, "Tags of constants").
 const TAGGED: &[&str] = &[
     "demo",
     "features",
@@ -98,7 +98,7 @@ const TAGGED: &[&str] = &[
     "stylize",
 ];
 
-/// Number of constants of these modules without a recorded origin. It may only fall.
+/// Maximum number of constants in these modules that have the tag `[origin not recorded]`. It may only be lowered.
 const UNRECORDED: usize = 98;
 
 /// Maximum number of lines of a file.
@@ -130,7 +130,7 @@ fn part(path: &Path) -> String {
     first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_string()
 }
 
-/// Whether a file is `tests.rs` or lies in a folder `tests`.
+/// Whether a file holds unit tests: it is named `tests.rs`, or lies in a folder `tests`.
 fn is_test(path: &Path) -> bool {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     path.strip_prefix(src).unwrap().components().any(|c| c.as_os_str().to_string_lossy().contains("tests"))
@@ -189,7 +189,7 @@ fn nothing_unfinished_nothing_printed_nothing_too_long() {
     }
 }
 
-/// The comment above a line; constants in between share it.
+/// The comment above a line, also if other constants stand in between: neighbouring constants share one comment.
 fn comment_above(lines: &[&str], at: usize) -> String {
     let is_constant = |l: &str| l.trim_start_matches("pub ").contains("const ") && !l.starts_with("//");
     let above = lines[..at].iter().rev().map(|l| l.trim()).skip_while(|l| is_constant(l));
@@ -227,7 +227,7 @@ fn files_of_a_module_do_not_use_each_other_in_circles() {
     let sources: Vec<(String, String)> = sources().into_iter().map(|(path, text)| (relative(path), text)).collect();
     let found = circles::circles(&sources);
     assert!(found.is_empty(), "modules that use each other in a circle: {found:?}");
-    // The check itself: two files that use each other are a circle, and a re-export is no use.
+    // Test the check itself: two files that use each other form a circle, and a re-export does not count as a use.
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
     let all = [
         file("a/mod.rs", "mod b; mod c; pub use b::B; use c::C; /* */"),

@@ -1,19 +1,21 @@
 #!/bin/sh
-# Miri over the C ABI's own `unsafe` code and its contract, the allocator, and the views and buffers: interpreted, with every
-# access to memory, every borrow and every leak checked. By hand: it needs a nightly toolchain with miri (rustup component add miri
-# --toolchain nightly), and some minutes.
+# Runs tests in Miri, which interprets the code and checks every memory access, borrow and leak: the `unsafe` code and
+# the contract of the C ABI, the allocator, and image views and buffers. Run it by hand: it needs a nightly toolchain
+# with miri (rustup component add miri --toolchain nightly) and some minutes.
 #
 #   tests/miri.sh
 #
-# Miri knows neither the register of the floating-point mode nor huge pages: those lines are left out for it.
+# Miri supports neither the floating-point mode register nor huge pages, so the library omits these lines under Miri.
 set -eu
 cd "$(dirname "$0")/.."
-# Time and files of the machine; rayon's queues (crossbeam-epoch) keep bits in pointers, and are not sound by the older rules of stacks.
+# Allow access to time and files. Use tree borrows, because rayon's queues (crossbeam-epoch) store bits in pointers and
+# violate the older rules (stacked borrows).
 export MIRIFLAGS="-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-permissive-provenance" CARGO_TARGET_DIR="$PWD/target/miri"
 
-# What a caught panic carries is forgotten on purpose, which counts as a leak.
+# Skip one test: the payload of a caught panic is forgotten on purpose, which Miri reports as a leak.
 cargo +nightly miri test --locked --lib -- ffi:: image::view image::buffer reserve:: --skip panics_and_errors_become_statuses
 
-# As a host calls it. What rayon's queues keep for the whole process counts as a leak. A MiB takes minutes to fill.
+# Test the contract as a host uses it. Ignore leaks, because rayon keeps its queues for the lifetime of the process.
+# Skip the test that fills a MiB, which would take minutes.
 MIRIFLAGS="$MIRIFLAGS -Zmiri-ignore-leaks" cargo +nightly miri test --locked --test abi_contract -- --skip the_memory_budget_holds
 echo "miri: nothing found"

@@ -1,12 +1,13 @@
-//! The importance of a lamp's points and the gradient of a texture's placement against the adjoint of Mitsuba 3
-//! (`prb`), which differentiates the light of the same room by other means, within the joint confidence interval.
+//! Compares derivatives of a room's light with those of Mitsuba 3, whose integrator `prb` computes them by another
+//! method (adjoint differentiation): the importance of points on a lamp, and the gradient of the light with respect to
+//! the placement of the lamp's texture.
 //!
-//! Both are estimated from independent seeds, whose scatter gives the variance of their means; each number is then
-//! compared by Welch's t-test, at 0.1 % for all of them together (Šidák). The seeds are fixed, so the outcome is
+//! Each renderer runs with several seeds, whose scatter gives the variance of its mean. Welch's t-test then compares
+//! each number, at a total error probability of 0.1 % for all numbers (Šidák). The seeds are fixed, so the outcome is
 //! reproducible.
 //!
 //! `make setup` installs Mitsuba from PyPI into target/peers; its differentiation needs LLVM as a shared library.
-//! Without either the test is skipped with a message; in continuous integration (CI set) it fails.
+//! If Mitsuba or LLVM is missing, the test is skipped with a message; in continuous integration (CI set) it fails.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxfer::exec::Pool;
@@ -28,7 +29,7 @@ const SEEDS: usize = 16;
 const OUR_PATHS: u32 = 1 << 16;
 const THEIR_PATHS: u32 = 1 << 15;
 
-/// As in mitsuba_adjoint.py.
+/// Placement of the pattern on the ceiling; `mitsuba_adjoint.py` uses the same values.
 const POSE: Pose = Pose { offset: DVec2::new(0.15, -0.2), scale: DVec2::ONE, rotation: 0.4 };
 
 fn pattern(u: f64, v: f64) -> f64 {
@@ -36,8 +37,8 @@ fn pattern(u: f64, v: f64) -> f64 {
     1.0 + 0.6 * (TAU * u).sin() + 0.3 * (TAU * v).cos()
 }
 
-/// A room with walls of several colours and a screen, whose ceiling emits light; the importance of its points for the
-/// floor differs from side to side.
+/// A room with a screen and walls of several colours. Its ceiling emits light, and some points of the ceiling are more
+/// important for the light on the floor than others.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * 3.0, Vec3::Y * 1.5, Vec3::Z * 2.5);
     let matt = |name: &str, colour: [f32; 3]| Material::diffuse(name, Vec3::from_array(colour));
@@ -72,7 +73,7 @@ fn room() -> Scene {
     }
 }
 
-/// Means of the blocks of cells, channel by channel.
+/// Mean of each channel in each block of cells.
 fn blocks(cells: &[f64]) -> Vec<f64> {
     let across = CELLS / BLOCK;
     let mut sums = vec![0.0; 3 * across * across];
@@ -83,7 +84,8 @@ fn blocks(cells: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// For each seed the importance of all blocks, and the gradient of the placed pattern, as mean irradiance.
+/// Our results, one row per seed: the importance of all blocks and the gradient with respect to the pattern's
+/// placement, both as changes of the floor's mean irradiance.
 fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
     let target = [(0, 0), (0, 1)];
@@ -95,7 +97,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
         constraint: [Constraint::Exactly; 3],
         weight: 1.0,
     };
-    // The texture has as many texels as there are cells: finer ones would be blurred to the size of cells.
+    // Use one texel per cell, because the map would blur finer texels to the size of its cells.
     let texture = Image::from_fn(CELLS, CELLS, |x, y| {
         let at = |i: usize| (i as f64 + 0.5) / CELLS as f64;
         [pattern(at(x), at(y)) as f32]
@@ -166,8 +168,8 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
     let (mut widest, mut worst, mut total) = (0.0f64, 0.0f64, [0.0; 2]);
     for number in 0..tests {
         let difference = statistics::welch(&ours, &theirs, number, tests);
-        // Error of the gradient: the spline that interpolates the pattern loses 1 / 600 of it, and its cells lose
-        // about as much.
+        // Allow 0.4 % for the discretisation of the gradient: the spline that interpolates the pattern loses 1/600 of
+        // it, and the cells of the map lose about as much.
         let size = if number < texels { difference.first } else { slope_size(&ours, number, texels) };
         let model = if number < texels { 1e-5 } else { 0.004 } * size;
         assert!(difference.off <= difference.interval + model, "number {number}: {difference:?}");
@@ -186,11 +188,11 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
         total[0],
         total[1]
     );
-    // Too wide an interval would hide errors.
+    // The intervals must be narrow, or they would hide errors.
     assert!(widest < 0.3 && (total[0] / total[1] - 1.0).abs() < 0.005, "{widest} {total:?}");
 }
 
-/// The largest component of the gradient of a channel, because one component may be 0.
+/// Size of a channel's gradient: its largest component, because single components may be 0.
 fn slope_size(rows: &[Vec<f64>], number: usize, texels: usize) -> f64 {
     let channel = (number - texels) % 3;
     (0..5).map(|i| statistics::statistics(rows, texels + 3 * i + channel).0.abs()).fold(0.0, f64::max)

@@ -1,12 +1,12 @@
-//! A Cornell box of our own against Mitsuba 3, another unbiased path tracer, within the joint confidence interval.
+//! Compares renderings of a Cornell box with those of Mitsuba 3, another unbiased path tracer.
 //!
-//! Both render independent images of the same GLB that differ in the seed alone. The image is cut into blocks; the
-//! scatter of a block's mean among the images gives the variance of the mean of all, whatever sampling does inside
-//! one. Each block and channel then is a Welch's t-test, at 0.1 % for all of them together (Šidák); one more is that
-//! of the image's mean. The seeds are fixed, so a pass is a pass every time.
+//! Each renderer makes several images of the same GLB, which differ only in their seeds. The images are divided into
+//! blocks. The scatter of a block's mean among the images gives the variance of its mean over all images, even though
+//! samples inside an image are correlated. Welch's t-test compares each channel of each block, and of the whole image,
+//! at a total error probability of 0.1 % (Šidák). The seeds are fixed, so the outcome is reproducible.
 //!
-//! `make setup` installs Mitsuba from PyPI into target/peers. Without it there is nothing to compare with: the test
-//! says so, except in continuous integration (CI set), where it fails.
+//! `make setup` installs Mitsuba from PyPI into target/peers. If it is missing, the test is skipped with a message; in
+//! continuous integration (CI set) it fails.
 
 use glam::{Quat, Vec3};
 use luxfer::exec::Pool;
@@ -28,7 +28,7 @@ const IMAGES: u32 = 16;
 const OUR_PATHS: u32 = 256;
 const THEIR_PATHS: u32 = 256;
 
-/// A block that stands on the floor, turned about the vertical.
+/// A block that stands on the floor, turned by `angle` (radians) about the vertical; `centre` is that of its base.
 fn block(centre: Vec3, size: Vec3, angle: f32, material: usize) -> Vec<Mesh> {
     let turn = Quat::from_rotation_y(angle);
     let [x, y, z] = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z].map(|v| turn * v);
@@ -56,7 +56,7 @@ fn cornell() -> Scene {
     ];
     meshes.extend(block(Vec3::new(0.37, 0.0, 0.39), Vec3::new(0.165, 0.165, 0.165), -0.29, 0));
     meshes.extend(block(Vec3::new(0.185, 0.0, 0.2), Vec3::new(0.165, 0.33, 0.165), 0.31, 0));
-    // The lamp emits downwards only: light through the gap above it would be noisy in both renderers.
+    // The lamp emits downwards only, because light in the narrow gap above it would be noisy in both renderers.
     let emission = Vec3::new(18.4, 15.6, 8.0);
     let lamp = Material { emission, double_sided: false, ..matt("Lamp", [0.78; 3]) };
     let materials = vec![
@@ -69,7 +69,7 @@ fn cornell() -> Scene {
     Scene { meshes, materials, cameras: vec![camera], ..Scene::default() }
 }
 
-/// Means of the blocks of an image, channel by channel, and of the whole image at the end.
+/// Mean of each channel in each block of an image; the last three values are the means of the whole image.
 fn blocks(pixels: &[f32]) -> Vec<f64> {
     let across = SIDE / BLOCK;
     let mut means = vec![0.0; 3 * (across * across + 1)];
@@ -100,7 +100,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     })
 }
 
-/// Means of Mitsuba's images by its scalar back end, which needs no other software.
+/// Block means of Mitsuba's images, one row per image. Its scalar back end needs no other software.
 fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let glb = folder.join("cornell.glb");
@@ -151,7 +151,7 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
     let scene = cornell();
     let (ours, theirs) = (ours(&scene), theirs(&python, &scene));
     let tests = ours[0].len();
-    // The corners outside the box see nothing.
+    // Count the lit blocks: the corners of the image lie outside the box and are black.
     let (mut widest, mut worst, mut lit) = (0.0f64, 0.0f64, 0);
     for number in 0..tests {
         let Difference { first: a, second: b, off, interval } = welch(&ours, &theirs, number, tests);
@@ -172,7 +172,7 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
         variance.sqrt(),
         other_variance.sqrt()
     );
-    // Too wide an interval would hide errors.
+    // The intervals must be narrow, or they would hide errors.
     assert!(lit > 90 && widest < 0.15, "{lit} lit, widest interval {widest}");
     assert!((variance + other_variance).sqrt() < 0.004 * mean, "the image's mean is not known well enough");
 }

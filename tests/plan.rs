@@ -1,10 +1,10 @@
-//! Plans are accurate: the expected times and errors match the actual ones, on rooms and image sizes to which nothing
-//! was fitted.
+//! Tests that plans are accurate: the times and errors that they predict match the actual ones, on rooms and image
+//! sizes to which no parameter of the predictor was fitted.
 //!
-//! Times are processor times of one thread, so other work on the machine does not count. For more cases and whole
-//! transfers: `make bench ONLY=plan`.
+//! Times are processor times of one thread, so other work on the machine does not count. `make bench ONLY=plan`
+//! measures more cases and whole transfers.
 
-// Benches use the other clocks.
+// Only benches use the other clocks of this module.
 #[allow(dead_code)]
 #[path = "../benches/harness/clock.rs"]
 mod clock;
@@ -26,7 +26,7 @@ use luxfer::transfer::{Input, Stage, Transfer};
 use outcomes::{Outcomes, error_of, within};
 use std::sync::Arc;
 
-/// The furnished room under nine lamps in its ceiling, and the office under its own.
+/// The furnished demonstration room with nine lamps in its ceiling, and the demonstration office with its own lamps.
 fn rooms() -> [(Scene, Camera); 2] {
     let mut room = demo::target_room().unwrap();
     let ceiling = surface::find(&room, "Ceiling").unwrap();
@@ -43,7 +43,7 @@ fn planned(world: &World, camera: &Camera, params: &Params, goal: Goal) -> plan:
     plan::rendering(world, camera, params, goal, &|| Clock::Thread.now(), Monitor::default().job()).unwrap()
 }
 
-/// The seconds and the film of a rendering without a time limit.
+/// Renders without a time limit; returns the processor time in seconds and the film.
 fn shot(world: &World, camera: &Camera, params: &Params) -> (f64, Film) {
     let params = Params { time_budget_ms: 0, ..params.clone() };
     time(Clock::Thread, || render::run(world, camera, &params, Monitor::default().job(), &mut |_| ()).unwrap())
@@ -80,8 +80,8 @@ fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
     }
 }
 
-/// A plan samples a seventh of these pictures, whose error is mostly at the edges of lamps: the choice of the sampled
-/// tiles must not matter.
+/// For its prediction, a plan renders only a seventh of the tiles of these pictures, whose error is mostly at the
+/// edges of lamps. The predicted error must not depend on which tiles the seed selects.
 #[test]
 fn what_is_expected_does_not_hang_on_the_seed() {
     Pool::new(1).unwrap().run(|| {
@@ -157,7 +157,7 @@ fn the_light_of_a_transfer_is_planned() {
     };
     assert_eq!(long.render, Params { width: 64, height: 36, target_error: 0.0, ..kept });
 
-    // A goal that cannot be planned is an error that names it.
+    // Invalid goals are refused.
     for goal in [Goal::Error(0.0), Goal::Error(f64::NAN), Goal::Seconds(-1.0)] {
         assert_eq!(plan(&transfer, goal).unwrap_err().kind, ErrorKind::InvalidArgument);
     }

@@ -1,4 +1,5 @@
-//! Real ceilings, seen straight from below, continued to twice their size.
+//! Texture synthesis from photos of real ceilings, rectified to a view from straight below: each is continued to twice
+//! its width and height.
 
 use glam::DVec2;
 use luxfer::emission::{Continuation, Emission, Input, Luminaire, Params, run};
@@ -8,8 +9,8 @@ use luxfer::image::{Image, colour};
 use luxfer::job::Monitor;
 use std::path::PathBuf;
 
-/// The ceiling and the mask of its lights: the lamps it is known to have, or else whatever is brighter than
-/// `threshold`.
+/// Loads a ceiling and the mask of its lights: the lamps that its JSON file lists or, if it lists none, the pixels
+/// whose luminance exceeds `threshold`. `None` without test data.
 fn ceiling(name: &str, threshold: f32) -> Option<(Image, Image)> {
     let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".into());
     let folder = PathBuf::from(root).join("photo_truth/ceiling_ortho");
@@ -63,7 +64,7 @@ fn the_panels_of_the_corridor_go_on_at_their_period() {
     let Some((photo, light)) = ceiling("alma", 1.0) else { return };
     let result = doubled("alma", &photo, &light);
     let Continuation::Row([period, _]) = result.continuation else { panic!("{:?}", result.continuation) };
-    // The panels measure 3.2067 units of 150 pixels from one to the next.
+    // The true period of the panels is 3.2067 units of 150 pixels each.
     assert!((period - DVec2::new(0.0, 481.0)).length() < 6.0, "{period}");
     assert!(result.error < 0.1, "{}", result.error);
     let whole = result.luminaires.iter().filter(|l| l.size.distance(DVec2::new(181.0, 87.0)) < 8.0).count();
@@ -75,8 +76,8 @@ fn the_glass_ceiling_keeps_its_panes() {
     let Some((photo, light)) = ceiling("library", 1.0) else { return };
     let result = doubled("library", &photo, &light);
     assert!(result.error < 0.02, "{}", result.error);
-    // Every pane has the size of a pane of the photo and lies in a column of the photo: frames keep their width, and
-    // the lattice its nodes.
+    // Every pane of the texture has the size and the column of a pane in the photo, so the frames between panes keep
+    // their width.
     let valid = Image::from_fn(photo.width, photo.height, |_, _| [1.0]).unwrap();
     let input = Input { unwarped: &photo, light: &light, valid: &valid, photo: None };
     let params = Params { width: photo.width, height: photo.height, ..Params::default() };

@@ -1,5 +1,5 @@
-//! Features and segmentation of real photos: RGB-D pairs, and ceilings with their lights, with the strokes in this
-//! folder.
+//! Tests features and segmentation on real photos: photos of ceilings, with the strokes in `tests/strokes`, and photos
+//! with measured depth (RGB-D).
 //!
 //! The pictures are not part of the project; they are read from `LUXFER_TEST_DATA` (default `../shared/data`). If
 //! `LUXFER_TEST_OUTPUT` names a folder, overlays for inspection are written there.
@@ -39,7 +39,7 @@ fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// The camera of a photo's JSON, room axes from its vanishing points.
+/// The camera that a photo's JSON file states; its room axes follow from the vanishing points in the file.
 fn camera(photo: &serde_json::Value) -> Perspective {
     let number = |v: &serde_json::Value| v.as_f64().unwrap();
     let k = &photo["K_consistent_with_GT"];
@@ -71,11 +71,12 @@ fn camera(photo: &serde_json::Value) -> Perspective {
 struct Photo {
     name: &'static str,
     path: &'static str,
-    /// True mask of the lights, and the minimum intersection over union.
+    /// File with the true mask of the lights, and the minimum intersection over union that the found mask must reach.
     lights: Option<(&'static str, f64)>,
 }
 
-/// The limits are 0.02 to 0.04 below the measured values, about the effect of one pixel along the edges.
+/// The minimum intersections over union are 0.02 to 0.04 below the measured values: shifting all edges by one pixel
+/// changes the values by about as much.
 const PHOTOS: [Photo; 10] = [
     Photo { name: "alma_corridor", path: "photos/alma_corridor.jpg", lights: Some(("alma_corridor_mask.png", 0.93)) },
     Photo {
@@ -97,7 +98,7 @@ const PHOTOS: [Photo; 10] = [
     Photo { name: "autoshop", path: "photos/hdri/autoshop.png", lights: None },
 ];
 
-/// The photo, dimmed, with the plane in green, its lights in yellow, strokes in their colours.
+/// Overlay for inspection: the dimmed photo with the plane in green, its lights in yellow, and the strokes.
 fn overlay(photo: &Image, plane: &Image, lights: &Image, set: &segment::StrokeSet) -> Image {
     let mut out = photo.to_rgb().unwrap();
     for (i, p) in out.data.chunks_exact_mut(3).enumerate() {
@@ -139,7 +140,7 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
         );
         let set = strokes::parse(&text.unwrap(), photo.width, photo.height).unwrap();
 
-        // The camera is given; lines and room axes are estimated.
+        // The focal length and the principal point are given; lines and room axes are estimated.
         let monitor = Monitor::default();
         let params =
             rectify::Params { focal: Some(known.focal), principal: Some(known.principal), ..Default::default() };
@@ -210,7 +211,7 @@ fn measured_depth_gives_smooth_walls_and_upright_normals() {
         let holes = depth.data.iter().filter(|&&d| d == 0.0).count();
         assert_eq!(got.depth_confidence.data.iter().filter(|&&c| c == 0.0).count(), holes);
 
-        // Neighbouring measured pixels mostly share a surface, and so must their normals.
+        // Nearby measured pixels mostly lie on one surface, so their normals must mostly agree.
         let mut angles: Vec<f32> = Vec::new();
         for y in 0..photo.height {
             for x in 0..photo.width - 8 {

@@ -1,6 +1,8 @@
-//! Rectification on real data: photos with known cameras, and labelled segments of York Urban and NYU.
+//! Tests rectification on real data: photos with known cameras, and labelled segments of the data sets York Urban and
+//! NYU.
 //!
-//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without them the tests skip, in CI they fail.
+//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without data the tests are skipped; in CI they
+//! fail.
 
 mod truth;
 
@@ -59,16 +61,16 @@ fn vanishing_points_of_photos_meet_their_truth() {
     let failures = all.iter().filter(|&&e| e > 5.0).count();
     println!("median {median:.2} degrees, {failures} of {} beyond 5", all.len());
     assert!(median <= 0.5 && failures == 0, "{median}, {failures}");
-    // Stated errors are calibrated: of normal errors in the plane, half lie below 0.7 to 0.8 stated errors and 95 %
-    // below 2.
+    // Check that the stated errors are calibrated. If errors are normally distributed in the image plane, half of them
+    // lie below 0.7 to 0.8 stated errors, and 95 % below 2.
     shares.sort_by(f64::total_cmp);
     let at = |p: f64| shares[(p * shares.len() as f64) as usize];
     println!("error / stated: half below {:.2}, 68 % below {:.2}, 90 % below {:.2}", at(0.5), at(0.68), at(0.9));
     assert!((0.4..1.1).contains(&at(0.5)) && at(0.9) < 2.5);
 }
 
-/// Views cut out of panoramas have no distortion, and the estimate stays within its stated error; York Urban's camera
-/// has barrel distortion.
+/// Views cut out of panoramas have no distortion, so their estimates stay near 0, relative to the stated error. York
+/// Urban's camera has barrel distortion, which must be found.
 #[test]
 fn distortion_is_told_of_lenses_that_have_some() {
     let measured = |name: &str, photo: &Image| {
@@ -90,8 +92,8 @@ fn distortion_is_told_of_lenses_that_have_some() {
     assert!(barrels >= 4 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
 }
 
-/// Checks that values that should be 0 are, relative to their stated errors, hardly larger than a normal distribution
-/// allows.
+/// Checks estimates whose true value is 0: their sizes, each divided by its stated error, may be hardly larger than
+/// those of a normal distribution.
 fn check_calibration(what: &str, mut shares: Vec<f64>) {
     shares.sort_by(f64::total_cmp);
     let at = |p: f64| shares[(p * shares.len() as f64) as usize];
@@ -100,7 +102,7 @@ fn check_calibration(what: &str, mut shares: Vec<f64>) {
     assert!(half < 1.1 && nearly_all < 2.5);
 }
 
-/// Rooms with right angles are recognised within the stated errors, with and without a known focal length.
+/// The squareness of rooms with right angles is 0 within its stated error, with and without a known focal length.
 #[test]
 fn rooms_of_photos_stand_at_right_angles() {
     for knows_focal in [true, false] {
@@ -135,7 +137,8 @@ fn vanishing_points_of_labelled_segments_meet_the_published_protocol() {
     }
 }
 
-/// The photo, dimmed, with its lines in the colour of their axis (grey without an axis), and a quadrilateral in white.
+/// Overlay for inspection: the dimmed photo, its line segments in the colours of their room axes (grey: no axis), and
+/// a quadrilateral in white.
 fn drawn(photo: &Image, view: &rectify::View, quad: [DVec2; 4]) -> Image {
     let mut picture = photo.to_rgb().unwrap();
     picture.data.iter_mut().for_each(|v| *v *= 0.3);

@@ -1,4 +1,4 @@
-//! Scenes from other authors load quickly, and their surfaces are found.
+//! Tests that scenes by other authors load quickly and that their surfaces are found.
 
 use glam::Vec3;
 use luxfer::image::Image;
@@ -6,10 +6,10 @@ use luxfer::scene::{Scene, gltf, surface};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// For debug assertions and two busy cores: the release build takes a fraction of this.
+/// Maximum time to load a scene in a debug build on two busy cores; a release build takes a fraction of it.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// The path of a test file; without the data `None` and a message, in CI an error.
+/// The path of a test file. If it is missing, prints a message and returns `None`; panics in CI.
 fn data(name: &str) -> Option<PathBuf> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
@@ -43,7 +43,7 @@ fn kitchen() {
     let Some(mut scene) = load("scenes/kitchen/country_kitchen.glb") else { return };
     assert_eq!((scene.meshes.len(), scene.materials.len()), (82, 82));
 
-    // The ceiling is a slab from 3.23 to 3.36 m: its lower side is the surface.
+    // The ceiling is a slab at heights from 3.23 to 3.36 m; the surface to find is its lower side.
     let start = Instant::now();
     let ceiling = surface::find(&scene, "Ceiling").unwrap();
     println!("Ceiling found in {:.2?}: {ceiling:?}", start.elapsed());
@@ -67,7 +67,7 @@ fn kitchen() {
 fn sponza() {
     let Some(scene) = load("scenes/sponza/sponza_dabrovic.glb") else { return };
     assert_eq!(scene.meshes.len(), 37);
-    // The floor of the courtyard faces up, because people walk on it.
+    // The found side of the courtyard's floor must be the upper one.
     let floor = surface::find(&scene, "sp_00_pod_12").unwrap();
     println!("{floor:?}");
     assert!((floor.normal - Vec3::Y).length() < 1e-2, "{}", floor.normal);

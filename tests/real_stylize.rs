@@ -1,4 +1,5 @@
-//! The real pair of a painted ball and a rendered golem (ebsynth's StyLit example), at a quarter of its size.
+//! Tests stylisation on ebsynth's StyLit example, at a quarter of its size: a painted ball is the exemplar, and a
+//! rendered golem the target.
 
 #![cfg(feature = "stylize")]
 
@@ -18,7 +19,7 @@ struct Pair {
     guides: Vec<(Image, Image)>,
 }
 
-/// The pair, or `None` without test data; in CI that is an error.
+/// Loads exemplar and target; returns `None` without test data, and panics in CI.
 fn pair() -> Option<Pair> {
     let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".to_string());
     let folder = PathBuf::from(root).join("stylit/ebsynth_stylit");
@@ -45,7 +46,7 @@ fn stylise(pair: &Pair, params: &Params) -> Output {
     run(&input, params, Monitor::default().job()).unwrap()
 }
 
-/// Power of the encoded green channel's Laplacian.
+/// Strength of the texture: mean squared Laplacian of the sRGB-encoded green channel.
 fn texture(image: &Image) -> f64 {
     let green = |x: usize, y: usize| f64::from(luxfer::image::colour::linear_to_srgb(image.pixel(x, y)[1]));
     let mut sum = 0.0;
@@ -72,7 +73,7 @@ fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
     assert!(energy(&budget) < 1.3 * energy(&nearest), "{} {}", energy(&budget), energy(&nearest));
     let (kept, washed) = (texture(&budget.image), texture(&nearest.image));
     assert!(kept > washed, "{kept} {washed} of {}", texture(&pair.artwork));
-    // Every pass covers more pixels, and the guides are followed.
+    // Every pass covers more pixels, and the picture follows the guides: their error is small.
     for passes in budget.report.levels.iter().flat_map(|l| &l.passes) {
         assert!(passes.windows(2).all(|w| w[1].coverage >= w[0].coverage));
         assert!(passes.last().unwrap().coverage > 0.9, "{passes:?}");

@@ -1,9 +1,11 @@
 #!/bin/sh
-# ThreadSanitizer or AddressSanitizer over the library, the standard library under it, and programs that use them through the C ABI. By
-# hand: it needs a nightly toolchain with rust-src (rustup component add rust-src --toolchain nightly), clang, and a quarter of an hour.
+# Runs programs that use the C ABI under ThreadSanitizer or AddressSanitizer; the library and Rust's standard library
+# are instrumented too. Run it by hand: it needs a nightly toolchain with rust-src (rustup component add rust-src
+# --toolchain nightly), clang, and a quarter of an hour.
 #
-#   tests/sanitize.sh thread [HARNESS...]     those of tests/cpp; default: those that use threads
-#   tests/sanitize.sh address [HARNESS...]    default: those that need no other library; and leaks; then all C examples
+#   tests/sanitize.sh thread [HARNESS...]     runs harnesses of tests/cpp; default: those that use threads
+#   tests/sanitize.sh address [HARNESS...]    also detects leaks; default: harnesses that need no other library, then
+#                                             all C examples
 set -eu
 cd "$(dirname "$0")/.."
 target=x86_64-unknown-linux-gnu
@@ -19,12 +21,13 @@ examples=
 harnesses="${*:-$harnesses}"
 build="$PWD/target/sanitize/$kind"
 
-# As users have it, without the assertions of debugging.
+# Build the library as users have it, without debug assertions.
 CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_OPT_LEVEL=1 CARGO_PROFILE_DEV_DEBUG=line-tables-only \
   CARGO_PROFILE_DEV_DEBUG_ASSERTIONS=false CARGO_PROFILE_DEV_OVERFLOW_CHECKS=false RUSTFLAGS="-Zsanitizer=$kind" \
   cargo +nightly build -Zbuild-std=std,panic_unwind --target $target --lib --locked --target-dir "$build"
 
-# The programs have the toolchain's run-time library, which the instrumented library finds in them.
+# Link the sanitizer's run-time library of the Rust toolchain into the programs, where the instrumented library finds
+# it.
 runtime="$(ls "$(rustc +nightly --print sysroot)/lib/rustlib/$target/lib/"librustc-*_rt.$runtime.a)"
 library="$build/$target/debug"
 ln -sf libluxfer.so "$library/$(readelf -d "$library/libluxfer.so" | sed -n 's/.*SONAME.*\[\(.*\)\]/\1/p')"
@@ -39,7 +42,8 @@ run() { # name, source, arguments...
   (cd "$build/work/$name" && TSAN_OPTIONS=exitcode=66 ASAN_OPTIONS=exitcode=66:detect_leaks=1 "$build/$name" "$@")
 }
 
-# Can it see anything at all? A host that writes pixels while the library reads them, or has fewer than it says.
+# First check that the sanitizer detects errors: a host that writes pixels while the library reads them, and a host
+# that has fewer pixels than it states.
 cat >"$build/thread.cpp" <<'END'
 #include <luxfer.hpp>
 #include <thread>

@@ -1,4 +1,5 @@
-//! Photos whose principal point is not their centre: from shifted lenses for photos of buildings, and cropped photos.
+//! Tests rectification of photos whose principal point is not the centre of the image: photos from shift lenses, as
+//! used for buildings, and cropped photos.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use luxfer::geometry::{FocalSource, Perspective, Segment};
@@ -10,8 +11,8 @@ use luxfer::rng::Rng;
 const SIZE: [usize; 2] = [800, 600];
 const FOCAL: f64 = 640.0;
 
-/// A camera that looks nearly level, with a lens shifted up so far that its axis meets the image plane below the
-/// photo's border.
+/// A camera that looks nearly level, with its lens shifted up so far that the principal point lies below the photo's
+/// lower border.
 fn camera() -> Perspective {
     Perspective {
         focal: FOCAL,
@@ -23,7 +24,7 @@ fn camera() -> Perspective {
     }
 }
 
-/// Where the ray through a pixel meets a ceiling one unit above the camera.
+/// The point where the ray through a pixel meets a ceiling one unit above the camera; `None` if the ray goes down.
 fn on_ceiling(camera: &Perspective, pixel: DVec2) -> Option<DVec2> {
     let ray = camera.axes.transpose() * camera.ray(pixel);
     (ray.y < 0.0).then(|| DVec2::new(ray.x, ray.z) / -ray.y)
@@ -55,7 +56,7 @@ fn mask(camera: &Perspective) -> Image {
     .unwrap()
 }
 
-/// Exact segments along the three axes.
+/// Random segments that run exactly towards the vanishing points of the three room axes.
 fn segments(camera: &Perspective) -> Vec<Segment> {
     let mut rng = Rng::new(3, &[]);
     let mut between = |low: f64, high: f64| low + (high - low) * rng.next_f64();
@@ -69,8 +70,8 @@ fn segments(camera: &Perspective) -> Vec<Segment> {
         .collect()
 }
 
-/// Largest angle in degrees between a view's axes and the true ones, and the logarithm of its aspect ratio over the
-/// true one.
+/// Errors of a view: the largest angle in degrees between its axes and the true axes, and the absolute logarithm of
+/// the unwarped ceiling's aspect ratio divided by the true one.
 fn errors(view: &View, truth: &Perspective, photo: &Image) -> (f64, f64) {
     let axes = [0, 1, 2].map(|k| view.perspective.axes.col(k));
     let off = |axis: DVec3| axes.iter().map(|a| a.dot(axis).abs().min(1.0).acos()).fold(9.0, f64::min);
@@ -96,7 +97,7 @@ fn exact_lines_give_the_camera_where_the_principal_point_is_told() {
     println!("told: focal {:.2}, axes {degrees:.4} degrees, aspect {aspect:.4}", view.perspective.focal);
     assert_eq!(view.perspective.principal, truth.principal);
     assert!((view.perspective.focal / FOCAL - 1.0).abs() < 5e-3 && degrees < 0.1 && aspect < 0.01);
-    // With its centre taken as the principal point, the photo shows another room.
+    // If the image centre is taken for the principal point, the estimated axes are wrong.
     let view = read(None);
     let (degrees, _) = errors(&view, &truth, &photo);
     println!("not told: focal {:.2}, axes {degrees:.4} degrees", view.perspective.focal);

@@ -1,4 +1,4 @@
-//! The whole lighting transfer on the generated photo and room, compared with the known truth.
+//! Tests the whole lighting transfer from the generated demonstration photo, whose camera and lamps are known exactly.
 
 use glam::{DVec2, DVec4, Vec3};
 use luxfer::demo::{self, photo};
@@ -14,7 +14,7 @@ use luxfer::transfer::{Input, Params, Pattern, Scale, Stage, Transfer};
 use luxfer::warning::Code;
 use std::sync::Arc;
 
-/// A small transfer with all inputs; and the room of the photo.
+/// Returns a small transfer with all inputs set, and the room that the photo shows.
 fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) {
     let room = demo::exemplar_room().unwrap();
     let camera = room.scene.cameras[room.camera].clone();
@@ -34,7 +34,7 @@ fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) 
     params.render.width = 64;
     params.render.height = 36;
     params.render.samples = 8;
-    // The photographer stands 1.2 m under the ceiling.
+    // State the distance from the camera to the ceiling, which sets the scale of the pattern.
     params.plane_distance = f64::from(room.ceiling_height - camera.position.y);
     (Transfer { input, params, ..Transfer::default() }, room)
 }
@@ -49,20 +49,21 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let results = &transfer.results;
     assert_eq!(results.warnings(&transfer.input.strokes), [], "a clean photo raises no warning");
 
-    // The camera: 66 degrees across.
+    // Check the camera, whose horizontal field of view is 66 degrees.
     let perspective = &results.view.as_ref().unwrap().perspective;
     let focal = 540.0 / 2.0 / 33f64.to_radians().tan();
     assert!((perspective.focal / focal - 1.0).abs() < 0.05, "focal length {} px, truly {focal}", perspective.focal);
 
-    // The lamps: in metres, as in the office. Whole ones only; the border of the ceiling cuts others.
+    // Check the lamps: in metres, they have the size and spacing of those in the photo. Only whole lamps count,
+    // because the border of the ceiling cuts others.
     let fixtures = transfer.fixtures().unwrap();
     let largest = fixtures.iter().map(|f| f.area).fold(0.0, f64::max);
     let whole: Vec<_> = fixtures.iter().filter(|f| f.area > 0.8 * largest).collect();
     let areas: Vec<f64> = fixtures.iter().map(|f| f.area).collect();
     assert!(whole.len() >= 4, "{} whole lamps of {}, in m²: {areas:.3?}", whole.len(), fixtures.len());
-    // The mask of lamps is too large, never too small: a lamp fifty times as bright as white is clipped, and its blur
-    // and glow reach about two pixels beyond its edge, 9 cm along the ceiling at the fourth row. The scale may be off
-    // by 3 %, as the spacing below.
+    // The mask of a lamp is never too small, but up to two pixels too large on each side: a lamp fifty times as bright
+    // as white is clipped, and so are its blur and glow. At the fourth row of lamps, two pixels are 9 cm along the
+    // ceiling. Like the spacing below, the scale may be off by 3 %.
     let side = f64::from(room.grid.size.x);
     let two_pixels = 2.0 * 4.7f64.powi(2) / (transfer.params.plane_distance * focal);
     let most = 1.03 * ((side + 2.0 * two_pixels) * (side + 2.0 * 2.0 * 4.7 / focal)).sqrt();
@@ -79,7 +80,8 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let (spacing, period) = (spacings[spacings.len() / 2], f64::from(room.grid.period.min_element()));
     assert!((spacing / period - 1.0).abs() < 0.03, "lamps {spacing} m apart, truly {period}");
 
-    // Colour: measured again with other paths, the ceiling of the lit scene has the colour of the photo's.
+    // Check the colour: measured again with other paths, the ceiling of the lit scene has the colour of the photo's
+    // ceiling.
     let lit = results.lit.as_ref().unwrap();
     let mesh = lit.placed.mesh;
     let triangles: Vec<_> = (0..lit.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
@@ -93,7 +95,7 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     });
     let stated = transfer.results.solution.as_ref().unwrap().error();
     for c in 0..3 {
-        // Two independent intervals, widened to 99.9 % for three channels.
+        // Add the two independent confidence intervals, widened to 99.9 % because three channels are compared.
         let allowed = 1.8 * (stated + again.half_width[c]);
         assert!((again.scale[c] - 1.0).abs() < allowed, "channel {c}: {} +- {allowed}", again.scale[c]);
     }
@@ -108,7 +110,7 @@ fn noise_in_the_photo_does_not_change_the_design() {
         pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
         let emission = transfer.results.emission.as_ref().unwrap();
         assert!(matches!(emission.continuation, Continuation::Lattice(_)), "{seed}: {:?}", emission.continuation);
-        // The ceiling has as many lamps as fit, and no other lit regions.
+        // The ceiling has as many lamps as fit at the photo's spacing, and no other lit regions.
         let ceiling = transfer.results.unsolved.as_ref().unwrap().surface.size.as_dvec2();
         let periods = ceiling / room.grid.period.as_dvec2();
         let (fewest, most) = (periods.floor().element_product(), (periods.floor() + 1.0).element_product());
@@ -136,12 +138,12 @@ fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
         list[list.len() / 2]
     };
 
-    // Lamps of half a metre: their bounding boxes are correct within a texel on each side.
+    // Set the size of lamps to half a metre: their bounding boxes are correct within a texel on each side.
     let (lamps, texel, _) = lay(Pattern { scale: Scale::Lamp(0.5), ..Pattern::default() }, &[]);
     let length = median(lamps.iter().map(|l| l.size.x * texel).collect());
     assert!((length - 0.5).abs() < 0.05, "{length} m");
 
-    // At a spacing of 0.6 m, with texels of 1 cm, half a metre from every edge, and no lamp under a duct.
+    // Set a spacing of 0.6 m and texels of 1 cm; keep lamps half a metre from every edge and away from a duct.
     let duct = DVec4::new(2.0, 0.0, 3.0, 4.0);
     let settings = Pattern { scale: Scale::Spacing(0.6), texel_size: 0.01, margin: 0.5, ..Pattern::default() };
     let (lamps, texel, surface) = lay(settings, &[duct]);
@@ -159,7 +161,8 @@ fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
     let spacing = median(lamps.iter().map(nearest).collect());
     assert!((spacing - 0.6).abs() < 0.03, "{spacing} m");
 
-    // Rotated: the same lamps along other axes, and the texture's bounding rectangle around the surface.
+    // Rotate the pattern: the lamps lie along other axes, and the texture covers the rotated bounding rectangle of the
+    // surface.
     let (_, _, turned) = lay(Pattern { rotation: 0.4, ..Pattern::default() }, &[]);
     assert!((turned.u_axis.dot(surface.u_axis) - 0.4f32.cos()).abs() < 1e-5);
     let (sin, cos) = 0.4f64.sin_cos();
@@ -191,7 +194,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert_eq!(early.kind, ErrorKind::NotFound);
     assert!(nowhere.results.view.is_none());
 
-    // Cancel when the lights have been found; then resume from there.
+    // Cancel the run once the lights are found; then resume it from there.
     let cancelling = Monitor::default();
     let run = pool.run(|| {
         transfer.run(Stage::View, Stage::Render, cancelling.job(), |results| {
@@ -218,7 +221,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert_eq!(black.kind, ErrorKind::Degenerate, "{black}");
     transfer.input.texture = None;
 
-    // A missing surface, and a plane without light.
+    // A missing surface, or a plane without light, is an error.
     transfer.input.surface = "No such thing".into();
     let wrong = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
     assert_eq!(wrong.kind, ErrorKind::NotFound, "{wrong}");

@@ -1,8 +1,9 @@
-//! The whole pipeline on a known truth: a room is rendered with known lamps, and the transfer from that picture onto
-//! the *same* room must reproduce its light: the colour within the stated interval, and the intensity up to exposure.
+//! Tests the whole pipeline against a known truth. A room is rendered with known lamps; the transfer from this picture
+//! onto the *same* room must reproduce the room's light: the colour within the stated interval, and the intensity up
+//! to the exposure.
 //!
-//! An ideal camera sees the whole ceiling from below, without glow, noise and white balance, which `transfer_demo`
-//! tests. Lamps are clipped, as in any photo.
+//! The camera is ideal and sees the whole ceiling from below. Lamps are clipped, as in any photo, but glow, noise and
+//! white balance are left to `transfer_demo`.
 
 use glam::{Vec3, vec3};
 use luxfer::exec::Pool;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 const WIDE: f32 = 4.0;
 const HIGH: f32 = 2.6;
-/// Pixels along each side of the picture.
+/// Width and height of the picture in pixels.
 const SIDE: usize = 160;
 /// Warm emission of the lamps in cd/m².
 const EMISSION: Vec3 = vec3(3000.0, 2300.0, 1500.0);
@@ -24,7 +25,7 @@ const EMISSION: Vec3 = vec3(3000.0, 2300.0, 1500.0);
 /// A room with a wooden floor, a red curtain and dark furniture.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * WIDE, Vec3::Y * HIGH, Vec3::Z * WIDE);
-    // Without gloss, because the mean of a target ignores it.
+    // Materials have no gloss, because the mean of a target ignores gloss.
     let matt = |name: &str, albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse(name, albedo) };
     let side =
         |name: &str, corner, u, v, material| Mesh { name: name.into(), ..Mesh::parallelogram(corner, u, v, material) };
@@ -48,7 +49,7 @@ fn room() -> Scene {
     }
 }
 
-/// Nine square lamps, white.
+/// Emission texture with nine white square lamps.
 fn lamps() -> Image {
     let lit = |i: usize| i % 20 >= 7 && i % 20 < 13;
     Image::from_fn(60, 60, |x, y| [f32::from(u8::from(lit(x) && lit(y))); 3]).unwrap()
@@ -67,7 +68,7 @@ fn a_room_gets_its_own_light_back() {
     let world = World::build(Arc::new(truth), monitor.job()).unwrap();
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
 
-    // Exposed so that the ceiling is grey and its lamps are clipped.
+    // Expose the picture so that the ceiling is grey and the lamps are clipped.
     let mut sorted = film.beauty.data.clone();
     sorted.sort_by(f32::total_cmp);
     let white = 4.0 * sorted[sorted.len() / 2];
@@ -103,12 +104,13 @@ fn a_room_gets_its_own_light_back() {
     let interval = solution.half_width / solution.scale;
     println!("recovered {found} of {EMISSION}: off by {off}, stated ± {interval}, ΔE2000 {}", solution.delta_e);
     assert!(interval.max_element() <= 0.005, "{solution:?}");
-    // The noise of the picture itself and the pixels beside lamps, which the mean leaves out, add to the error.
+    // Allow 0.004 more than the stated interval: for the noise of the picture itself, and because the mean leaves out
+    // the pixels beside lamps.
     assert!(off.abs().cmple(interval + 0.004).all(), "off by {off}, stated ± {interval}");
     let colour = off - (off.x + off.y + off.z) / 3.0;
     assert!(colour.abs().cmple(interval).all(), "the colour is off by {colour}, stated ± {interval}");
 
-    // A photo that is stated to be twice as bright changes the intensity only.
+    // If the photo's white is stated to be twice as bright, only the intensity changes.
     let (brighter, _) = run(2.0 * white);
     assert!((brighter / found - 2.0).abs().max_element() < 1e-3, "{brighter} {found}");
 }

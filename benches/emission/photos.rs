@@ -1,5 +1,5 @@
-//! Patterns from photos: a ceiling photographed in perspective with noise, photos of real rooms, and the glass
-//! ceiling.
+//! Patterns from photos: ceilings photographed in perspective with noise, photos of real rooms, and real ceilings seen
+//! straight from below.
 
 use crate::harness::{Table, absent, figure};
 use crate::score::{STATISTICS, Score};
@@ -19,24 +19,24 @@ use luxfer::transfer::{self, Stage, Transfer};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Standard deviation of the blur of the light mask in photo pixels, as in a transfer.
+/// Standard deviation in photo pixels of the blur of the light mask, as in a transfer.
 const EDGE_BLUR: f32 = 0.9;
-/// Side of the plane that the photo shows, in unwarped pixels.
+/// Side of the part of the plane that the photo shows, in unwarped pixels.
 const PLANE: usize = 480;
-/// Standard deviation of the noise of a pixel, relative to white.
+/// Standard deviations of the noise of a photo's pixel, relative to white.
 const NOISE: [f32; 3] = [0.0, 0.05, 0.15];
 
-/// Linear colour of the photographed lamps, and of the plane around them.
+/// Linear colour of the photographed lamps, and grey level of the plane around them.
 const LAMP: [f32; 3] = [0.9, 0.8, 0.7];
 const PLANE_LIGHT: f32 = 0.1;
 
-/// Photographs every design at an angle, unwarps and continues it.
+/// Photographs every design at an angle, then unwarps and continues the photo.
 pub fn perspective() {
     let mut table = Table::new(["design", "noise %"].into_iter().chain(STATISTICS).chain(["broken"]));
     let mut all = Score::default();
     for design in &DESIGNS {
         for noise in NOISE {
-            // The far side of the plane is half as large as the near one.
+            // The far side of the plane appears half as long as the near side.
             let rows = [[1.25, 0.42, 20.0], [0.0, 1.2, 10.0], [0.0, 0.0012, 1.0]];
             let to_photo = DMat3::from_cols_array_2d(&rows).transpose();
             let from_photo = to_photo.inverse();
@@ -50,14 +50,14 @@ pub fn perspective() {
                 let share = lit.count() as f32 / (SAMPLES * SAMPLES) as f32;
                 std::array::from_fn::<f32, 3, _>(|c| {
                     let mut rng = Rng::new(31, &[x as u64, y as u64, c as u64]);
-                    // Four uniform numbers are nearly normal, with a variance of a third.
+                    // The sum of four uniform numbers is nearly normal, with a variance of a third.
                     let normal = (0..4).map(|_| rng.next_f32() - 0.5).sum::<f32>() * 3f32.sqrt();
                     (PLANE_LIGHT + (LAMP[c] - PLANE_LIGHT) * share + noise * normal).max(0.0)
                 })
             });
             let photo = photo.expect("a photo");
-            // The probability of light, as a segmentation would give it: it rises with the smoothed brightness from 0
-            // at 0.3 to 1 at 0.7.
+            // Make a probability of light as a segmentation would give it: it rises with the smoothed brightness from
+            // 0 at 0.3 to 1 at 0.7.
             let smooth = luxfer::image::pyramid::blur(&photo, 0.9, Monitor::default().job()).expect("a blur");
             let sure = Image::from_fn(640, 384, |x, y| [((smooth.rgb(x, y).x - 0.3) / 0.4).clamp(0.0, 1.0)]);
             let (exemplar, result) = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
@@ -93,7 +93,7 @@ fn data() -> PathBuf {
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
 }
 
-/// Photos of the data whose lights are no pattern in a plane, with the reason.
+/// Photos of the test data that are no exemplars, because their lights are no pattern in a plane, with the reason.
 const NO_PATTERN: [(&str, &str); 7] = [
     ("chester_bar", "one skylight, cut off by the photo"),
     ("chester_chandelier", "chandeliers hang in the room, not in a plane"),
@@ -104,7 +104,7 @@ const NO_PATTERN: [(&str, &str); 7] = [
     ("yud_076", "coves hide the lamps: what is bright is the ceiling"),
 ];
 
-/// Real photos with the strokes of the tests, unwarped and continued to twice their size.
+/// Unwarps real photos, with the strokes of the tests, and continues them to twice their size.
 pub fn real() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/strokes");
     let mut names: Vec<String> = std::fs::read_dir(&root)
@@ -129,13 +129,14 @@ pub fn real() {
     NO_PATTERN.iter().for_each(|(name, reason)| println!("# {name} is no exemplar: {reason}"));
 }
 
-/// The file of a photo.
+/// Path of the photo with this name in the test data.
 fn photo_of(name: &str) -> Option<PathBuf> {
     let files = [format!("photos/{name}.jpg"), format!("photos/hdri/{name}.png")];
     files.iter().map(|file| data().join(file)).find(|file| file.exists())
 }
 
-/// The exemplar that a transfer unwarps from a photo of the data, with the photo and the map from texels into it.
+/// Returns the exemplar that a transfer unwarps from a photo of the test data, the photo, and the map from unwarped
+/// pixels into the photo.
 fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homography), String> {
     let text = |e: luxfer::error::Error| e.message;
     let photo = io::load(&photo_of(name).ok_or("no photo")?, Encoding::Srgb).map_err(text)?;
@@ -149,7 +150,7 @@ fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homo
     let (Some(lights), Some(plane)) = (&results.lights, &results.unwarped) else { return Err("no plane".into()) };
     let (width, height) = (plane.image.width, plane.image.height);
     let job = Monitor::default();
-    // Blur the mask as a transfer does, so that the edge of a clipped lamp is no staircase of whole pixels.
+    // Blur the mask as a transfer does, so that the edge of a clipped lamp is not a staircase of whole pixels.
     let smooth = luxfer::image::pyramid::blur(&lights.confidence, EDGE_BLUR, job.job()).map_err(text)?;
     let light = rectify::warp(&smooth, &plane.to_photo, width, height, job.job()).map_err(text)?;
     let photo = transfer.input.photo.as_deref().cloned().unwrap_or_default();
@@ -157,7 +158,7 @@ fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homo
     Ok((exemplar, photo, plane.to_photo))
 }
 
-/// Ceilings seen straight from below, whose lamps are known.
+/// Continues ceilings that were photographed straight from below and whose lamps are annotated.
 pub fn ceilings() {
     let mut table = table_of_real();
     for name in ["library", "alma"] {
@@ -215,7 +216,8 @@ fn table_of_real() -> Table {
     ])
 }
 
-/// Continues an exemplar to twice its size, and compares the result with the exemplar.
+/// Synthesises a texture of twice the width and height of its exemplar, and adds a row to the table that compares the
+/// texture with the exemplar.
 fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     let (width, height) = (2 * input.light.width, 2 * input.light.height);
     let params = Params { width, height, ..Params::default() };
@@ -245,7 +247,7 @@ fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     result
 }
 
-/// Difference of the distances between lamps in two textures.
+/// Difference between the distributions of distances between lamps in two textures; `None` if one has too few lamps.
 pub fn pair_distance(of: &Emission, from: &Emission) -> Option<f64> {
     let centres = |e: &Emission| whole(e).iter().map(|l| l.centre).collect::<Vec<DVec2>>();
     let size = |e: &Emission| DVec2::new(e.mask.width as f64, e.mask.height as f64);
@@ -253,7 +255,7 @@ pub fn pair_distance(of: &Emission, from: &Emission) -> Option<f64> {
     pairs::distance(&Points { at: &a, size: size(of) }, &Points { at: &b, size: size(from) })
 }
 
-/// Lamps that the border does not touch.
+/// Lamps of a texture that do not touch its border.
 pub fn whole(result: &Emission) -> Vec<&Luminaire> {
     let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
     let inside = |l: &&Luminaire| l.outline.iter().all(|p| p.min_element() > 0.0 && (size - *p).min_element() > 0.0);

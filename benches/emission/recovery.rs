@@ -1,5 +1,5 @@
-//! Detail from the photo: texels against the true mean of the plane over them, and against an elliptical weighted
-//! average (EWA).
+//! Detail that texels recover from a photo. Compares luxfer's texels, and the texels of an elliptical weighted average
+//! (EWA), with the true mean of the plane over each texel.
 
 use crate::harness::{Clock, Table, figure, time};
 use glam::{DMat3, DVec2, Vec3};
@@ -8,26 +8,28 @@ use luxfer::geometry::Homography;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 
-/// Texels along a side.
+/// Number of texels along a side of the texture.
 const SIDE: usize = 64;
-/// Variance of the Gaussians for a texel and a pixel: as published (Greene and Heckbert 1986), with half a side as
-/// standard deviation; and the variance of the square itself.
+/// Variances of the Gaussian that stands for a texel and for a pixel, in squared sides. The first is as published
+/// (Greene and Heckbert 1986), with half a side as standard deviation; the second is the variance of the square
+/// itself.
 const WIDTHS: [(&str, f64); 2] = [("EWA", 0.25), ("EWA, as narrow as a texel", 1.0 / 12.0)];
 
-/// Lights with fine detail and sharp edges, in pixels of the photo at its largest scale.
+/// Brightness of a plane with fine detail and sharp edges; `p` is in pixels of the photo where its scale is largest.
 fn pattern(p: DVec2) -> f64 {
     let fine = 0.5 + 0.2 * (0.9 * p.x + 0.2 * p.y).sin() + 0.3 * (0.13 * p.x - 0.31 * p.y).sin();
     let is_bright = (0.11 * p.x).sin() * (0.02 * p.x + 0.09 * p.y).sin() > 0.0;
     0.4 * fine + if is_bright { 0.6 } else { 0.0 }
 }
 
-/// Mean of the pattern over a square, through a map.
+/// Mean of the pattern over the unit square at `corner`, whose points `map` maps into the pattern; from `samples`
+/// squared samples.
 fn mean(samples: usize, corner: DVec2, map: impl Fn(DVec2) -> DVec2) -> f64 {
     let step = |i: usize| DVec2::new((i % samples) as f64 + 0.5, (i / samples) as f64 + 0.5) / samples as f64;
     (0..samples * samples).map(|i| pattern(map(corner + step(i)))).sum::<f64>() / (samples * samples) as f64
 }
 
-/// Recovers photos of the pattern from three sides, with texels of a fraction of a pixel up to many pixels.
+/// Recovers photos of the pattern from three views, with texels from a fraction of a photo pixel up to many pixels.
 pub fn recovery() {
     let names = ["view", "pixels per texel", "ours", WIDTHS[0].0, WIDTHS[1].0, "ours us", "EWA us"];
     let mut table = Table::new(names);
@@ -61,8 +63,8 @@ pub fn recovery() {
     figure("emission.recovery.behind_ewa", behind as f64, "cases");
 }
 
-/// A photo of the pattern, and the map from texels into it. The far end of the plane is smaller by a factor of about
-/// `far`.
+/// Makes a photo of the pattern; returns the map from texels into the photo, and the photo. At the far end of the
+/// plane, scale is smaller by a factor of about `1 + far`.
 fn photograph(pixels: f64, squeezed: f64, far: f64) -> (Homography, Image) {
     let size = SIDE as f64 * pixels;
     let rows = [
@@ -79,7 +81,7 @@ fn photograph(pixels: f64, squeezed: f64, far: f64) -> (Homography, Image) {
     (Homography(map), photo.expect("a photo"))
 }
 
-/// A texture of the whole plane, and the seconds that its texels take.
+/// Renders a texture of the whole plane; returns the seconds that its texels take, and the texture.
 fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
     let image = |channels: usize| {
         let mut image = Image::new(SIDE, SIDE, channels).expect("an image");
@@ -95,8 +97,9 @@ fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
     time(Clock::Process, render)
 }
 
-/// Heckbert's filter (1989, 3.5): a Gaussian over the ellipse of a texel in the photo, widened by the Gaussian of a
-/// pixel; its weights come from a table over the squared distance, which is updated along each row.
+/// Heckbert's EWA filter (1989, 3.5): a Gaussian over the ellipse that a texel covers in the photo, widened by the
+/// Gaussian of a pixel. The weights come from a table over the squared distance, which is updated along each row of
+/// pixels.
 struct Ewa {
     variance: f64,
     table: Vec<f32>,
@@ -104,9 +107,9 @@ struct Ewa {
 
 impl Ewa {
     const STEPS: usize = 1024;
-    /// Squared distance in standard deviations at which the filter ends.
+    /// Squared distance from the centre at which the filter is cut off, in squared standard deviations.
     const END: f64 = 9.0;
-    /// Maximum number of pixels along the derivatives of a texel.
+    /// Maximum length in pixels of the derivative of the map along a side of a texel.
     const MAX_PIXELS: f64 = 64.0;
 
     fn new(variance: f64) -> Self {

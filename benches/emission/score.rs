@@ -1,7 +1,7 @@
-//! Difference of a texture from the design it continues, statistic by statistic.
+//! Scores a texture against the design that it continues, by several statistics.
 //!
-//! All are means weighted by a Hann window, which falls to zero at the border: cuts of the pattern at the border do
-//! not count, whatever the method, and no method's own estimate of the period enters.
+//! All statistics are means weighted by a Hann window, which falls to zero at the border, so lamps that the border
+//! cuts do not count, whatever the method. No estimate of the period by a method enters the score.
 
 use crate::{Design, photos};
 use glam::DVec2;
@@ -10,23 +10,24 @@ use luxfer::emission::{Emission, Luminaire, statistics};
 use luxfer::image::colour::luminance;
 use std::f64::consts::PI;
 
-/// Relative differences of: lamps per area, mean area, light per area, sorted areas, mean distance to the nearest
-/// lamp. Then the share of pairs of lamps whose distance does not occur in the design, and the root mean square
-/// distance from the lattice in periods.
+/// Names of the statistics. The first five are relative differences: number of lamps per area, mean area of lamps,
+/// light per area, sorted areas of lamps, and mean distance to the nearest lamp. The sixth is the share of pairs of
+/// lamps whose distance does not occur in the design. The seventh is the root mean square distance of lamps from the
+/// lattice, in periods.
 pub const STATISTICS: [&str; 7] = ["lamps %", "area %", "light %", "sizes %", "nearest %", "pairs %", "phase %"];
 
-/// Score of a texture against the design it continues.
+/// Score of a texture against the design that it continues; 0 is perfect.
 #[derive(Clone, Copy, Default)]
 pub struct Score {
     /// One value for each of [`STATISTICS`].
     pub off: [f64; STATISTICS.len()],
-    /// Lamps smaller than 70 % of the smallest lamp of the design, or larger than 130 % of its largest.
+    /// Number of lamps smaller than 70 % of the smallest lamp of the design, or larger than 130 % of its largest lamp.
     pub broken: usize,
 }
 
 impl Score {
-    /// Scores a texture whose exemplar shows lamps of the given luminance at the share `filled` of the places of the
-    /// design.
+    /// Scores a texture. Its exemplar shows lamps at the share `filled` of the lattice sites, with luminance
+    /// `luminance_of_lamps`.
     pub fn of(result: &Emission, design: &Design, filled: f64, luminance_of_lamps: f64) -> Self {
         let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
         let lamps = photos::whole(result);
@@ -34,14 +35,14 @@ impl Score {
         let cell = design.periods[0].perp_dot(design.periods[1]).abs() / filled;
         let [least, largest] = [design.areas[1], design.areas[2]];
 
-        // Weights of the plane and of the lamps.
+        // Sum the Hann weights over the plane, over all lamps, and over whole lamps.
         let plane = size.element_product() / 4.0;
         let seen: f64 = result.luminaires.iter().map(|l| hann(l.centre, size)).sum();
         let all: f64 = lamps.iter().map(|l| hann(l.centre, size)).sum();
         let area = lamps.iter().map(|l| hann(l.centre, size) * l.area).sum::<f64>() / all;
         let light = light(result, size) / luminance_of_lamps / plane * cell / design.areas[0];
 
-        // Mean distance to the nearest lamp in a part of the design of equal size.
+        // Compare the mean distance to the nearest lamp with that in a part of the design of equal size.
         let truth = design.places(size);
         let nearest = |points: &[DVec2]| {
             let weights: f64 = points.iter().map(|p| hann(*p, size)).sum();
@@ -64,7 +65,7 @@ impl Score {
         }
     }
 
-    /// The largest difference of a statistic, except the phase, which has its own target.
+    /// The largest difference among the statistics; the phase is left out, because it has its own target.
     pub fn worst(&self) -> f64 {
         self.off[..6].iter().copied().fold(0.0, f64::max)
     }
@@ -77,33 +78,32 @@ impl Score {
         self.off[6]
     }
 
-    /// The larger value of each statistic of the two.
+    /// Returns the larger value of each statistic of two scores, and the sum of their broken lamps.
     pub fn worse(self, other: Self) -> Self {
         Self { off: std::array::from_fn(|k| self.off[k].max(other.off[k])), broken: self.broken + other.broken }
     }
 
-    /// The number of statistics, including broken lamps, in which the other is nearer to the design by more than
-    /// rounding.
+    /// Number of statistics, including broken lamps, in which `other` is nearer to the design by more than rounding.
     pub fn behind(&self, other: &Self) -> usize {
         const ROUNDING: f64 = 1e-3;
         let nearer = self.off.iter().zip(&other.off).filter(|(own, other)| **own > **other + ROUNDING).count();
         nearer + usize::from(self.broken > other.broken)
     }
 
-    /// Columns of a table: [`STATISTICS`] and broken lamps.
+    /// Cells of a table row: the values of [`STATISTICS`], and the number of broken lamps.
     pub fn columns(&self) -> impl Iterator<Item = String> {
         let broken = self.broken.to_string();
         self.off.iter().map(|off| format!("{:.2}", 100.0 * off)).chain([broken])
     }
 }
 
-/// Weight of a place: 1 in the middle, a quarter on average.
+/// Hann weight of a position: 1 in the middle of the texture, 0 at its border, a quarter on average.
 fn hann(at: DVec2, size: DVec2) -> f64 {
     let along = |at: f64, side: f64| (PI * at / side).sin().powi(2);
     along(at.x, size.x) * along(at.y, size.y)
 }
 
-/// Weighted sum of the luminance of all texels.
+/// Sum of the luminance of all texels, weighted by the Hann window.
 fn light(result: &Emission, size: DVec2) -> f64 {
     let texels = result.texture.data.chunks_exact(3).enumerate();
     let width = result.texture.width;
@@ -116,7 +116,7 @@ fn light(result: &Emission, size: DVec2) -> f64 {
         .sum()
 }
 
-/// Mean difference of the sorted areas of lamps from the sorted areas of the design, relative to the mean area
+/// Mean difference between the sorted areas of the lamps and the sorted areas in the design, relative to the mean area
 /// (Wasserstein distance).
 fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     let [mean, least, largest] = design.areas;
@@ -126,7 +126,7 @@ fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     let all: f64 = sorted.iter().map(|l| l.1).sum();
     let (mut below, mut off) = (0.0, 0.0);
     for (area, weight) in sorted {
-        // The part of the interval with the smaller area of the design, and the rest.
+        // Split the lamp's share: the part that falls on the smaller kind of lamp in the design, and the rest.
         let share = weight / all;
         let of_small = (small - below).clamp(0.0, share);
         off += of_small * (area - least).abs() + (share - of_small) * (area - largest).abs();
@@ -135,8 +135,8 @@ fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     if all > 0.0 { off / mean } else { 1.0 }
 }
 
-/// Share of pairs of lamps whose distance does not occur in the design, within the part of the texture where lamps are
-/// whole.
+/// Share of pairs of lamps whose distance does not occur in the design. Only lamps away from the border count, where
+/// all lamps are whole.
 fn pair_distance(centres: &[DVec2], size: DVec2, design: &Design) -> f64 {
     let margin = design.areas[2].sqrt();
     let inner = size - 2.0 * margin;

@@ -1,5 +1,5 @@
-//! Textures too large to be made as a whole: time and memory over their size, and whether tiles equal the whole to the
-//! bit.
+//! Textures that are too large to be made as a whole: time and memory against their size, and whether tiles equal the
+//! whole texture to the bit.
 
 use crate::harness::{Clock, Table, absent, figure, forget_peak_memory, peak_memory, time};
 use crate::{DESIGNS, Exemplar};
@@ -21,7 +21,8 @@ pub fn tiles() {
             let places = (0..side / TILE).flat_map(|y| (0..side / TILE).map(move |x| (x * TILE, y * TILE)));
             places.map(|(x, y)| differing(&exemplar, &plan, (x, y), whole.as_ref().map(|w| &w.texture))).sum::<usize>()
         });
-        // Includes all memory of the process: the exemplar, and below 8192 the whole texture for comparison.
+        // The peak includes all memory of the process: the exemplar, and for sides below 8192 the whole texture for
+        // comparison.
         let peak = peak_memory().map(|bytes| bytes as f64 / 1048576.0).filter(|mib| *mib > 0.0);
         let seconds = planning + rendering;
         table.row([
@@ -48,7 +49,7 @@ fn plan(exemplar: &Exemplar, params: &Params) -> Composition {
     Composition::new(&exemplar.input(), &[], params, Monitor::default().job()).expect("a plan")
 }
 
-/// Renders a tile; returns the number of values that differ from the whole texture.
+/// Renders a tile; returns the number of its values that differ from the whole texture, or 0 without one.
 fn differing(
     exemplar: &Exemplar,
     plan: &Composition,

@@ -1,13 +1,13 @@
-//! The clocks for timing.
+//! The clocks that benchmarks use.
 
 use std::time::Duration;
 
-/// A clock for timing.
+/// A clock for benchmarks.
 #[derive(Clone, Copy)]
 pub enum Clock {
     /// Wall-clock time: for work on several threads.
     Wall,
-    /// Processor time of the calling thread: for work on one thread, unaffected by other work on the machine.
+    /// Processor time of the calling thread: for work on one thread, unaffected by other threads and programs.
     Thread,
     /// Processor time of all threads of this process: the cost of work on several threads, unaffected by other
     /// processes.
@@ -15,7 +15,7 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// The time of the clock since an arbitrary start.
+    /// Reads the clock: the time since an arbitrary start.
     pub fn now(self) -> Duration {
         let clock = match self {
             Self::Wall => libc::CLOCK_MONOTONIC,
@@ -23,13 +23,13 @@ impl Clock {
             Self::Process => libc::CLOCK_PROCESS_CPUTIME_ID,
         };
         let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-        // SAFETY: the call fills the structure it is given.
+        // SAFETY: the call fills the structure that it is given.
         unsafe { libc::clock_gettime(clock, &mut time) };
         Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
     }
 }
 
-/// Seconds that `work` takes, and its result.
+/// Runs `work`; returns the seconds that it takes, and its result.
 pub fn time<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock.now();
     let value = work();

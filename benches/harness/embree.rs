@@ -1,10 +1,11 @@
-//! Embree 3, if the machine has it: opened at run time, so that the benches do not depend on it.
+//! Embree 3 as a contender, if the machine has it. The library is opened at run time, so that the benches do not
+//! depend on it.
 
 use glam::Vec3;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::sync::atomic::{AtomicIsize, Ordering};
 
-/// `RTCRay` as `rtcore_ray.h` of Embree 3 lays it out.
+/// `RTCRay` with the layout of `rtcore_ray.h` of Embree 3.
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub struct Ray {
@@ -18,7 +19,7 @@ pub struct Ray {
     pub flags: u32,
 }
 
-/// `RTCRayHit`.
+/// `RTCRayHit` with the layout of `rtcore_ray.h` of Embree 3.
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub struct RayHit {
@@ -31,7 +32,7 @@ pub struct RayHit {
     pub instance: u32,
 }
 
-/// `RTCIntersectContext` for one level of instances, as Debian builds it.
+/// `RTCIntersectContext` for one level of instances, as in Debian's build of Embree 3.
 #[repr(C)]
 struct Context {
     flags: c_int,
@@ -72,7 +73,7 @@ impl Ray {
 
 type Handle = *mut c_void;
 
-/// The functions of the library that the benches use, by their names.
+/// The functions of Embree that the benches use; the fields follow their names.
 struct Functions {
     new_device: unsafe extern "C" fn(*const c_char) -> Handle,
     release_device: unsafe extern "C" fn(Handle),
@@ -90,11 +91,11 @@ struct Functions {
     occluded: unsafe extern "C" fn(Handle, *mut Context, *mut Ray),
 }
 
-/// The library, and one of its devices.
+/// The open library, and a device of it.
 pub struct Embree {
     functions: Functions,
     device: Handle,
-    /// Bytes of memory of the device, updated by Embree.
+    /// Memory that the device holds in bytes, which Embree updates.
     held: Box<AtomicIsize>,
 }
 
@@ -105,7 +106,7 @@ extern "C" fn count(held: Handle, bytes: isize, _: bool) -> bool {
 }
 
 impl Embree {
-    /// Opens the library with a number of threads for building.
+    /// Opens the library and creates a device that builds scenes with `threads` threads.
     pub fn open(threads: usize) -> Result<Self, String> {
         let functions = load()?;
         let config = std::ffi::CString::new(format!("threads={threads}")).map_err(|e| e.to_string())?;
@@ -120,7 +121,8 @@ impl Embree {
         Ok(Self { functions, device, held })
     }
 
-    /// Builds a scene of one triangle mesh. The time of this call is the building time; it includes copying the input.
+    /// Builds a scene of one triangle mesh. The time of this call is the build time of Embree; it includes copying the
+    /// mesh.
     pub fn build(&self, positions: &[Vec3], triangles: &[[u32; 3]], robust: bool) -> Scene<'_> {
         const TRIANGLE: c_int = 0;
         const FORMAT_UINT3: c_int = 0x5003;
@@ -159,7 +161,7 @@ impl Drop for Embree {
 pub struct Scene<'a> {
     embree: &'a Embree,
     handle: Handle,
-    /// Memory that remains allocated after building, including Embree's copy of the mesh.
+    /// Memory in bytes that stays allocated after building, including Embree's copy of the mesh.
     pub bytes: usize,
 }
 
@@ -171,7 +173,7 @@ impl Scene<'_> {
         unsafe { (self.embree.functions.intersect)(self.handle, &mut context, ray) }
     }
 
-    /// Whether anything lies on the ray.
+    /// Whether the ray hits anything.
     #[inline(always)]
     pub fn occluded(&self, ray: &mut Ray) -> bool {
         let mut context = Context { flags: 0, filter: std::ptr::null(), instance: u32::MAX };
@@ -183,7 +185,7 @@ impl Scene<'_> {
 
 impl Drop for Scene<'_> {
     fn drop(&mut self) {
-        // SAFETY: made by `build`.
+        // SAFETY: the handle was made by `build`.
         unsafe { (self.embree.functions.release_scene)(self.handle) }
     }
 }

@@ -1,5 +1,5 @@
-//! Quality of a stylised picture, whatever program made it: computed from image and guides alone, with a search at
-//! every offset of the exemplar.
+//! Quality measures of a stylised picture, whatever program made it. They are computed from the pictures and the
+//! guides alone, with a search at every offset of the exemplar.
 
 use luxfer::image::Image;
 use luxfer::image::colour::linear_to_srgb;
@@ -8,23 +8,24 @@ use luxfer::patch::{Domain, Field, Kernel, QuantisedImage, Quantiser, Search, Sw
 use luxfer::rng::{Rng, hash};
 use std::collections::HashSet;
 
-/// Width of the patches judged.
+/// Width in pixels of the patches that are judged.
 const PATCH: usize = 5;
-/// Number of patches that are compared with every patch of the exemplar.
+/// Number of patches that are compared with every patch of the exemplar, for the coherence.
 const SAMPLES: usize = 300;
 
 pub struct Judged {
-    /// Eq. 3 for the picture, per patch and pixel, channels in `[0, 1]`: colour has weight 1, the guides together 2.
-    /// PatchMatch finds the nearest patches from a random start, with equal settings for every picture.
+    /// Energy (Eq. 3) of the picture, per patch and pixel, with channels in `[0, 1]`: colour has weight 1, all guides
+    /// together 2. PatchMatch finds the nearest patches from a random start, with equal settings for every picture.
     pub energy: f64,
-    /// Share of the picture's patches in % that the exemplar contains unchanged (at 8 bits per channel).
+    /// Share in % of the picture's patches that also occur in the exemplar, compared at 8 bits per channel.
     pub verbatim: f64,
-    /// Mean squared difference per channel, in 8-bit steps, to the most similar patch of the exemplar, over all
-    /// offsets: 0 for a copy. From [`SAMPLES`] patches.
+    /// Mean squared difference per channel, in squared 8-bit steps, between [`SAMPLES`] patches of the picture and the
+    /// most similar patch of the exemplar at any offset; 0 for a copy.
     pub coherence: f64,
 }
 
-/// Judges `picture`, made from `artwork` (both linear) and guides, pairs of exemplar and target (both linear).
+/// Judges `picture`, which was painted from `artwork` and `guides`, pairs of exemplar and target. All images are
+/// linear.
 pub fn judge(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> Judged {
     Judged {
         energy: energy(picture, artwork, guides),
@@ -33,24 +34,24 @@ pub fn judge(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> Jud
     }
 }
 
-/// The image with display encoding.
+/// Returns the image with display encoding, clamped to `[0, 1]`.
 fn encoded(image: &Image) -> Image {
     let mut out = image.clone();
     out.data.iter_mut().for_each(|v| *v = linear_to_srgb(*v).clamp(0.0, 1.0));
     out
 }
 
-/// All patches of an image may be matches.
+/// The domain in which all patches of an image may be matches.
 fn everywhere(of: &QuantisedImage) -> Domain {
     Domain::new(of.width, of.height, PATCH, None, false).expect("an image as large as a patch")
 }
 
-/// Finds the nearest patches.
+/// The search for the nearest patches of `base` for the patches of `query`.
 fn nearest<'a>(query: &'a QuantisedImage, base: &'a QuantisedImage, allowed: &'a Domain) -> Search<'a> {
     Search { query, base, allowed, patch: PATCH, occurrence: None, kernel: Kernel::detect(), seed: 9 }
 }
 
-/// [`Judged::energy`] only.
+/// Computes [`Judged::energy`] only.
 pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f64 {
     let monitor = Monitor::default();
     let each = 2.0 / (3 * guides.len()) as f64;
@@ -114,7 +115,7 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     let mut rng = Rng::new(5, &[]);
     let mut chosen = vec![false; field.at.len()];
     (0..SAMPLES).for_each(|_| chosen[rng.below(field.at.len())] = true);
-    // Start with a good match, so that comparisons with all patches stop early.
+    // Start with good matches, so that most comparisons of the exhaustive search stop early.
     for index in 0..4 {
         search
             .sweep(&mut field, Sweep { index, radius: 512, initial_samples: 64 }, monitor.job(), |i| chosen[i])

@@ -1,11 +1,11 @@
 //! Common parts of all benches: headline figures, interleaved timing, tables, plots, and scenes.
 //!
-//! A bench is a program (`harness = false`): it prints tables for people, writes curves into `out/bench/`, and prints
-//! one line per headline figure, `figure NAME VALUE UNIT`. Competing implementations are timed in turns within one
-//! process, and the figure is the median of the ratios over the rounds, so other work on the machine affects all of
-//! them equally.
+//! A bench is a program (`harness = false`). It prints tables for people, writes curves into `out/bench/`, and prints
+//! one line per headline figure, `figure NAME VALUE UNIT`. Contenders are timed in turns within one process, and the
+//! figure is the median over the rounds of the ratios of their times, so that other work on the machine affects all
+//! contenders equally.
 
-// Each bench is a separate crate and uses a part of this module.
+// Each bench is a separate crate, and uses only a part of this module.
 #![allow(dead_code)]
 
 mod clock;
@@ -18,14 +18,14 @@ pub mod scenes;
 
 pub use clock::{Clock, time};
 
-/// One headline figure.
+/// Prints one headline figure.
 pub fn figure(name: &str, value: f64, unit: &str) {
-    // Four significant digits for any magnitude; values that are zero but for rounding need no digits.
+    // Print four significant digits for any magnitude, and no digits for values that are zero up to rounding.
     let digits = if value.abs() < 1e-12 { 0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize };
     println!("figure {name} {value:.digits$} {unit}");
 }
 
-/// A headline figure that cannot be measured here, and why.
+/// Prints that a headline figure cannot be measured on this machine, and the reason.
 pub fn absent(name: &str, reason: &str) {
     println!("figure {name} absent -");
     println!("# {name} is absent: {reason}");
@@ -33,11 +33,12 @@ pub fn absent(name: &str, reason: &str) {
 
 /// Times of several contenders, measured in turns.
 pub struct Timings {
-    /// `seconds[contender][round]`.
+    /// Seconds of each run: `seconds[contender][round]`.
     pub seconds: Vec<Vec<f64>>,
 }
 
-/// Runs every contender once per round, each round starting with another one. A first round is not counted.
+/// Runs every contender once per round and times it; the contender that comes first changes from round to round. One
+/// more round beforehand is not timed.
 pub fn interleaved(clock: Clock, rounds: usize, contenders: &mut [&mut dyn FnMut()]) -> Timings {
     let mut seconds = vec![Vec::with_capacity(rounds); contenders.len()];
     contenders.iter_mut().for_each(|contender| contender());
@@ -57,12 +58,12 @@ impl Timings {
         median(&self.seconds[contender])
     }
 
-    /// Median over the rounds of the time of `above` divided by the time of `below`.
+    /// Median over the rounds of the ratio between the times of two contenders, `above` / `below`.
     pub fn ratio(&self, above: usize, below: usize) -> f64 {
         median(&self.ratios(above, below))
     }
 
-    /// Lower and upper quartile of those ratios.
+    /// Lower and upper quartile over the rounds of the ratio `above` / `below`.
     pub fn quartiles(&self, above: usize, below: usize) -> [f64; 2] {
         let ratios = self.ratios(above, below);
         [quantile(&ratios, 0.25), quantile(&ratios, 0.75)]
@@ -77,7 +78,7 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The quantile `p` of the values, interpolated; NaN for an empty list.
+/// The quantile `p` in `[0, 1]` of the values, interpolated linearly; NaN for an empty list.
 pub fn quantile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -88,19 +89,20 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
     sorted[below] + (sorted[above] - sorted[below]) * (at - below as f64)
 }
 
-/// Resets [`peak_memory`], if the system allows it.
+/// Resets the peak that [`peak_memory`] returns, if the system allows it.
 pub fn forget_peak_memory() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// Highest resident memory of this process so far, in bytes.
+/// Highest resident memory of this process since its start or the last reset, in bytes; `None` if the system does not
+/// report it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().trim_end_matches("kB").trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// A table: the first column is left-aligned, the others right.
+/// A table of text for the terminal: the first column is left-aligned, the others are right-aligned.
 pub struct Table {
     rows: Vec<Vec<String>>,
 }

@@ -1,5 +1,5 @@
-//! A peer program that runs in its own process and Python environment and performs a piece of work on request: it can
-//! be timed in turns with ours, without its start-up time.
+//! A peer: another program that runs in its own process and Python environment and does a piece of work on request. It
+//! can be timed in turns with luxfer, without its start-up time.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
@@ -13,7 +13,7 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Starts `benches/peers/<script>` with the Python of `target/peers/<environment>`.
+    /// Starts `benches/peers/<script>` with the Python of `target/peers/<environment>`, and waits until it is ready.
     pub fn start(environment: &str, script: &str) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let python = root.join("target/peers").join(environment).join("bin/python");
@@ -31,12 +31,12 @@ impl Peer {
             return Err("the peer has no pipes".into());
         };
         let mut peer = Self { child, input, output: BufReader::new(output) };
-        // The peer writes a line when it is ready.
+        // The peer writes one line when it is ready.
         peer.answer()?;
         Ok(peer)
     }
 
-    /// Sends one line and waits for one line of JSON.
+    /// Sends one line to the peer and waits for its answer, one line of JSON.
     pub fn ask(&mut self, question: &str) -> Result<Value, String> {
         writeln!(self.input, "{question}").map_err(|e| e.to_string())?;
         self.answer()

@@ -1,9 +1,9 @@
-//! Curves as numbers (CSV) and as a picture (SVG) in `out/bench/`.
+//! Writes curves as numbers (CSV) and as a picture (SVG) into `out/bench/`.
 
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Curves in one diagram with logarithmic axes. Points that are not positive are left out.
+/// Curves in one diagram with logarithmic axes. Points with a coordinate that is not positive are left out.
 pub struct Plot {
     pub title: String,
     pub x_label: String,
@@ -16,23 +16,23 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Size of the part with the curves.
+/// Size in SVG units of the area with the curves.
 const SIZE: [f64; 2] = [510.0, 385.0];
-/// Space for labels: left, top, bottom.
+/// Space in SVG units for labels: at the left, top and bottom.
 const MARGIN: [f64; 3] = [70.0, 40.0, 55.0];
-/// Space for the names of the curves: a constant and the width of a letter.
+/// Width of the legend in SVG units: a constant part, and the width of a letter.
 const LEGEND: [f64; 2] = [44.0, 6.6];
 /// Colours that people with red-green colour blindness can tell apart (Okabe and Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"];
 
-/// Writes a file into `out/bench/`.
+/// Writes a file into `out/bench/`, which is created if necessary.
 pub fn write_out(name: &str, text: &str) -> std::io::Result<()> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
     std::fs::create_dir_all(&folder)?;
     std::fs::write(folder.join(name), text)
 }
 
-/// A cell of a CSV file.
+/// Quotes a cell of a CSV file.
 pub fn quoted(cell: &str) -> String {
     format!("\"{}\"", cell.replace('"', "\"\""))
 }
@@ -84,7 +84,7 @@ impl Plot {
         text(&mut out, middle, 22.0, "middle", " font-size=\"15\"", &self.title);
         text(&mut out, middle, height - 12.0, "middle", "", &self.x_label);
         text(&mut out, 16.0, centre, "middle", &format!(" transform=\"rotate(-90 16 {centre})\""), &self.y_label);
-        // Grid and its numbers.
+        // Draw the grid lines and their numbers.
         for v in axes[0].ticks() {
             let _ = writeln!(out, "<path d=\"M{:.1} {top}V{:.1}\" stroke=\"#ddd\"/>", x(v), height - bottom);
             text(&mut out, x(v), height - bottom + 18.0, "middle", "", &number(v));
@@ -93,7 +93,7 @@ impl Plot {
             let _ = writeln!(out, "<path d=\"M{left} {:.1}H{:.1}\" stroke=\"#ddd\"/>", y(v), width - right);
             text(&mut out, left - 6.0, y(v) + 4.0, "end", "", &number(v));
         }
-        // The curves and their names.
+        // Draw the curves, and their names in the legend.
         for (i, series) in self.series.iter().enumerate() {
             let colour = COLOURS[i % COLOURS.len()];
             let places: Vec<String> = series
@@ -121,7 +121,7 @@ fn is_drawable(v: f64) -> bool {
     v.is_finite() && v > 0.0
 }
 
-/// A logarithmic axis.
+/// A logarithmic axis; its ends are decimal logarithms.
 struct Axis {
     low: f64,
     high: f64,
@@ -143,7 +143,7 @@ impl Axis {
         (value.log10() - self.low) / (self.high - self.low)
     }
 
-    /// Powers of ten, and further values between them on short axes.
+    /// Values at which the axis has grid lines: powers of ten, and on short axes values between them.
     fn ticks(&self) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
         let steps: &[&str] = match self.high - self.low {

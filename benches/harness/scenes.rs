@@ -1,7 +1,8 @@
 //! The scenes of the benches. Each has a camera and at least one light.
 //!
-//! Generated: [`planes`], rooms of tessellated sheets, and the demonstration rooms of the library. By others, read
-//! from `LUXFER_TEST_DATA` (default `../shared/data`): [`cornell`], [`kitchen`], [`apartment`], [`sponza`].
+//! Generated scenes: [`planes`], a room of tessellated sheets, and the demonstration rooms of the library. Scenes by
+//! others, read from the folder `LUXFER_TEST_DATA` (default `../shared/data`): [`cornell`], [`kitchen`],
+//! [`apartment`], [`sponza`].
 
 use glam::{Mat4, Vec2, Vec3};
 use luxfer::demo;
@@ -19,7 +20,7 @@ pub struct Setting {
     pub name: &'static str,
     pub scene: Scene,
     pub camera: Camera,
-    /// A fitting size of the image in pixels.
+    /// Width and height in pixels of an image that suits the scene.
     pub size: [usize; 2],
 }
 
@@ -34,12 +35,12 @@ impl Setting {
         meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(|t| mesh.corners(t))).collect()
     }
 
-    /// Width of the image over its height.
+    /// Aspect ratio of the image: width over height.
     pub fn aspect(&self) -> f32 {
         self.size[0] as f32 / self.size[1] as f32
     }
 
-    /// The centre of every emissive triangle.
+    /// Centres of all emissive triangles.
     pub fn light_points(&self) -> Vec<Vec3> {
         let emits = |mesh: &&Mesh| self.scene.materials[mesh.material].emission != Vec3::ZERO;
         let lights = self.scene.meshes.iter().filter(emits);
@@ -50,9 +51,9 @@ impl Setting {
 /// The reason why a scene cannot be loaded.
 pub type Absent = String;
 
-/// A closed room of ten tessellated sheets (six walls along the axes, four bumpy spheres) with about `triangles`
-/// triangles, and a lamp under its ceiling. Rooms consist of regular grids in axis-aligned planes, which are the
-/// hardest input for builders that merge boxes greedily.
+/// A closed room of ten tessellated sheets (six walls along the axes and four bumpy spheres) with about `triangles`
+/// triangles, and a lamp under its ceiling. Regular grids in axis-aligned planes are the hardest input for builders of
+/// bounding volume hierarchies that merge boxes greedily.
 pub fn planes(name: &'static str, triangles: usize) -> Setting {
     let n = ((triangles as f64 / 20.0).sqrt().round() as u32).max(1);
     let mut scene = Scene::default();
@@ -60,7 +61,7 @@ pub fn planes(name: &'static str, triangles: usize) -> Setting {
     for (i, colour) in paints.into_iter().enumerate() {
         scene.materials.push(Material::diffuse(&format!("Paint {i}"), colour));
     }
-    // Walls, their fronts inwards.
+    // Add the walls, with their front faces inwards.
     let size = Vec3::new(6.0, 3.0, 4.0);
     for axis in 0..3 {
         for far in [false, true] {
@@ -75,7 +76,7 @@ pub fn planes(name: &'static str, triangles: usize) -> Setting {
             scene.meshes.push(sheet("Wall", material, n, |s, t| corner + u * s + v * t));
         }
     }
-    // Spheres with bumps of a tenth of their radius.
+    // Add spheres with bumps of a tenth of their radius.
     for (i, (x, y, z)) in [(1.2, 0.7, 1.1), (4.6, 0.8, 1.3), (3.1, 1.9, 2.2), (2.0, 0.6, 3.1)].into_iter().enumerate() {
         let (centre, radius) = (Vec3::new(x, y, z), 0.4 + 0.05 * i as f32);
         scene.meshes.push(sheet("Bumpy sphere", 0, n, |s, t| {
@@ -97,13 +98,13 @@ pub fn demo_room() -> Result<Setting, Absent> {
     with_own_camera("demo", scene, [640, 360])
 }
 
-/// The library's office under its grid of luminaires.
+/// The library's demonstration office under its grid of luminaires.
 pub fn demo_office() -> Result<Setting, Absent> {
     let exemplar = demo::exemplar_room().map_err(|e| e.to_string())?;
     with_own_camera("office", exemplar.scene, [640, 360])
 }
 
-/// A photo of the library's own office, whole.
+/// Takes a photo of the library's demonstration office with the camera of its scene.
 pub fn office_photo(params: &demo::photo::Params) -> Image {
     let room = demo::exemplar_room().expect("a room");
     let camera = room.scene.cameras[room.camera].clone();
@@ -115,8 +116,8 @@ pub fn transfer_input(photo: Arc<Image>, strokes: StrokeSet, scene: Arc<Scene>) 
     Input { photo: Some(photo), strokes, scene: Some(scene), surface: "Ceiling".into(), ..Input::default() }
 }
 
-/// The Cornell box, 0 to 555 units; 38 triangles. Its lamp is raised to the ceiling: renderers differ in whether its
-/// back emits too, and that light would come out of the gap.
+/// The Cornell box, 0 to 555 units wide, 38 triangles. Its lamp is raised to the ceiling, because some renderers let
+/// its back emit too, and that light would come out of the gap.
 pub fn cornell() -> Result<Setting, Absent> {
     let mut scene = wavefront::load(&data("scenes/cbox/cbox.obj")?)?;
     for mesh in &mut scene.meshes {
@@ -132,7 +133,7 @@ pub fn cornell() -> Result<Setting, Absent> {
     Ok(Setting { name: "cornell", scene, camera, size: [512, 512] })
 }
 
-/// Country Kitchen by Jay-Artist: 261 k triangles, closed, glossy and textured; a lamp is put under its ceiling.
+/// Country Kitchen by Jay-Artist: 261 k triangles, closed, glossy and textured; a lamp is added under its ceiling.
 pub fn kitchen() -> Result<Setting, Absent> {
     let mut scene = glb("scenes/kitchen/country_kitchen.glb")?;
     let view = view("kitchen")?;
@@ -148,7 +149,7 @@ pub fn kitchen() -> Result<Setting, Absent> {
     Ok(Setting { name: "kitchen", scene, camera, size })
 }
 
-/// Dream apartment by Mad_Huron: 178 k triangles, open above, seen from above; a lamp hangs over the camera.
+/// Dream apartment by Mad_Huron: 178 k triangles, open above, seen from above; a lamp is added above the camera.
 pub fn apartment() -> Result<Setting, Absent> {
     let mut scene = glb("scenes/apartment/dream_apartment.glb")?;
     let view = view("apartment")?;
@@ -158,7 +159,7 @@ pub fn apartment() -> Result<Setting, Absent> {
     Ok(Setting { name: "apartment", scene, camera, size })
 }
 
-/// Sponza by Marko Dabrovic: 66 k triangles; a lamp lies over the open court.
+/// Sponza by Marko Dabrovic: 66 k triangles; a lamp is added over the open court.
 pub fn sponza() -> Result<Setting, Absent> {
     let mut scene = glb("scenes/sponza/sponza_dabrovic.glb")?;
     let view = view("sponza")?;
@@ -168,8 +169,8 @@ pub fn sponza() -> Result<Setting, Absent> {
     Ok(Setting { name: "sponza", scene, camera, size })
 }
 
-/// A grid of `n` by `n` squares, each of two triangles, through the points `at(s, t)`; its front faces along `d/ds ×
-/// d/dt`.
+/// A mesh of `n` by `n` quadrilaterals, each of two triangles, through the points `at(s, t)` with s and t in `[0, 1]`.
+/// Its front faces look along `d/ds × d/dt`.
 pub fn sheet(name: &str, material: usize, n: u32, at: impl Fn(f32, f32) -> Vec3) -> Mesh {
     let mut mesh = Mesh { name: name.into(), material, ..Mesh::default() };
     let part = |i: u32| i as f32 / n as f32;
@@ -184,7 +185,7 @@ pub fn sheet(name: &str, material: usize, n: u32, at: impl Fn(f32, f32) -> Vec3)
     mesh
 }
 
-/// Adds a downward-facing rectangular lamp from its corner of minimum x and z; `luminance` in cd/m².
+/// Adds a rectangular lamp that faces down. `corner` is its corner of minimum x and z; `luminance` is in cd/m².
 pub fn lamp(scene: &mut Scene, corner: Vec3, size: Vec2, luminance: f32) {
     let black = Material::diffuse("Lamp", Vec3::ZERO);
     scene.materials.push(Material { emission: Vec3::splat(luminance), ..black });
@@ -197,7 +198,7 @@ fn with_own_camera(name: &'static str, scene: Scene, size: [usize; 2]) -> Result
     Ok(Setting { name, scene, camera, size })
 }
 
-/// The path of a file of the test data.
+/// Path of a file of the test data; an error if it is missing.
 pub fn data(name: &str) -> Result<PathBuf, Absent> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
@@ -209,7 +210,7 @@ fn glb(name: &str) -> Result<Scene, Absent> {
     gltf::load(&data(name)?, gltf::Options::default()).map_err(|e| e.to_string())
 }
 
-/// The `camera.json` of a scene.
+/// Reads the `camera.json` of a scene.
 fn view(folder: &str) -> Result<Value, Absent> {
     let path = data(&format!("scenes/{folder}/camera.json"))?;
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -221,7 +222,7 @@ fn aimed(view: &Value, size: [usize; 2]) -> Result<Camera, Absent> {
     Ok(Camera::look_at(point(&view["origin"])?, point(&view["target"])?, fov))
 }
 
-/// Vertical angle of view in radians from the horizontal one in degrees.
+/// Converts the horizontal angle of view in degrees to the vertical angle in radians.
 fn fov_y(fov_x_degrees: f32, [width, height]: [usize; 2]) -> f32 {
     2.0 * ((fov_x_degrees.to_radians() / 2.0).tan() * height as f32 / width as f32).atan()
 }
@@ -234,7 +235,7 @@ fn point(value: &Value) -> Result<Vec3, Absent> {
     Ok(Vec3::new(number(&value[0])?, number(&value[1])?, number(&value[2])?))
 }
 
-/// The subset of Wavefront OBJ and MTL that the Cornell box needs: polygons without texture coordinates, `Kd` and
+/// Reads the subset of Wavefront OBJ and MTL that the Cornell box uses: polygons without texture coordinates, `Kd` and
 /// `Ke`.
 mod wavefront {
     use super::*;

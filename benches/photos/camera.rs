@@ -1,4 +1,4 @@
-//! A camera's lens, sensor and processing: from the light that reaches the lens to the JPEG file.
+//! A model of a camera: lens, sensor and processing turn the light of a scene into a JPEG file.
 
 use super::dice::Dice;
 use super::exposure::Exposure;
@@ -9,29 +9,31 @@ use luxfer::image::{Image, pyramid};
 use luxfer::job::Monitor;
 use luxfer::rng::Rng;
 
-/// How one camera sees; all lengths as shares of the picture's height.
+/// The properties of one camera. Lengths are shares of the picture's height, except for `blur`.
 #[derive(Clone, Debug)]
 pub struct Look {
     /// Standard deviation of the lens blur in pixels.
     blur: f32,
-    /// Share of the light in a narrow and in a wide glow, and their standard deviations.
+    /// A narrow and a wide glow of the lens: for each its share of the light, and its standard deviation.
     glow: [(f32, f32); 2],
-    /// Rays of the star about a bright lamp, 0 for none; its share, its length and its turn.
+    /// The star around bright lamps: number of its rays (0 for no star), its share of the light, the length of the
+    /// rays, and the angle of the first ray in radians.
     star: (usize, f32, f32, f32),
-    /// Radial distortion at the corner of the picture: negative for a barrel.
+    /// Radial distortion k: a pixel at distance r from the centre of the photo shows the point at r (1 + k r²) of the
+    /// undistorted picture, with r = 1 in the corner. Positive values are barrel distortion.
     distortion: f32,
-    /// Brightness of the corner.
+    /// Brightness in the corner of the picture, relative to its centre.
     vignette: f32,
-    /// Linear value that the median of the picture gets, unless lamps decide.
+    /// Linear value to which the median of the picture is exposed, unless the exposure is set for the lamps.
     key: f32,
-    /// Whether the exposure is for the lamps.
+    /// Whether the exposure is set for the lamps.
     for_lamps: bool,
-    /// How far the white balance goes.
+    /// Strength of the white balance: 0 leaves the colour of the light, 1 makes it white.
     balance: f32,
-    /// Electrons that white holds, and those of the read-out noise.
+    /// Number of electrons at white, and standard deviation of the read-out noise in electrons.
     well: f32,
     read_out: f32,
-    /// Whether whites roll off.
+    /// Whether the tone curve rolls off towards white.
     shoulder: bool,
     contrast: f32,
     saturation: f32,
@@ -65,12 +67,13 @@ impl Look {
         }
     }
 
-    /// How much the lens magnifies the picture's centre, so that a barrel leaves no corner empty.
+    /// Factor for positions in the undistorted picture, relative to its centre. Under barrel distortion it is below 1:
+    /// the photo then shows the picture enlarged, so that no corner of the photo is empty.
     pub fn magnification(&self) -> f64 {
         1.0 / f64::from(self.distortion.max(0.0) + 1.0)
     }
 
-    /// Where in the straight picture a pixel of the photo comes from.
+    /// Position in the undistorted picture that a pixel of the photo shows.
     fn straight(&self, at: DVec2, size: DVec2) -> DVec2 {
         let from_centre = (at - size / 2.0) / (size.length() / 2.0);
         let k = f64::from(self.distortion);
@@ -78,7 +81,7 @@ impl Look {
             + from_centre * (1.0 + k * from_centre.length_squared()) * self.magnification() * (size.length() / 2.0)
     }
 
-    /// Moves what the lens bends: the light smoothly, the names of things whole.
+    /// Applies the lens distortion: light is interpolated, classes and lamp numbers are taken from the nearest pixel.
     pub fn bend(&self, exposure: &Exposure) -> Exposure {
         let (width, height) = (exposure.light.width, exposure.light.height);
         let size = DVec2::new(width as f64, height as f64);
@@ -99,7 +102,7 @@ impl Look {
         }
     }
 
-    /// The bytes of the JPEG file.
+    /// Takes the photo; returns the bytes of its JPEG file.
     pub fn photograph(&self, exposure: &Exposure, seed: u64) -> Vec<u8> {
         let optical = self.starred(&self.glowing(&exposure.light));
         let exposed = self.sensor(&optical, exposure, seed);
@@ -107,7 +110,7 @@ impl Look {
         encode(&developed, self.quality)
     }
 
-    /// Lens blur and glow.
+    /// Applies the lens blur and the two glows.
     fn glowing(&self, light: &Image) -> Image {
         let mut sum = blurred(light, self.blur);
         let spread: f32 = self.glow.iter().map(|(share, _)| share).sum();
@@ -119,7 +122,7 @@ impl Look {
         sum
     }
 
-    /// Rays about what is far brighter than the rest.
+    /// Adds a star of rays to each pixel that is far brighter than the median.
     fn starred(&self, light: &Image) -> Image {
         let (rays, share, length, turn) = self.star;
         let mut out = light.clone();
@@ -151,7 +154,7 @@ impl Look {
         out
     }
 
-    /// Exposure, white balance, vignetting, noise and clipping: linear values from 0 to 1.
+    /// Applies exposure, white balance, vignetting, noise and clipping; returns linear values, of which 1 is white.
     fn sensor(&self, light: &Image, exposure: &Exposure, seed: u64) -> Image {
         let scene = &exposure.light;
         let median = metered(exposure).max(1e-6);
@@ -179,7 +182,7 @@ impl Look {
         .expect("a picture")
     }
 
-    /// Noise reduction and sharpening, saturation, and the tone curve: display values from 0 to 1.
+    /// Applies noise reduction, sharpening, saturation and the tone curve; returns display values from 0 to 1.
     fn develop(&self, exposed: &Image) -> Image {
         let soft = blurred(exposed, 0.6);
         let wide = blurred(exposed, 1.2);
@@ -209,7 +212,7 @@ fn blurred(image: &Image, sigma: f32) -> Image {
     pyramid::blur(image, sigma, Monitor::default().job()).expect("a blur")
 }
 
-/// A wide blur, at a fraction of the size.
+/// Applies a wide blur at a reduced size, which is faster.
 fn coarsely_blurred(image: &Image, sigma: f32) -> Image {
     let reduce = ((sigma / 2.0) as usize).max(1);
     let job = Monitor::default();
@@ -218,8 +221,8 @@ fn coarsely_blurred(image: &Image, sigma: f32) -> Image {
     resize(&blurred(&small, sigma / reduce as f32), image.width, image.height)
 }
 
-/// The luminance that the exposure is measured by: the median of what is neither lamp nor window, unless these fill most of the
-/// picture.
+/// Luminance from which the exposure is set: the median of the pixels that show neither lamps nor windows, unless such
+/// pixels are few.
 fn metered(exposure: &Exposure) -> f32 {
     let shines = |class: u8| class == Class::Lamp as u8 || class == Class::Window as u8;
     let pixels = exposure.light.data.chunks_exact(3).zip(&exposure.classes);
@@ -228,7 +231,7 @@ fn metered(exposure: &Exposure) -> f32 {
     if levels.len() * 5 < exposure.classes.len() {
         return 0.5 * median_luminance(&exposure.light);
     }
-    // What is bright beside something large and dark should not be lost in white.
+    // Raise the level if a large part is dark, so that the bright parts are not clipped.
     let mut at = |share: f32| {
         let place = (levels.len() as f32 * share) as usize;
         *levels.select_nth_unstable_by(place, f32::total_cmp).1
@@ -242,7 +245,7 @@ fn median_luminance(image: &Image) -> f32 {
     *levels.select_nth_unstable_by(half, f32::total_cmp).1
 }
 
-/// The luminance that a two-hundredth of the picture exceeds.
+/// Luminance that 0.5 % of the pixels exceed.
 fn brightest(image: &Image) -> f32 {
     let mut levels: Vec<f32> = image.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))).collect();
     let at = levels.len() - 1 - levels.len() / 200;

@@ -1,4 +1,4 @@
-//! Ceilings: which lamps they have, and where.
+//! Designs of ceilings for generated rooms: which lamps a ceiling has, and where.
 
 use super::dice::Dice;
 use super::forms::Form;
@@ -8,31 +8,32 @@ use glam::Vec2;
 #[derive(Clone, Debug)]
 pub struct Fitting {
     pub form: Form,
-    /// In metres along x and z.
+    /// Centre in metres along x and z of the room.
     pub centre: Vec2,
-    /// Number of its kind.
+    /// Number of the lamp's kind.
     pub kind: usize,
-    /// How far below the ceiling it shines, in metres.
+    /// Distance in metres from the ceiling down to the face that shines.
     pub drop: f32,
     pub is_lit: bool,
 }
 
-/// The lamps of a ceiling, and what belongs to them.
+/// The lamps of a ceiling, with the parameters of their pattern.
 #[derive(Clone, Debug)]
 pub struct Ceiling {
     pub pattern: &'static str,
     pub fittings: Vec<Fitting>,
-    /// Area in m² that each place of the pattern takes, if it has such places, and how many lamps belong to one.
+    /// Area in m² of a cell of the pattern and number of lamps in it; `None` if the pattern has no cells.
     pub cell: Option<(f32, usize)>,
-    /// Lines of beams that hang from the ceiling: along x at these z, and along z at these x; and their width and depth.
+    /// Beams that hang from the ceiling: z of the beams along x, and x of the beams along z; then the width and depth
+    /// of a beam. All in metres.
     pub beams: Option<([Vec<f32>; 2], Vec2)>,
-    /// Whether the lamps show the sky.
+    /// Whether the lamps are panes of glass through which the sky shines.
     pub is_skylight: bool,
-    /// Whether a lamp shines unevenly: tubes behind its cover, a louvre.
+    /// Whether lamps shine unevenly, because of tubes behind the cover or a louvre.
     pub has_inside: bool,
 }
 
-/// The designs of ceilings, with how often each comes.
+/// The designs of ceilings, each with its relative frequency.
 type Design = fn(&mut Dice, Vec2) -> Ceiling;
 const DESIGNS: [(Design, f32); 11] = [
     (troffers, 22.0),
@@ -48,7 +49,8 @@ const DESIGNS: [(Design, f32); 11] = [
     (scattered, 6.0),
 ];
 
-/// A ceiling of a size by a design that is drawn apart; some of its lamps may be missing or out.
+/// Makes a ceiling of `size` metres. `design` draws the design, `dice` all else, so that both are independent; some
+/// lamps may be missing or switched off.
 pub fn ceiling(design: &mut Dice, dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut ceiling = design.weighted(&DESIGNS)(dice, size);
     let is_pattern = ceiling.fittings.len() >= 8;
@@ -73,7 +75,7 @@ impl Ceiling {
     }
 }
 
-/// Places of a lattice in the middle of a ceiling, each with room for `extent` about it.
+/// Positions of a lattice that is centred on a ceiling; each position has room for a lamp of size `extent`.
 fn lattice(size: Vec2, period: Vec2, extent: Vec2, shifted_rows: bool) -> Vec<Vec2> {
     let margin = (extent / 2.0 + 0.12).min(size / 2.0);
     let count = (((size - 2.0 * margin) / period).floor() + 1.0).max(Vec2::ONE).as_uvec2();
@@ -86,7 +88,7 @@ fn lattice(size: Vec2, period: Vec2, extent: Vec2, shifted_rows: bool) -> Vec<Ve
     (0..count.y).flat_map(|j| (0..count.x).map(move |i| (i, j))).map(|(i, j)| at(i, j)).filter(fits).collect()
 }
 
-/// Panels in the places of ceiling tiles.
+/// Rectangular panels that replace tiles of a suspended ceiling.
 fn troffers(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling { has_inside: dice.chance(0.5), ..Ceiling::new("troffers") };
     let panel = dice.pick(&[Vec2::new(0.6, 0.6), Vec2::new(1.2, 0.6), Vec2::new(0.6, 1.2), Vec2::new(1.2, 0.3)]) * 0.97;
@@ -114,14 +116,14 @@ fn battens(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// Lines of light from end to end.
+/// Lines of light that run from wall to wall.
 fn slots(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling::new("slots");
     let turned = dice.chance(0.6);
     let swap = |v: Vec2| if turned { Vec2::new(v.y, v.x) } else { v };
     let (length, spacing) = (swap(size).x - 2.0 * dice.between(0.2, 0.8), dice.between(1.0, 2.6));
     let width = dice.log_between(0.06, 0.22);
-    // Some are made of pieces.
+    // Some of the lines consist of two or three pieces.
     let pieces = if dice.chance(0.3) { dice.whole(2, 3) } else { 1 };
     let gap = if pieces > 1 { dice.between(0.25, 0.7) } else { 0.0 };
     let piece = Vec2::new((length - gap * (pieces as f32 - 1.0)) / pieces as f32, width);
@@ -149,7 +151,7 @@ fn downlights(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// Panels with small round lamps between them.
+/// Rectangular panels with small round lamps between them.
 fn mixed(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling { pattern: "mixed", ..troffers(dice, size) };
     out.fittings.clear();
@@ -192,7 +194,7 @@ fn hexagons(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// Panes between bars; some are halved by a diagonal bar.
+/// Glass panes between bars; in some skylights a diagonal bar halves each pane.
 fn skylight(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling { is_skylight: true, ..Ceiling::new("skylight") };
     let pane = Vec2::new(dice.between(0.5, 1.3), dice.between(0.5, 1.3));
@@ -216,7 +218,7 @@ fn skylight(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// A lamp in each field between beams.
+/// Beams that divide the ceiling into fields, with a lamp in each field.
 fn coffers(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling::new("coffers");
     let period = Vec2::new(dice.between(1.4, 2.4), dice.between(1.4, 2.4));
@@ -240,7 +242,7 @@ fn coffers(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// Groups of small lamps.
+/// A lattice of groups of small lamps.
 fn clusters(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling::new("clusters");
     let (radius, apart) = (dice.log_between(0.04, 0.08), dice.between(0.18, 0.36));
@@ -257,7 +259,7 @@ fn clusters(dice: &mut Dice, size: Vec2) -> Ceiling {
     out
 }
 
-/// Small lamps anywhere, none too near another.
+/// Small lamps at random positions, with a minimum distance between lamps.
 fn scattered(dice: &mut Dice, size: Vec2) -> Ceiling {
     let mut out = Ceiling::new("scattered");
     let (radius, apart) = (dice.log_between(0.045, 0.12), dice.between(0.6, 1.1));

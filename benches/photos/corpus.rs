@@ -1,4 +1,4 @@
-//! Real photographs with strokes: the corpus and the photos of the test data, and what is known of their lamps.
+//! Real photographs with strokes, from the corpus and from the test data, and the true lamps as far as they are known.
 
 use super::masks::Mask;
 use super::outline;
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The quarter of the corpus that nothing is tuned on: only `photos:held` runs it.
+/// The quarter of the corpus that is set aside: nothing is tuned on it, and only `photos:held` runs it.
 pub const HELD: [&str; 10] = [
     "cubicle_lines",
     "gym_hex",
@@ -28,12 +28,12 @@ pub const HELD: [&str; 10] = [
     "still_corridor_lowres",
 ];
 
-/// Photos that hold no pattern of lamps: a single hanging lamp, a single small downlight, a single panel of which the border of
-/// the photo leaves a corner or an end.
+/// Photos without a pattern of lamps: they show a single hanging lamp, a single small downlight, or single panels that
+/// the border of the photo cuts.
 const TRAPS: [&str; 4] = ["alma_glassroom", "alma_racks", "cmtc_discs", "foyer_sconces"];
 
-/// Photos whose lamps lie on no plane, or shine away from the camera, by the words of the corpus ("no plane", "no clean
-/// plane", "hanging" chandeliers, "uplight brighter than the lamps").
+/// Photos whose lamps lie on no plane, or shine away from the camera, according to the notes of the corpus ("no
+/// plane", "no clean plane", "hanging" chandeliers, "uplight brighter than the lamps").
 const WITHOUT_PLANE: [&str; 10] = [
     "aero_workshop",
     "chester_dining",
@@ -47,13 +47,15 @@ const WITHOUT_PLANE: [&str; 10] = [
     "still_stairs_lowres",
 ];
 
-/// Pixels between a lamp's polygon and the border of its photo below which the border may cut the lamp. [rounding]
+/// Distance in pixels between a lamp's polygon and the border of its photo, below which the border may cut the lamp.
+/// [rounding]
 const BORDER: f64 = 2.0;
 
-/// Least thickness in photo pixels of a lamp that is looked for. [convention: two pixels and their blurred borders]
+/// Minimum thickness in photo pixels of a lamp that a run is expected to find. [convention: two pixels and their
+/// blurred borders]
 const MIN_THICKNESS: f64 = 4.0;
 
-/// Where the files of a photo are.
+/// The name of a photo and the paths of its files.
 pub struct Source {
     pub name: String,
     picture: PathBuf,
@@ -61,7 +63,7 @@ pub struct Source {
     truth: PathBuf,
 }
 
-/// The photos of the test data that have strokes, in the order of their names.
+/// Lists the photos of the test data that have strokes, in the order of their names.
 pub fn sources() -> Result<Vec<Source>, String> {
     let corpus = data("corpus")?;
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/strokes");
@@ -85,14 +87,14 @@ pub fn sources() -> Result<Vec<Source>, String> {
     Ok(all)
 }
 
-/// Names of the files of a folder that end in a suffix, without it.
+/// Names of the files in a folder that end in `suffix`, without the suffix.
 fn named(folder: &Path, suffix: &str) -> Result<Vec<String>, String> {
     let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let name = |entry: std::fs::DirEntry| Some(entry.file_name().to_str()?.strip_suffix(suffix)?.to_string());
     Ok(entries.filter_map(|entry| name(entry.ok()?)).collect())
 }
 
-/// Reads a photo, its strokes and its truth.
+/// Reads a photo, its strokes and its true lamps.
 pub fn load(source: &Source) -> Result<Photo, String> {
     let read = |path: &Path| std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));
     let image = io::load(&source.picture, Encoding::Srgb).and_then(|i| i.to_rgb()).map_err(|e| e.to_string())?;
@@ -110,7 +112,7 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
         listed.iter().filter(|item| lamp(item).is_none()).filter_map(|item| point(&item["centre_px"])).collect();
     let mut lights = Mask::new(width, height);
     lamps.iter().flat_map(|lamp| &lamp.polygons).for_each(|polygon| lights.fill(polygon));
-    // Lamps measured in the ceiling seen straight on, some of which the list by hand leaves out.
+    // Add the lamps that were measured in the ceiling seen straight on; the list by hand leaves some of them out.
     let measured = items(&record["luminaires_from_ceiling"]);
     measured.iter().filter_map(|item| drawn_polygon(&item["px_polygon"])).for_each(|polygon| lights.fill(&polygon));
 
@@ -143,8 +145,8 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
     }
 }
 
-/// The lamps, each once: several seeds on one lamp grow regions that contain each other, and the largest region is the
-/// lamp.
+/// Removes lamps that are listed twice. Several seeds on one lamp have grown regions that contain each other; the
+/// largest region is kept.
 fn distinct(mut lamps: Vec<Lamp>, [width, height]: [usize; 2]) -> Vec<Lamp> {
     let drawn = |lamp: &Lamp| {
         let mut mask = Mask::new(width, height);
@@ -163,12 +165,12 @@ fn distinct(mut lamps: Vec<Lamp>, [width, height]: [usize; 2]) -> Vec<Lamp> {
     kept.into_iter().map(|(lamp, _)| lamp).collect()
 }
 
-/// The shorter side of the smallest rectangle around a polygon of pixels.
+/// Shorter side in pixels of the smallest rectangle around a polygon of pixels.
 fn thickness(polygon: &[DVec2]) -> f64 {
     Shape::of(polygon, None).map_or(0.0, |shape| shape.sides.y + 1.0)
 }
 
-/// Lamps that the lists leave out.
+/// Mask of the rectangles with lamps that the lists leave out (`unlisted.txt`); `None` if the photo has none.
 fn unlisted(name: &str, [width, height]: [usize; 2]) -> Option<Mask> {
     let mut mask = Mask::new(width, height);
     for line in include_str!("unlisted.txt").lines() {
@@ -182,8 +184,9 @@ fn unlisted(name: &str, [width, height]: [usize; 2]) -> Option<Mask> {
     (mask.count() > 0).then_some(mask)
 }
 
-/// The lamps as measured in the ceiling seen straight on: each where it lies, with the median size of all of that ceiling. A single
-/// lamp's own size is less sure: the panorama's stitching and the threshold make it smaller by up to a half.
+/// The lamps as measured in the ceiling seen straight on. Each lamp has its own position, but the median size of all
+/// lamps of that ceiling: the size of a single lamp is less certain, because the stitching of the panorama and the
+/// threshold make it smaller by up to a half.
 fn measured_layout(record: &Value, measured: &[Value]) -> Option<Lamps> {
     let all = &record["luminaires_from_ceiling"];
     let half = point(&all["size_uv_median"])? / 2.0;
@@ -198,14 +201,14 @@ fn measured_layout(record: &Value, measured: &[Value]) -> Option<Lamps> {
     (!whole.is_empty()).then(|| Lamps { whole, lit: lit(all), ..Lamps::default() })
 }
 
-/// The lamps as listed in their plane.
+/// The lamps as the list by hand gives them in their plane.
 fn listed_layout(listed: &[Value]) -> Option<Lamps> {
     let corners = listed.iter().filter_map(|item| plane_corners(&item["ceiling_uv"]));
     let whole: Vec<Shape> = corners.filter_map(|corners| Shape::of(&corners, None)).collect();
     (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() })
 }
 
-/// The lamps that the photo shows whole, from their pixels.
+/// The lamps that the photo shows whole, from their pixels mapped into the plane.
 fn shown_layout(parts: &[Vec<u32>], to_photo: &Homography, photo: &Image) -> Option<Lamps> {
     let size = DVec2::new(photo.width as f64, photo.height as f64);
     let from_photo = to_photo.inverse();
@@ -224,7 +227,8 @@ fn shown_layout(parts: &[Vec<u32>], to_photo: &Homography, photo: &Image) -> Opt
     (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() })
 }
 
-/// The share of a lattice that is lit.
+/// Lit share of the lattice: the area of a lamp divided by the area of a cell. It serves as the lower and as the upper
+/// bound of the lit share.
 fn lit(measured: &Value) -> Option<[f64; 2]> {
     let number = |value: &Value| value.as_f64();
     let size = number(&measured["size_uv_median"][0])? * number(&measured["size_uv_median"][1])?;
@@ -236,7 +240,7 @@ fn items(list: &Value) -> Vec<Value> {
     list["items"].as_array().cloned().unwrap_or_default()
 }
 
-/// A lamp of the list by hand, unless only its centre is known.
+/// Reads a lamp of the list by hand; `None` if only its centre is known.
 fn lamp(item: &Value) -> Option<Lamp> {
     let drawn = item["polygons"].as_array().into_iter().flatten();
     let polygons: Vec<Vec<DVec2>> =
@@ -246,7 +250,7 @@ fn lamp(item: &Value) -> Option<Lamp> {
     Some(Lamp { centre: point(&item["centre_px"]).unwrap_or(middle), polygons, pixels: Vec::new() })
 }
 
-/// The corners of a rectangle `[u0, u1, v0, v1]`, or the corners themselves.
+/// Corners in the plane: from a rectangle `[u0, u1, v0, v1]`, or as listed one by one.
 fn plane_corners(value: &Value) -> Option<Vec<DVec2>> {
     let numbers: Option<Vec<f64>> = value.as_array()?.iter().map(Value::as_f64).collect();
     match numbers.as_deref() {

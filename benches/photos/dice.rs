@@ -1,21 +1,21 @@
-//! Random draws of a room, all from its seed.
+//! Random draws for a generated room and photo, all from one seed.
 
 use luxfer::rng::Rng;
 
 pub struct Dice(Rng);
 
 impl Dice {
-    /// A stream of its own for each purpose, so that a change to one leaves the others alone.
+    /// Each purpose has a random stream of its own, so that a change of one purpose leaves the others as they are.
     pub fn new(seed: u64, purpose: u64) -> Self {
         Self(Rng::new(seed, &[purpose]))
     }
 
-    /// Uniform between two numbers.
+    /// A number with uniform distribution between `low` and `high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.0.next_f32()
     }
 
-    /// Uniform in the logarithm between two positive numbers.
+    /// A number between two positive numbers whose logarithm has uniform distribution.
     pub fn log_between(&mut self, low: f32, high: f32) -> f32 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -24,12 +24,12 @@ impl Dice {
         self.0.next_f32() < probability
     }
 
-    /// Uniform in `0..count`.
+    /// A whole number with uniform distribution in `0..count`.
     pub fn below(&mut self, count: usize) -> usize {
         self.0.below(count)
     }
 
-    /// A whole number from a range, both ends included.
+    /// A whole number with uniform distribution from `low` to `high`, both included.
     pub fn whole(&mut self, low: usize, high: usize) -> usize {
         low + self.0.below(high - low + 1)
     }
@@ -38,7 +38,7 @@ impl Dice {
         of[self.0.below(of.len())]
     }
 
-    /// One of several things by their weights.
+    /// One of several items, chosen with probabilities in proportion to their weights.
     pub fn weighted<T: Copy>(&mut self, of: &[(T, f32)]) -> T {
         let mut left = self.0.next_f32() * of.iter().map(|(_, weight)| weight).sum::<f32>();
         let found = of.iter().find(|(_, weight)| {

@@ -1,4 +1,4 @@
-//! Labelled photographs for a classifier to learn from.
+//! Writes labelled generated photos, from which a classifier can learn.
 
 use super::made::{LEARNING, Made, made};
 use super::shapes::Shape;
@@ -9,8 +9,9 @@ const PHOTOS: usize = 1000;
 
 /// Writes photos of the learning seeds into a folder: `export FOLDER [COUNT [FIRST]]`.
 ///
-/// Of each seed `SEED.jpg`, `SEED.labels.png` (red: class; green + 256 × blue: number of the lamp, 65535 for none),
-/// `SEED.strokes.txt`, `SEED.ten.txt` and `SEED.json`: camera, plane, pattern, and each lamp with its kind and its outline.
+/// For each seed it writes `SEED.jpg`, `SEED.labels.png` (red: class; green + 256 × blue: number of the lamp, 65535
+/// for none), `SEED.strokes.txt`, `SEED.ten.txt` (ten strokes) and `SEED.json`: the camera, the plane, the pattern,
+/// and each lamp with its kind and its outline.
 pub fn export(words: &[String]) {
     let Some(folder) = words.first() else { return println!("# name a folder: photos:export:FOLDER") };
     let number = |i: usize| words.get(i).and_then(|word| word.parse::<u64>().ok());

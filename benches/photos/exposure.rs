@@ -1,4 +1,4 @@
-//! What reaches the camera: the room's light, rendered, and for each pixel what it shows.
+//! Renders the light of a generated room that reaches the camera, and finds what each pixel shows.
 
 use super::room::{Class, Room};
 use super::viewpoint::{Shot, Surfaces};
@@ -10,27 +10,30 @@ use luxfer::render::{self, Aov, Film, Outputs, World, denoise};
 use luxfer::scene::TextureRef;
 use std::sync::Arc;
 
-/// Paths per pixel of each of the two pictures that the noise filter works from; a pixel of theirs is REDUCED photo pixels wide.
+/// Paths per pixel of each of the two renderings from which the noise filter works, and width of their pixels in photo
+/// pixels.
 const PATHS: u32 = 3;
 const REDUCED: usize = 2;
-/// Weight of light that another surface gets, beside that of the pixel's own: for pixels whose surface the small pictures lack.
+/// Weight of light from another surface than the pixel's own. It matters only for pixels whose surface the small
+/// renderings do not show.
 const STRANGE: f32 = 1e-3;
-/// Least albedo that light is divided by, as the noise filter has it.
+/// Minimum albedo by which light is divided, as in the noise filter.
 const MIN_ALBEDO: f32 = 0.02;
-/// How strongly noise is smoothed.
+/// Strength of the noise filter.
 const SMOOTHING: f32 = 1.5;
-/// Rays across and down a pixel that shows more than one thing, and one that shows a pattern. [convention]
+/// Number of rays across and down a pixel that shows several surfaces or a lamp, and a pixel that shows a texture.
+/// [convention]
 const FINE: usize = 5;
 const PATTERNED: usize = 2;
 
-/// No lamp.
+/// Lamp number of pixels that show no lamp.
 pub const NO_LAMP: u16 = u16::MAX;
 
-/// The light that reaches the camera's lens, in cd/m², and what each pixel shows most of.
+/// The light that reaches the camera's lens, in cd/m², and the class and lamp that each pixel shows most of.
 pub struct Exposure {
     pub light: Image,
     pub classes: Vec<u8>,
-    /// Number of the fitting, or [`NO_LAMP`].
+    /// Number of the lamp in the ceiling, or [`NO_LAMP`].
     pub lamps: Vec<u16>,
 }
 
@@ -47,11 +50,12 @@ impl Exposure {
     }
 }
 
-/// Light that surfaces send on, over their albedo: all but what comes straight from lamps, whose edges few paths would fray.
+/// Light that surfaces reflect, divided by their albedo. Light that comes directly from lamps is left out: with few
+/// paths, the edges of lamps would be ragged.
 struct Scattered {
     light: Image,
     normal: Image,
-    /// Number of the mesh plus 1.
+    /// Index of the mesh plus 1.
     mesh: Image,
 }
 
@@ -75,7 +79,7 @@ impl Scattered {
         };
         let (one, other) = (film(0), film(1));
         let halves = [&one.layers[0].image, &other.layers[0].image];
-        // Half the squared difference of two estimates is the variance of one, a quarter that of their mean.
+        // The variance of the mean of two estimates is a quarter of their squared difference.
         let mut variance = halves[0].clone();
         variance.data.iter_mut().zip(&halves[1].data).for_each(|(a, b)| *a = (*a - b).powi(2) / 4.0);
         let mean = |layer: usize| mean(&one, &other, layer);
@@ -88,7 +92,8 @@ impl Scattered {
         Self { light, normal, mesh: one.layers[4].image.clone() }
     }
 
-    /// At a pixel of the photo: the mean of the four pixels around it, as far as they show its surface.
+    /// Reflected light at a pixel of the photo: the mean of the four small pixels around it, as far as these show the
+    /// pixel's surface.
     fn at(&self, x: usize, y: usize, shown: &Shown) -> Vec3 {
         let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / REDUCED as f32 - 0.5;
         let corner = place.floor();
@@ -110,22 +115,22 @@ impl Scattered {
     }
 }
 
-/// The mean of a layer of two films.
+/// Mean of one layer of two films.
 fn mean(one: &Film, other: &Film, layer: usize) -> Image {
     let mut mean = one.layers[layer].image.clone();
     mean.data.iter_mut().zip(&other.layers[layer].image.data).for_each(|(a, b)| *a = (*a + b) / 2.0);
     mean
 }
 
-/// What a pixel shows.
+/// The contents of a photo pixel.
 #[derive(Clone, Copy)]
 struct Shown {
-    /// Of surfaces that shine, and the colour of what does not: means over the pixel.
+    /// Mean emission and mean albedo over the pixel.
     emission: Vec3,
     albedo: Vec3,
     class: u8,
     lamp: u16,
-    /// Of the surface in its middle.
+    /// Mesh and normal of the surface at the middle of the pixel.
     mesh: u32,
     normal: Vec3,
 }
@@ -156,7 +161,7 @@ fn shown(room: &Room, surfaces: &Surfaces, shot: &Shot) -> Vec<Shown> {
             let count = |value: (u8, u16)| samples.iter().filter(|s| of(s) == value).count();
             samples.iter().map(of).max_by_key(|value| (count(*value), *value)).expect("a sample")
         };
-        // A pixel is a lamp's where lamps cover half of it.
+        // A pixel belongs to a lamp if lamps cover at least half of it.
         let lit = samples.iter().filter(|s| s.lamp != NO_LAMP).count() * 2 >= samples.len();
         let (class, lamp) = most(&|s| if (s.lamp != NO_LAMP) == lit { (s.class, s.lamp) } else { (0, 0) });
         let (class, lamp) = if class == 0 { (samples[0].class, samples[0].lamp) } else { (class, lamp) };
@@ -182,7 +187,7 @@ fn sample(room: &Room, surfaces: &Surfaces, shot: &Shot, at: DVec2) -> Shown {
     let [a, b, c] = mesh.corners(seen.triangle);
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let faces = normal.dot(direction) < 0.0 || material.double_sided;
-    // Patterns are laid by coordinates that run from corner to corner.
+    // Texture coordinates are interpolated between the corners of the triangle.
     let coordinates = || {
         let [p, q, r] = mesh.triangles[seen.triangle].map(|i| mesh.uvs[0].get(i as usize).copied().unwrap_or_default());
         p + (q - p) * seen.barycentric.x + (r - p) * seen.barycentric.y

@@ -1,16 +1,16 @@
-//! Forms of lamps: their outlines and the meshes that shine.
+//! Shapes of lamps: their outlines, and the meshes that shine.
 
 use glam::{Vec2, Vec3};
 use luxfer::scene::Mesh;
 use std::f32::consts::TAU;
 
-/// Corners of the polygons that stand for circles.
+/// Number of corners of the polygons that stand for circles.
 const CIRCLE: usize = 32;
 
-/// The form of a lamp about its centre, in metres.
+/// The shape of a lamp around its centre, in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
-    /// Sides along x and z.
+    /// A rectangle, by its sides along x and z.
     Rectangle(Vec2),
     Disc(f32),
     Ring {
@@ -18,12 +18,12 @@ pub enum Form {
         inner: f32,
     },
     Hexagon(f32),
-    /// Corners of a convex pane.
+    /// A convex pane of glass, by its corners.
     Pane(Vec<Vec2>),
 }
 
 impl Form {
-    /// The corners of its outline, turned by an angle from x towards z.
+    /// Corners of the outline, rotated by `angle` in radians from x towards z.
     pub fn outline(&self, angle: f32) -> Vec<Vec2> {
         let turn = Vec2::from_angle(angle);
         let circle = |radius: f32, count: usize| -> Vec<Vec2> {
@@ -41,7 +41,7 @@ impl Form {
         corners.into_iter().map(|p| turn.rotate(p)).collect()
     }
 
-    /// Share of the outline's area that shines.
+    /// Share of the area inside the outline that shines.
     pub fn filled(&self) -> f32 {
         match self {
             Self::Ring { outer, inner } => 1.0 - (inner / outer).powi(2),
@@ -63,7 +63,7 @@ impl Form {
         }
     }
 
-    /// The face that shines down, about a centre; texture coordinates run from 0 to 1 over rectangles.
+    /// The mesh of the face that shines down, around `centre`. On rectangles the texture coordinates run from 0 to 1.
     pub fn mesh(&self, centre: Vec3, angle: f32) -> Mesh {
         let place = |p: Vec2| centre + Vec3::new(p.x, 0.0, p.y);
         let outline = self.outline(angle);
@@ -90,7 +90,7 @@ impl Form {
     }
 }
 
-/// Of the polygon that stands for a circle.
+/// Area of the polygon that stands for a circle.
 fn circle_area(radius: f32) -> f32 {
     0.5 * CIRCLE as f32 * (TAU / CIRCLE as f32).sin() * radius * radius
 }

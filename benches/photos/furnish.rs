@@ -1,4 +1,4 @@
-//! Walls, windows, floors, and what stands about in a room.
+//! Furnishes generated rooms: walls, windows, floors, furniture, and objects under the ceiling.
 
 use super::dice::Dice;
 use super::forms::Form;
@@ -7,14 +7,15 @@ use glam::{Vec2, Vec3};
 use luxfer::image::Image;
 use luxfer::scene::Mesh;
 
-/// Four walls and a floor; doors, pictures and windows on the walls.
+/// Adds four walls and a floor, and doors, pictures and windows on the walls.
 pub fn walls(room: &mut Room, dice: &mut Dice) {
     let Vec3 { x, y, z } = room.size;
     let base = warm(dice, 0.45, 0.85);
     let plain = room.paint(base, 1.0);
     let accent = if dice.chance(0.35) { room.paint(any_colour(dice), 1.0) } else { plain };
     let (u, v, w) = (Vec3::X * x, Vec3::Y * y, Vec3::Z * z);
-    // Each wall: its lower left corner as seen from inside, along it, and into the room.
+    // For each wall: its lower left corner as seen from inside, the vector along the wall, and the direction into the
+    // room.
     let walls = [(Vec3::ZERO, u, Vec3::Z), (w + u, -u, Vec3::NEG_Z), (w, -w, Vec3::X), (u, w, Vec3::NEG_X)];
     let special = dice.below(4);
     let windows = if dice.chance(0.45) { dice.below(4) } else { usize::MAX };
@@ -41,7 +42,7 @@ pub fn walls(room: &mut Room, dice: &mut Dice) {
     room.sheet(Class::Floor, floor, w, u, -w);
 }
 
-/// A wall from inside.
+/// A wall as seen from inside.
 struct Face<'a> {
     room: &'a mut Room,
     corner: Vec3,
@@ -52,14 +53,15 @@ struct Face<'a> {
 }
 
 impl Face<'_> {
-    /// A flat box on the wall, by its lower and upper corners on it, `from` to `to` metres off it.
+    /// Adds a flat box on the wall: `low` and `high` are its corners on the wall in metres, and it reaches from `from`
+    /// to `to` metres away from the wall.
     fn plate(&mut self, class: Class, material: usize, low: Vec2, high: Vec2, (from, to): (f32, f32)) {
         let at = |p: Vec2, off: f32| self.corner + self.along * p.x + Vec3::Y * p.y + self.inwards * off;
         let (a, b) = (at(low, from), at(high, to));
         self.room.cuboid(class, material, a.min(b), a.max(b));
     }
 
-    /// Windows in a row, full of daylight.
+    /// Adds a row of windows through which daylight shines.
     fn windows(&mut self, dice: &mut Dice) {
         let sky = Vec3::new(0.85, 1.0, 1.22) * dice.log_between(400.0, 5000.0);
         let glass = self.room.shining(sky);
@@ -102,7 +104,7 @@ impl Face<'_> {
                 let low = Vec2::new(left, dice.between(0.9, 1.3));
                 let high = (low + size).min(Vec2::new(self.length - 0.05, self.height - 0.15));
                 let material = match dice.below(8) {
-                    // A screen, a white board, a lit sign.
+                    // The plate may also be a lit screen or sign, or a glossy white board.
                     0 => self.room.shining(any_colour(dice) * dice.between(150.0, 500.0)),
                     1 => self.room.gloss(Vec3::splat(0.82), 0.15),
                     _ => material,
@@ -113,7 +115,7 @@ impl Face<'_> {
         }
     }
 
-    /// Lamps on the wall.
+    /// Adds a row of lamps on the wall.
     fn sconces(&mut self, dice: &mut Dice) {
         let lamp = self.room.shining(Vec3::new(1.25, 0.95, 0.65) * dice.between(800.0, 3000.0));
         let (step, level) = (dice.between(1.6, 3.0), dice.between(1.6, 2.0));
@@ -142,7 +144,7 @@ impl Face<'_> {
     }
 }
 
-/// Furniture, columns, and what hangs: none to plenty.
+/// Adds furniture, columns and hanging objects; their number varies from none to many.
 pub fn things(room: &mut Room, dice: &mut Dice) {
     let plenty = dice.pick(&[0.1, 0.5, 0.9, 1.3]);
     let Vec3 { x, y, z } = room.size;
@@ -195,7 +197,7 @@ pub fn things(room: &mut Room, dice: &mut Dice) {
     }
 }
 
-/// Desks with chairs in rows, as in classrooms and offices.
+/// Adds desks with chairs in rows, as in classrooms and offices.
 fn rows(room: &mut Room, dice: &mut Dice, paints: &[usize]) {
     let (desk, chair) = (dice.pick(paints), dice.pick(paints));
     let period = Vec2::new(dice.between(1.6, 2.4), dice.between(1.3, 2.0));
@@ -224,7 +226,7 @@ fn columns(room: &mut Room, dice: &mut Dice) {
     }
 }
 
-/// Ducts, signs and rails under the ceiling.
+/// Adds a duct, a sign or rails under the ceiling.
 fn hanging(room: &mut Room, dice: &mut Dice) {
     let Vec3 { x, y, z } = room.size;
     let material = room.paint(Vec3::splat(dice.pick(&[0.75, 0.5, 0.1])), 0.6);
@@ -247,7 +249,7 @@ fn hanging(room: &mut Room, dice: &mut Dice) {
     }
 }
 
-/// A lower rim around the ceiling.
+/// Adds a lower rim of `width` metres around the ceiling.
 pub fn rim(room: &mut Room, dice: &mut Dice, width: f32) {
     if width == 0.0 {
         return;
@@ -265,7 +267,8 @@ pub fn rim(room: &mut Room, dice: &mut Dice, width: f32) {
     }
 }
 
-/// What else is in ceilings: outlets of air, loudspeakers, detectors, hatches. They belong to the plane and are no lamps.
+/// Adds other objects in the ceiling: air outlets, loudspeakers, detectors, hatches. They belong to the plane and are
+/// no lamps.
 pub fn outlets(room: &mut Room, dice: &mut Dice) {
     if dice.chance(0.45) {
         return;
@@ -291,25 +294,25 @@ pub fn outlets(room: &mut Room, dice: &mut Dice) {
     }
 }
 
-/// Slats over a dark box.
+/// A texture of an air outlet: slats over a dark box.
 fn grille(dice: &mut Dice) -> Image {
     let dark = dice.between(0.1, 0.6);
     Image::from_fn(32, 32, |x, y| [if y % 8 < 3 && x > 2 && x < 29 { dark } else { 1.0 }; 3]).expect("a grille")
 }
 
-/// The view from a window: the sky over something darker.
+/// A texture of the view through a window: the sky above a darker skyline.
 fn view(dice: &mut Dice) -> Image {
     let (skyline, dark) = (dice.between(0.2, 0.8), dice.between(0.05, 0.5));
     let heights: Vec<f32> = (0..8).map(|_| skyline + 0.12 * dice.normal()).collect();
     Image::from_fn(64, 64, |x, y| {
-        // Texture coordinates run up the pane.
+        // The texture coordinate v rises towards the top of the pane.
         let ground = (y as f32 + 0.5) / 64.0 < heights[x / 8];
         [if ground { dark * (0.7 + 0.3 * ((x / 3 + y / 5) % 2) as f32) } else { 1.0 }; 3]
     })
     .expect("a view")
 }
 
-/// A light or dark colour, near grey and on the warm side.
+/// A colour near grey, slightly warm, with a brightness between `low` and `high`.
 fn warm(dice: &mut Dice, low: f32, high: f32) -> Vec3 {
     Vec3::new(1.0, 1.0 - dice.between(0.0, 0.06), 1.0 - dice.between(0.0, 0.16)) * dice.between(low, high)
 }

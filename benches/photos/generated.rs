@@ -1,4 +1,4 @@
-//! Generated photographs, end to end by strokes.
+//! Runs lighting transfers on generated photographs with strokes, and prints their verdicts.
 
 use super::hall::hall;
 use super::made::{EVALUATION, TUNING, made, picture_of};
@@ -11,15 +11,15 @@ use luxfer::image::Image;
 use luxfer::segment::strokes;
 use std::sync::Arc;
 
-/// Photos that figures are of, unless fewer or more are asked for.
+/// Default number of photos, from which the figures are computed.
 const PHOTOS: usize = 200;
-/// Photos of the contact sheet, across and down, and the width of each.
+/// Number of photos across and down a contact sheet, and the size of each in pixels.
 const CONTACT: [usize; 2] = [5, 8];
 const THUMBNAIL: [usize; 2] = [300, 225];
-/// Megapixels from which a photo counts for the time that a megapixel takes.
+/// Minimum size in megapixels of a photo that counts for the time per megapixel.
 const LARGE: f64 = 0.9;
 
-/// Photos of the evaluation seeds: figures.
+/// Runs photos of the evaluation seeds and prints figures.
 pub fn evaluate(words: &[String]) {
     let count = words.first().and_then(|word| word.parse().ok()).unwrap_or(PHOTOS);
     let (tally, ten) = run("made", EVALUATION, count);
@@ -45,7 +45,8 @@ pub fn evaluate(words: &[String]) {
     figure("photos.cpu_seconds", median(&tally.values(large)), "CPU s per MP, photos of 1 MP, median");
 }
 
-/// Photos of the tuning seeds, or one by its number: tables and contact sheets, no figures.
+/// Runs photos of the tuning seeds, or the photo of one seed; prints tables and makes contact sheets, but prints no
+/// figures.
 pub fn tune(words: &[String]) {
     let numbers: Vec<u64> = words.iter().filter_map(|word| word.parse().ok()).collect();
     match numbers[..] {
@@ -56,7 +57,7 @@ pub fn tune(words: &[String]) {
     }
 }
 
-/// The first photos of the tuning seeds without any stroke: tables, no figures.
+/// Runs the first photos of the tuning seeds without any stroke; prints tables, but no figures.
 pub fn tune_without_strokes(words: &[String]) {
     let count = words.first().and_then(|word| word.parse().ok()).unwrap_or(60);
     let scene = Arc::new(hall());
@@ -76,14 +77,15 @@ pub fn tune_without_strokes(words: &[String]) {
     tally.by_pattern();
 }
 
-/// Runs a number of photos from a seed on, and the masks by ten strokes of each.
+/// Runs `count` photos, from the seed `first` on. Returns the verdicts with all strokes, and the verdicts on the masks
+/// from ten strokes per photo.
 fn run(section: &str, first: u64, count: usize) -> (Tally, Tally) {
     let scene = Arc::new(hall());
     let (mut sheets, mut tally, mut ten) = (Sheets::new(section), Tally::default(), Tally::default());
     for seed in first..first + count as u64 {
         let mut made = made(seed);
         let mut outcome = Outcome::of(&made.photo, &scene);
-        // One sheet for every five is enough to look at.
+        // Add only every fifth photo of a long run to the contact sheets.
         let is_shown = count <= 40 || seed % 5 == 0;
         if is_shown {
             outcome.render();
@@ -104,7 +106,7 @@ fn run(section: &str, first: u64, count: usize) -> (Tally, Tally) {
     (tally, ten)
 }
 
-/// Generated photos beside one another, and what their pixels are.
+/// Makes a contact sheet of generated photos, and one of the classes of their pixels.
 pub fn contact(words: &[String]) {
     let first = words.first().and_then(|word| word.parse().ok()).unwrap_or(TUNING);
     let [across, down] = CONTACT;

@@ -1,12 +1,12 @@
-//! The room that takes the light of every photo: a hall so large that its ceiling shows a pattern several times over.
+//! The target scene of every transfer: a hall so large that its ceiling shows a photo's pattern several times.
 
 use crate::harness::scenes::sheet;
 use glam::Vec3;
 use luxfer::scene::{Camera, Material, Mesh, Scene};
 
-/// Width, height and depth in metres. At the default distance of the plane, 1.2 m, the ceiling is 13 by 10 such distances.
+/// Width, height and depth in metres. At a plane distance of 1.2 m, the ceiling is 13 by 10 such distances.
 const SIZE: Vec3 = Vec3::new(16.0, 3.2, 12.0);
-/// Boxes that stand in it: their lower and upper corners.
+/// Boxes that stand in the hall: their lower and upper corners.
 const BOXES: [[Vec3; 2]; 4] = [
     [Vec3::new(3.0, 0.0, 2.0), Vec3::new(5.5, 0.9, 3.2)],
     [Vec3::new(9.0, 0.0, 4.0), Vec3::new(10.0, 1.8, 6.5)],
@@ -36,7 +36,7 @@ pub fn hall() -> Scene {
     scene
 }
 
-/// The six sides of a box, fronts outwards.
+/// The six sides of a box, with their front faces outwards.
 pub fn cuboid(name: &str, material: usize, [low, high]: [Vec3; 2]) -> Vec<Mesh> {
     let d = high - low;
     let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);

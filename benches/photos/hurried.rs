@@ -1,4 +1,4 @@
-//! Strokes as a hurried person draws them: few, short, wobbly, here and there a little over the edge.
+//! Draws strokes as a person in a hurry would: few, short and wobbly, and sometimes slightly over the edge.
 
 use super::dice::Dice;
 use super::exposure::NO_LAMP;
@@ -6,14 +6,14 @@ use super::room::Class;
 use glam::DVec2;
 use std::fmt::Write;
 
-/// Strokes tried before one of a sort is given up.
+/// Number of attempts to place a stroke before it is given up.
 const TRIES: usize = 120;
-/// Share of a stroke that must lie where it should.
+/// Minimum share of a stroke's pixels that must lie on the intended surface.
 const MIN_INSIDE: f64 = 0.97;
-/// The same of a stroke drawn carelessly, and how often one is.
+/// That minimum for a careless stroke, and the probability that a stroke is careless.
 const CARELESS: (f64, f32) = (0.9, 0.06);
 
-/// What a photo shows, for one who draws on it.
+/// The contents of a photo's pixels, as the person who draws sees them.
 pub struct Scenery<'a> {
     pub width: usize,
     pub height: usize,
@@ -21,18 +21,18 @@ pub struct Scenery<'a> {
     pub lamps: &'a [u16],
 }
 
-/// Numbers of strokes: on the plane, elsewhere, on lamps, beside them.
+/// Numbers of strokes: on the plane, off the plane, on lamps, beside lamps.
 pub type Counts = [usize; 4];
 
-/// Ten strokes.
+/// Ten strokes in all.
 pub const TEN: Counts = [3, 3, 2, 2];
 
-/// Eight to eighteen strokes.
+/// Draws the numbers of strokes, eight to eighteen in all.
 pub fn counts(dice: &mut Dice) -> Counts {
     [dice.whole(2, 4), dice.whole(3, 6), dice.whole(2, 5), dice.whole(1, 3)]
 }
 
-/// Draws strokes; the text that the library reads.
+/// Draws strokes on a photo; returns them as the text that the library reads.
 pub fn draw(scenery: &Scenery, counts: Counts, dice: &mut Dice) -> String {
     let mut hand = Hand { scenery, dice, text: String::new() };
     let brush = 0.006 * scenery.height as f64;
@@ -40,7 +40,7 @@ pub fn draw(scenery: &Scenery, counts: Counts, dice: &mut Dice) -> String {
     let is_other = |s: &Scenery, i: usize| !matches!(s.classes[i], 1 | 2 | 7);
     (0..counts[0]).for_each(|_| hand.anywhere("plane", brush, &is(Class::Ceiling)));
     (0..counts[1]).for_each(|k| match k {
-        // One on what hangs before the ceiling, by those who think of it.
+        // In half of the photos, one stroke lies on an object that hangs before the ceiling.
         2 if hand.dice.chance(0.5) => hand.anywhere("not-plane", brush, &is(Class::Hanging)),
         _ => hand.anywhere("not-plane", brush, &is_other),
     });
@@ -61,7 +61,7 @@ struct Hand<'a> {
 type Test<'a> = &'a dyn Fn(&Scenery, usize) -> bool;
 
 impl Hand<'_> {
-    /// A stroke somewhere on what a test accepts.
+    /// Draws a stroke somewhere on pixels that the test accepts.
     fn anywhere(&mut self, word: &str, brush: f64, accepts: Test) {
         let scenery = self.scenery;
         let starts: Vec<usize> = (0..scenery.classes.len()).filter(|i| accepts(scenery, *i)).collect();
@@ -70,7 +70,7 @@ impl Hand<'_> {
         }
         for attempt in 0..TRIES {
             let start = starts[self.dice.below(starts.len())];
-            // Shorter and shorter ones, where there is little room.
+            // Try shorter and shorter strokes, in case there is little room.
             let reach = 1.0 - attempt as f64 / TRIES as f64;
             let diagonal = (scenery.width as f64).hypot(scenery.height as f64);
             let length = f64::from(self.dice.between(0.04, 0.16)) * diagonal * reach;
@@ -84,7 +84,7 @@ impl Hand<'_> {
         }
     }
 
-    /// Strokes along lamps: those that catch the eye first, each once.
+    /// Draws strokes on lamps, each on another lamp; larger lamps are more likely.
     fn lamps(&mut self, count: usize) {
         let mut seen: Vec<(u16, Vec<usize>)> = Vec::new();
         for (i, &lamp) in self.scenery.lamps.iter().enumerate().filter(|(_, lamp)| **lamp != NO_LAMP) {
@@ -108,7 +108,7 @@ impl Hand<'_> {
         }
     }
 
-    /// A stroke along a lamp, or a dot on a small one.
+    /// Draws a stroke along a lamp, or a dot on a small lamp.
     fn lamp(&mut self, lamp: u16, pixels: &[usize]) {
         let points: Vec<DVec2> = pixels.iter().map(|&i| self.point(i)).collect();
         let mean = points.iter().sum::<DVec2>() / points.len() as f64;
@@ -116,7 +116,7 @@ impl Hand<'_> {
         for d in points.iter().map(|p| *p - mean) {
             (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
         }
-        // Principal axis and half-axes of the ellipse with these moments.
+        // Compute the principal axis and the half-axes of the ellipse with these second moments.
         let count = points.len() as f64;
         let (middle, half) = ((xx + yy) / 2.0 / count, ((xx - yy) / 2.0 / count).hypot(xy / count));
         let axis = DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
@@ -128,7 +128,8 @@ impl Hand<'_> {
             let length = 2.0 * long * f64::from(self.dice.between(0.35, 0.75)) * reach;
             let (start, along) = match length > 3.0 * brush && attempt < TRIES / 2 {
                 true => (mean - axis * length / 2.0, axis * length),
-                // A dot or a dash on any part of it: a ring's middle is not the ring.
+                // Draw a dot or a dash on any pixel of the lamp: the centre of a ring, for example, is not on the
+                // lamp.
                 false => (points[self.dice.below(points.len())], axis * (0.3 * length)),
             };
             let points = if along.length() > 4.0 { self.wobbly(start, along) } else { vec![start] };
@@ -139,7 +140,7 @@ impl Hand<'_> {
         }
     }
 
-    /// A stroke on the ceiling near a lamp.
+    /// Draws a stroke on the ceiling near a lamp.
     fn beside_lamps(&mut self, brush: f64) {
         let (width, height) = (self.scenery.width, self.scenery.height);
         let near = (0.03 * height as f64) as usize + 3;
@@ -175,7 +176,7 @@ impl Hand<'_> {
         DVec2::new((pixel % self.scenery.width) as f64 + 0.5, (pixel / self.scenery.width) as f64 + 0.5)
     }
 
-    /// A line of a hand that is in a hurry.
+    /// A polyline along `along`, with random deviations.
     fn wobbly(&mut self, start: DVec2, along: DVec2) -> Vec<DVec2> {
         let pieces = self.dice.whole(1, 3);
         let wobble = 0.05 * along.length();

@@ -1,4 +1,4 @@
-//! Verdicts on a run, computed from its masks and its texture; the criteria stand in the bench's head comment.
+//! Computes the verdict on a run from its masks and its texture; benches/photos.rs states the criteria.
 
 use super::masks::Mask;
 use super::outcome::Outcome;
@@ -8,9 +8,9 @@ use glam::DVec2;
 use luxfer::geometry::Homography;
 use luxfer::rectify::Unwarped;
 
-/// How far, in photo pixels, lit area may lie from a lamp and still count as the lamp's. [convention]
+/// Distance in photo pixels from a lamp within which masked pixels still count as the lamp's. [convention]
 const NEAR: u32 = 6;
-/// Points along each side of the grid on which an unwarping is held against the true one.
+/// Points along each side of the grid at which an unwarping is compared with the true one.
 const GRID: usize = 12;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,7 +18,7 @@ pub enum Verdict {
     Right,
     Usable,
     Wrong,
-    /// Nothing is known to judge by.
+    /// The true lamps of the photo are not known.
     Unjudged,
 }
 
@@ -33,7 +33,7 @@ impl Verdict {
     }
 }
 
-/// What a verdict asks for: least shares, and largest factors between the texture's lamps and the true ones.
+/// Requirements of a verdict: minimum shares, and maximum factors between the texture's lamps and the true lamps.
 struct Limits {
     precision: f64,
     found: f64,
@@ -41,41 +41,42 @@ struct Limits {
     aspect: f64,
     spacing: f64,
     lit: f64,
-    /// Largest share of the lamps that may be of another kind than in truth.
+    /// Maximum share of the lamps that are of another kind than in truth.
     kinds: f64,
 }
 
-/// A texture that anyone recognises as the photo's. [convention]
+/// Limits for a texture that anyone recognises as the photo's. [convention]
 const RIGHT: Limits =
     Limits { precision: 0.8, found: 0.9, area: 1.25, aspect: 1.25, spacing: 1.1, lit: 1.35, kinds: 0.25 };
-/// A texture that needs a correction or two. [convention]
+/// Limits for a texture that needs a correction or two. [convention]
 const USABLE: Limits =
     Limits { precision: 0.5, found: 0.7, area: 2.0, aspect: 1.6, spacing: 1.3, lit: 2.0, kinds: 0.5 };
 
-/// Logarithms of the ratios of the texture's lamps to the true ones; absent where one side does not tell.
+/// Logarithms of the ratios between statistics of the texture's lamps and of the true lamps; `None` if a statistic is
+/// not known for both.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Agreement {
-    /// Median area; of lines, median width.
+    /// Median area of the lamps; for lines, their median width.
     pub area: Option<f64>,
-    /// Median aspect ratio; of lines, not compared.
+    /// Median aspect ratio of the lamps; `None` for lines.
     pub aspect: Option<f64>,
-    /// Median distance to the nearest lamp; of lines, across.
+    /// Median distance from a lamp to the nearest lamp; for lines, the median distance between neighbouring lines.
     pub spacing: Option<f64>,
     /// Lit share of the plane.
     pub lit: Option<f64>,
-    /// Larger of the two for the steps of the lattice, each against its own.
+    /// The larger deviation of the two steps of the lattice, each compared with the true step.
     pub lattice: Option<f64>,
-    /// Share of the lamps that are of another kind than in truth, where that has several.
+    /// Share of the lamps that are of another kind than in truth; `None` if all true lamps are of one kind.
     pub kinds: Option<f64>,
 }
 
 impl Agreement {
     pub fn between(texture: &Lamps, truth: &Lamps) -> Self {
         let ratio = |a: Option<f64>, b: Option<f64>| Some((a? / b?).ln());
-        // A texture that lacks what the truth has is as far off as can be.
+        // If the texture lacks a statistic that the truth has, the deviation is infinite.
         let demanded = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(f64::INFINITY, |a| (a / b).ln()));
         let lines = truth.are_lines();
-        // The photo of a single row does not tell what lies beside it.
+        // A photo of a single row does not show the distance to the next row, so compare distances along the row only.
         let row = truth.row();
         let spacing = |lamps: &Lamps| match row {
             _ if lines => lamps.spacing_across(),
@@ -102,7 +103,7 @@ impl Agreement {
         }
     }
 
-    /// Each lamp of the texture is held against the true kind that its area is nearest to.
+    /// Compares each lamp of the texture with the true kind of lamp whose area is nearest.
     fn by_kind(texture: &Lamps, kinds: &[[f64; 3]]) -> Self {
         let nearest = |shape: &Shape| {
             let off = |kind: &[f64; 3]| (shape.area / kind[0]).ln().abs();
@@ -132,16 +133,16 @@ impl Agreement {
     }
 }
 
-/// All that is computed of one run.
+/// Everything that is computed about one run.
 #[derive(Clone, Debug)]
 pub struct Judgement {
-    /// Share of the mask of lights that lies on a lamp or near one; absent without truth.
+    /// Share of the mask of lights that lies on a true lamp or near one; `None` if no true lamp is known.
     pub precision: Option<f64>,
-    /// Share of the lamps whose centre lies in the mask of lights.
+    /// Share of the true lamps of which half the pixels lie in the mask of lights.
     pub found: Option<f64>,
     pub lights_iou: Option<f64>,
     pub plane_iou: Option<f64>,
-    /// Deviation of the unwarped plane from a similar figure of the true one, relative to its extent.
+    /// Deviation of the unwarped plane from the true plane, up to a similarity, relative to its extent.
     pub unwarp: Option<f64>,
     pub agreement: Option<Agreement>,
     pub verdict: Verdict,
@@ -188,7 +189,7 @@ impl Judgement {
     }
 }
 
-/// Share of a mask's area that lies on a lamp or near one.
+/// Share of a mask's area that lies on a true lamp or near one.
 fn precision(lights: &Mask, truth: &Truth) -> f64 {
     let mut lights = lights.clone();
     let near = truth.lights.dilated(NEAR);
@@ -207,7 +208,8 @@ fn precision(lights: &Mask, truth: &Truth) -> f64 {
     lights.common(&near) as f64 / lights.count().max(1) as f64
 }
 
-/// Share of the lamps whose centre lies in a mask, or half of whose pixels where these are known.
+/// Share of the true lamps of which half the pixels lie in the mask; if a lamp's pixels are not known, its centre must
+/// lie in the mask.
 fn found(lights: &Mask, truth: &Truth) -> f64 {
     let is_found = |lamp: &&Lamp| match lamp.pixels.len() {
         0 => lights.holds(lamp.centre),
@@ -216,7 +218,7 @@ fn found(lights: &Mask, truth: &Truth) -> f64 {
     truth.lamps.iter().filter(is_found).count() as f64 / truth.lamps.len() as f64
 }
 
-/// Intersection over union with the true plane, over the pixels that are plane or not.
+/// Intersection over union with the true plane, over the pixels that are clearly plane or clearly not.
 fn plane_iou(plane: &Mask, truth: &Truth) -> Option<f64> {
     let mut plane = plane.clone();
     if let Some(either) = &truth.either {
@@ -225,8 +227,9 @@ fn plane_iou(plane: &Mask, truth: &Truth) -> Option<f64> {
     truth.plane.as_ref().map(|truth| plane.iou(truth))
 }
 
-/// Root mean square distance of unwarped points, as far as the plane is seen, from the best similar figure of the true ones,
-/// relative to that of the points from their mean. Mirrored figures count as similar.
+/// Root mean square distance between unwarped points and the true points after the best similarity, on a grid over the
+/// visible part of the plane. It is relative to the root mean square distance of the points from their mean. Mirrored
+/// figures count as similar.
 fn deviation(unwarped: &Unwarped, to_photo: &Homography) -> Option<f64> {
     let from_photo = to_photo.inverse();
     let (width, height) = (unwarped.valid.width, unwarped.valid.height);
@@ -244,7 +247,7 @@ fn deviation(unwarped: &Unwarped, to_photo: &Homography) -> Option<f64> {
     let mean = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<DVec2>() / pairs.len() as f64;
     let means = [mean(0), mean(1)];
     let extent: f64 = pairs.iter().map(|pair| pair[0].distance_squared(means[0])).sum();
-    // Of complex numbers: a = c b + d, or a = c conj(b) + d.
+    // Fit in complex numbers: a = c b + d, or a = c conj(b) + d for mirrored figures.
     let residual = |mirror: DVec2| {
         let pairs = pairs.iter().map(|pair| [pair[0] - means[0], (pair[1] - means[1]) * mirror]);
         let (mut product, mut square) = (DVec2::ZERO, 0.0);

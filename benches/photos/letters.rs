@@ -1,4 +1,4 @@
-//! Letters of three by five dots, for the captions of contact sheets; small letters are drawn as capitals.
+//! A font of three by five dots, for the captions of contact sheets; small letters are drawn as capitals.
 
 use glam::Vec3;
 use luxfer::image::Image;
@@ -6,7 +6,7 @@ use luxfer::image::Image;
 const WIDTH: usize = 3;
 const HEIGHT: usize = 5;
 
-/// Rows of a letter from the top, one octal digit of three dots each.
+/// Rows of a letter from the top; each row is an octal digit of three dots.
 fn rows(letter: char) -> u32 {
     match letter.to_ascii_uppercase() {
         'A' => 0o25755,
@@ -61,7 +61,7 @@ fn rows(letter: char) -> u32 {
     }
 }
 
-/// Writes a text whose top left corner is `at`, each dot a square of `dot` pixels, on a dark ground.
+/// Writes a text on a dark ground. `at` is the top left corner in pixels, and each dot is a square of `dot` pixels.
 pub fn write(image: &mut Image, text: &str, at: [usize; 2], dot: usize, ink: Vec3) {
     let advance = (WIDTH + 1) * dot;
     let size = [text.chars().count() * advance + dot, (HEIGHT + 2) * dot];

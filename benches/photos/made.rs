@@ -1,4 +1,5 @@
-//! Generated photographs: from a seed to a photo with its strokes and its exact truth, kept under `target/photolab`.
+//! Generated photographs: makes from a seed a photo with its strokes and its exact truth. Photos are kept under
+//! `target/photolab`.
 
 use super::camera::Look;
 use super::dice::Dice;
@@ -18,37 +19,40 @@ use luxfer::segment::strokes;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Version of the generator: photos of another version are made anew.
+/// Version of the generator: photos that another version has made are made again.
 const VERSION: u32 = 3;
-/// First seeds: those that may be tuned on, those that figures are of, and those that a classifier may learn from.
+/// First seeds of three ranges: photos that may be tuned on, photos that figures are computed from, and photos from
+/// which a classifier may learn.
 pub const TUNING: u64 = 1_000_000;
 pub const EVALUATION: u64 = 2_000_000;
 pub const LEARNING: u64 = 3_000_000;
-/// Fewest pixels of a lamp that is looked for.
+/// Minimum number of pixels of a lamp that a run is expected to find.
 const MIN_PIXELS: usize = 12;
-/// A lamp is whole where no more than this share of its pixels is hidden or cut off. [convention]
+/// Maximum share of a lamp's pixels that may be hidden or cut off if the lamp counts as seen whole. [convention]
 const MAX_HIDDEN: f64 = 0.1;
-/// Least angle of a ray with the ceiling, as its sine, for a pixel to count for the lit share.
+/// Minimum sine of the angle between a pixel's ray and the ceiling, for pixels that count for the lit share.
 const MIN_SLOPE: f32 = 0.15;
 
-/// A generated photo before it is judged.
+/// A generated photo with its truth, before a run on it is judged.
 pub struct Made {
     pub photo: Photo,
-    /// The bytes of its JPEG file.
+    /// Bytes of the photo's JPEG file.
     pub file: Vec<u8>,
     pub room: Room,
     pub shot: Shot,
-    /// What each pixel shows: its class, and its lamp.
+    /// Class and lamp number of each pixel.
     pub classes: Vec<u8>,
     pub lamps: Vec<u16>,
-    /// The ten strokes that masks are judged by.
-    /// Processor seconds for the room and its view, the light, the camera (both 0 of a photo that was kept), and the strokes.
+    /// Processor seconds for four steps: the room and its view, the light, the camera, and the strokes. Light and
+    /// camera take 0 if the photo was kept from an earlier run.
     pub seconds: [f64; 4],
+    /// Text of the ten strokes for the judgement of masks from few strokes.
     pub ten: String,
+    /// Text of the strokes of a whole run.
     pub strokes: String,
 }
 
-/// The photo of a seed.
+/// Returns the generated photo of a seed; makes it if no earlier run has stored it.
 pub fn made(seed: u64) -> Made {
     let mut seconds = [0.0; 4];
     let (room_seconds, (room, surfaces, shot, own)) = time(Clock::Process, || room_of(seed));
@@ -82,7 +86,8 @@ pub fn made(seed: u64) -> Made {
     Made { photo, file: bytes, room, shot, classes, lamps, ten, strokes: text, seconds }
 }
 
-/// The first room of a seed's own that has a view of its lamps.
+/// Tries rooms of a seed until the camera sees lamps in one. Returns the room, its surfaces, the view and the seed of
+/// that room.
 fn room_of(seed: u64) -> (Room, Surfaces, Shot, u64) {
     (0u64..)
         .find_map(|attempt| {
@@ -101,7 +106,7 @@ fn folder() -> PathBuf {
 
 type Seen = (Vec<u8>, Vec<u16>);
 
-/// The photo and what its pixels show, if it has been made before.
+/// The kept photo of a seed with the classes and lamp numbers of its pixels; `None` if it has not been made.
 fn kept(seed: u64) -> Option<(Vec<u8>, Seen)> {
     let photo = std::fs::read(folder().join(format!("{seed}.jpg"))).ok()?;
     let seen = image::open(folder().join(format!("{seed}.png"))).ok()?.to_rgb8();
@@ -120,7 +125,7 @@ fn keep(seed: u64, photo: &[u8], exposure: &Exposure, size: [usize; 2]) {
     }
 }
 
-/// Classes in red, numbers of lamps in green and blue.
+/// Encodes labels as an image: the class in red, the lamp number in green and blue.
 fn labels(classes: &[u8], lamps: &[u16], [width, _]: [usize; 2]) -> image::RgbImage {
     image::RgbImage::from_fn(width as u32, (classes.len() / width) as u32, |x, y| {
         let i = y as usize * width + x as usize;
@@ -130,7 +135,7 @@ fn labels(classes: &[u8], lamps: &[u16], [width, _]: [usize; 2]) -> image::RgbIm
 }
 
 impl Made {
-    /// What each pixel shows: its class in red, the number of its lamp in green and blue.
+    /// The labels of all pixels as an image: the class in red, the lamp number in green and blue.
     pub fn labels(&self) -> image::RgbImage {
         labels(&self.classes, &self.lamps, [self.shot.width, self.shot.height])
     }
@@ -141,7 +146,7 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
     let mask = |is: &dyn Fn(usize) -> bool| Mask { width, height, on: (0..width * height).map(is).collect() };
     let lights = mask(&|i| scenery.lamps[i] != NO_LAMP);
     let plane = mask(&|i| matches!(scenery.classes[i], 1 | 2));
-    // What hangs before the ceiling may be painted either way.
+    // Objects that hang before the ceiling may count as plane or not.
     let either = mask(&|i| scenery.classes[i] == Class::Hanging as u8);
 
     let mut pixels: Vec<Vec<u32>> = vec![Vec::new(); room.ceiling.fittings.len()];
@@ -176,13 +181,14 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
     }
 }
 
-/// The lamps as the photo shows them on the ceiling: those seen whole, or all where fewer than three are.
+/// The lamps as the photo shows them, projected onto the ceiling: the lamps seen whole, or all lamps if fewer than
+/// three are seen whole.
 fn layout(room: &Room, shot: &Shot, to_photo: &Homography, pixels: &[Vec<u32>], lit: &[f64; 2]) -> Lamps {
     let distance = f64::from(shot.distance);
     let foot = Vec3::new(shot.camera.position.x, 0.0, shot.camera.position.z);
     let mut shapes: Vec<(Shape, usize, bool)> = Vec::new();
     for (fitting, pixels) in room.ceiling.fittings.iter().zip(pixels).filter(|(fitting, _)| fitting.is_lit) {
-        // A lamp below the ceiling hides a larger part of it.
+        // A lamp below the ceiling hides a larger part of the ceiling than its own area.
         let grown = distance / (distance - f64::from(fitting.drop));
         let foot = DVec2::new(foot.x.into(), foot.z.into());
         let on_ceiling = |p: glam::Vec2| (foot + ((fitting.centre + p).as_dvec2() - foot) * grown) / distance;
@@ -205,7 +211,7 @@ fn layout(room: &Room, shot: &Shot, to_photo: &Homography, pixels: &[Vec<u32>], 
     }
 }
 
-/// Photo pixels that a lamp would have if nothing hid it.
+/// Number of photo pixels that a lamp would cover if nothing hid it; infinite if a part of it lies behind the camera.
 fn area_in_photo(outline: &[DVec2], to_photo: &Homography, filled: f64) -> f64 {
     let behind = |p: &DVec2| to_photo.apply_homogeneous(*p).z <= 0.0;
     if outline.iter().any(behind) {
@@ -215,7 +221,8 @@ fn area_in_photo(outline: &[DVec2], to_photo: &Homography, filled: f64) -> f64 {
     luxfer::geometry::polygon::area(&corners).abs() * filled
 }
 
-/// Bounds of the lit share of the ceiling: over all of it, over a cell of its pattern, and over the part in view.
+/// Lower and upper bound of the lit share of the ceiling: over the whole ceiling, over a cell of its pattern, and over
+/// the visible part.
 fn lit(room: &Room, shot: &Shot, scenery: &Scenery) -> [f64; 2] {
     let lit = || room.ceiling.fittings.iter().filter(|fitting| fitting.is_lit);
     let area: f32 = lit().map(|fitting| fitting.form.area()).sum();
@@ -229,7 +236,7 @@ fn lit(room: &Room, shot: &Shot, scenery: &Scenery) -> [f64; 2] {
         let at = DVec2::new((i % shot.width) as f64 + 0.5, (i / shot.width) as f64 + 0.5);
         let ray = shot.direction(at);
         if ray.normalize().y > MIN_SLOPE {
-            // Area of the ceiling that a pixel shows.
+            // Area of the ceiling that the pixel shows, up to a factor.
             let weight = f64::from(ray.y).powi(-3);
             all += weight;
             lamps += if scenery.lamps[i] != NO_LAMP { weight } else { 0.0 };
@@ -244,7 +251,7 @@ fn lit(room: &Room, shot: &Shot, scenery: &Scenery) -> [f64; 2] {
     ]
 }
 
-/// The classes as a picture, for people: plane grey, lamps yellow, the rest by colours.
+/// Shows classes as a picture for people: the plane grey, lamps yellow, other classes in other colours.
 pub fn picture_of(classes: &[u8], width: usize, height: usize) -> Image {
     const COLOURS: [[f32; 3]; 8] = [
         [0.0; 3],

@@ -1,9 +1,9 @@
-//! Masks of whole pixels: drawn from polygons, grown, compared, and taken apart into connected parts.
+//! Masks of whole pixels: filled from polygons, dilated, compared, and split into connected parts.
 
 use glam::DVec2;
 use luxfer::image::Image;
 
-/// One flag per pixel, row by row.
+/// A mask with one flag per pixel, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
     pub width: usize,
@@ -16,7 +16,7 @@ impl Mask {
         Self { width, height, on: vec![false; width * height] }
     }
 
-    /// The pixels of an image's first channel that are above one half.
+    /// Mask of the pixels whose first channel is above one half.
     pub fn of(image: &Image) -> Self {
         let on = image.data.chunks_exact(image.channels).map(|pixel| pixel[0] > 0.5).collect();
         Self { width: image.width, height: image.height, on }
@@ -26,25 +26,25 @@ impl Mask {
         self.on.iter().filter(|on| **on).count()
     }
 
-    /// Number of pixels that are in both masks.
+    /// Number of pixels that are set in both masks.
     pub fn common(&self, other: &Self) -> usize {
         self.on.iter().zip(&other.on).filter(|(a, b)| **a && **b).count()
     }
 
-    /// Intersection over union; 1 of two empty masks.
+    /// Intersection over union with another mask; 1 for two empty masks.
     pub fn iou(&self, other: &Self) -> f64 {
         let common = self.common(other);
         let union = self.count() + other.count() - common;
         if union == 0 { 1.0 } else { common as f64 / union as f64 }
     }
 
-    /// Whether the pixel that holds a point is in the mask; a point outside the image counts for the nearest pixel.
+    /// Whether the pixel that contains a point is set; a point outside the image is moved to the nearest pixel.
     pub fn holds(&self, point: DVec2) -> bool {
         let clip = |v: f64, size: usize| (v.max(0.0) as usize).min(size - 1);
         self.on[clip(point.y, self.height) * self.width + clip(point.x, self.width)]
     }
 
-    /// Adds the pixels whose centres lie inside a polygon by the even-odd rule.
+    /// Sets the pixels whose centres lie inside a polygon, by the even-odd rule.
     pub fn fill(&mut self, polygon: &[DVec2]) {
         let (low, high) = polygon.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
         let first = (low - 0.5).ceil().max(0.0) as usize;
@@ -65,11 +65,11 @@ impl Mask {
         }
     }
 
-    /// The pixels at most `steps` steps to a side, up or down away from the mask.
+    /// Mask of the pixels that are at most `steps` horizontal or vertical steps away from this mask.
     pub fn dilated(&self, steps: u32) -> Self {
         let (w, h) = (self.width, self.height);
         let mut distance: Vec<u32> = self.on.iter().map(|&on| if on { 0 } else { u32::MAX / 2 }).collect();
-        // Distances along rows and columns: one pass from the top left, one from the bottom right.
+        // Compute distances along rows and columns in two passes: from the top left, then from the bottom right.
         for i in 0..w * h {
             let left = if i % w > 0 { distance[i - 1] } else { u32::MAX / 2 };
             let up = if i >= w { distance[i - w] } else { u32::MAX / 2 };
@@ -83,7 +83,7 @@ impl Mask {
         Self { on: distance.into_iter().map(|d| d <= steps).collect(), ..*self }
     }
 
-    /// The pixels of each part that hangs together by sides.
+    /// Lists the pixels of each 4-connected part.
     pub fn parts(&self) -> Vec<Vec<usize>> {
         let (w, h) = (self.width, self.height);
         let mut open = self.on.clone();

@@ -1,4 +1,4 @@
-//! A whole transfer from a photo by its strokes, with default settings, and what it took.
+//! A whole transfer from a photo with its strokes, with default settings, and its time.
 
 use super::shapes::{Lamps, Shape};
 use super::truth::Photo;
@@ -11,21 +11,21 @@ use luxfer::transfer::{Input, Params, Results, Stage, Transfer};
 use luxfer::warning::{Code, Warning};
 use std::sync::Arc;
 
-/// Size of the picture of the lit room, and its paths per pixel.
+/// Size in pixels of the picture of the lit hall, and its paths per pixel.
 const PICTURE: ([usize; 2], u32) = ([320, 192], 8);
 
-/// A run and its results, as far as it came.
+/// A transfer with its results, as far as it has come.
 pub struct Outcome {
     pub transfer: Transfer,
-    /// Why the run ended early.
+    /// Reason for which the transfer ended early; `None` if it did not.
     pub failure: Option<String>,
-    /// Seconds on the wall from the photo to the emissive texture, and processor seconds of all threads.
+    /// Wall-clock seconds from the photo to the emissive texture, and processor seconds of all threads.
     pub seconds: f64,
     pub cpu_seconds: f64,
 }
 
 impl Outcome {
-    /// Runs all stages up to the emissive texture on the ceiling of a scene.
+    /// Runs all stages up to the emissive texture, on the ceiling of `scene`.
     pub fn of(photo: &Photo, scene: &Arc<Scene>) -> Self {
         Self::from(
             Transfer { input: input(photo, scene), params: Params::default(), results: Results::default() },
@@ -33,7 +33,7 @@ impl Outcome {
         )
     }
 
-    /// Runs the stages from one on up to the emissive texture.
+    /// Runs the stages from `first` up to the emissive texture.
     pub fn from(transfer: Transfer, first: Stage) -> Self {
         Self::between(transfer, first, Stage::Emission)
     }
@@ -49,13 +49,13 @@ impl Outcome {
         Self { transfer, failure, seconds, cpu_seconds }
     }
 
-    /// Runs the stages up to the masks only.
+    /// Runs the stages up to the masks of the plane and the lights.
     pub fn masks(photo: &Photo) -> Self {
         let input = Input { photo: Some(photo.image.clone()), strokes: photo.strokes.clone(), ..Input::default() };
         Self::between(Transfer { input, ..Transfer::default() }, Stage::View, Stage::Lights)
     }
 
-    /// Solves for the light's strength and renders the room, for people to look at.
+    /// Solves for the strength of the light and renders the hall, for the contact sheets.
     pub fn render(&mut self) {
         if self.failure.is_none() {
             let render = &mut self.transfer.params.render;
@@ -78,20 +78,20 @@ impl Outcome {
         self.results().warnings(&self.transfer.input.strokes)
     }
 
-    /// Whether the run says that its texture is not to be used: it ended early, the painted lamps do not shine, or a
-    /// texture without light would be nearer to the photo.
+    /// Whether the run reports that its texture should not be used: it ended early, the painted lamps do not shine, or
+    /// a texture without light would be nearer to the photo.
     pub fn declines(&self) -> bool {
         self.failure.is_some() || self.raised().iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern))
     }
 
-    /// The run's own words that its texture may not be the photo's: its error, and its warnings up to the texture.
+    /// Reports of the run that its texture may be wrong: its error, and its warnings up to the texture.
     pub fn warnings(&self) -> Vec<String> {
         let of_texture = self.raised().into_iter().filter(|(stage, _)| *stage <= Stage::Emission);
         let texts = of_texture.map(|(_, w)| format!("{:?} {:.3} (limit {:.3})", w.code, w.severity, w.limit));
         self.failure.iter().cloned().chain(texts).collect()
     }
 
-    /// The lamps of the texture, where 1 is the distance of the photo's camera from its plane.
+    /// The lamps of the texture, in units of the distance of the photo's camera from its plane.
     pub fn lamps(&self) -> Option<Lamps> {
         let (emission, lit) = (self.emission()?, self.results().unsolved.as_ref()?);
         let unit = match (self.results().distance, self.transfer.params.plane_distance) {
@@ -117,7 +117,7 @@ fn lamps(emission: &Emission, unit: f64) -> Lamps {
     Lamps { whole: of(true), cut: of(false), lit: Some([lit; 2]), ..Lamps::default() }
 }
 
-/// What a transfer onto the ceiling of a scene starts from.
+/// The input of a transfer from a photo to the ceiling of a scene.
 pub fn input(photo: &Photo, scene: &Arc<Scene>) -> Input {
     Input {
         photo: Some(photo.image.clone()),

@@ -1,25 +1,29 @@
-//! Lamps as a photo shows them: where their luminance is above half way from their surroundings' to their own.
+//! Outlines of lamps in a photo: a lamp covers the pixels whose luminance is above the middle between its own
+//! luminance and that of its surroundings.
 //!
-//! The corpus lists lamps by polygons whose corners are indices of pixels on the border of a region grown by brightness. Some
-//! of these regions hold the glare around a lamp, and all lack half a pixel around. The half level is the usual width of a
-//! blurred edge (full width at half maximum), and knows nothing of how the library finds lamps.
+//! The corpus lists lamps by polygons whose corners are indices of pixels on the border of a region grown by
+//! brightness. Some of these regions include the glare around a lamp, and all are half a pixel too small on every
+//! side. The middle level is the usual definition of the width of a blurred edge (full width at half maximum). It does
+//! not depend on how the library finds lamps.
 
 use super::masks::Mask;
 use glam::{DVec2, IVec2};
 use luxfer::image::Image;
 
-/// Pixels around a polygon in which its lamp is looked for. [convention]
+/// Distance in pixels from a polygon within which its lamp may reach. [convention]
 const NEAR: u32 = 3;
-/// Pixels around a polygon within which its surroundings lie; more where other lamps leave none. [convention]
+/// Distances in pixels from a polygon within which its surroundings lie; the second one serves if other lamps cover
+/// the first. [convention]
 const AROUND: [u32; 2] = [8, 14];
-/// Quantile of a lamp's luminance that stands for its own: louvres and bars are darker. [convention]
+/// Quantile of the luminance inside the polygon that stands for the lamp: louvres and bars are darker than the lamp.
+/// [convention]
 const OWN: f64 = 0.8;
-/// Least share of a lamp's pixels in a part, as a pane beside a bar, that counts as a lamp of its own; together such
-/// parts hold at least the other share. [convention]
+/// Minimum share of a lamp's pixels in a connected part, such as a pane beside a bar, that counts as a lamp by itself;
+/// and minimum share of all such parts together, below which the lamp is not split. [convention]
 const PART: f64 = 0.2;
 const PARTS: f64 = 0.8;
 
-/// The pixels of a lamp, each `y * width + x`, by its connected parts.
+/// Pixels of a lamp, as `y * width + x`, for each of its parts.
 pub fn parts(photo: &Image, polygon: &[DVec2], lamps: &Mask) -> Vec<Vec<u32>> {
     let frame = Frame::around(polygon, photo);
     let mut drawn = frame.mask();
@@ -47,13 +51,13 @@ pub fn parts(photo: &Image, polygon: &[DVec2], lamps: &Mask) -> Vec<Vec<u32>> {
     vec![in_photo(whole)]
 }
 
-/// The corners of a pixel.
+/// The four corners of a pixel, in pixels of the photo.
 pub fn corners(pixel: u32, width: usize) -> [DVec2; 4] {
     let low = DVec2::new((pixel as usize % width) as f64, (pixel as usize / width) as f64);
     [low, low + DVec2::X, low + DVec2::ONE, low + DVec2::Y]
 }
 
-/// A part of a photo.
+/// A rectangle of a photo around a polygon.
 struct Frame {
     origin: IVec2,
     width: usize,
@@ -85,7 +89,7 @@ impl Frame {
         Mask { width: self.width, height: self.height, on }
     }
 
-    /// Relative luminance, Rec. 709.
+    /// Relative luminance of pixel `i` of the frame, by Rec. 709.
     fn luminance(&self, photo: &Image, i: usize) -> f64 {
         let at = self.in_photo(i, photo.width) as usize * photo.channels;
         let [r, g, b] = [photo.data[at], photo.data[at + 1], photo.data[at + 2]].map(f64::from);
@@ -93,7 +97,7 @@ impl Frame {
     }
 }
 
-/// A quantile of the values of a mask's pixels; `None` where there are none.
+/// Quantile `q` of the values at a mask's pixels; `None` for an empty mask.
 fn quantile(mask: &Mask, q: f64, value: impl Fn(usize) -> f64) -> Option<f64> {
     let mut values: Vec<f64> = (0..mask.on.len()).filter(|i| mask.on[*i]).map(value).collect();
     values.sort_by(f64::total_cmp);

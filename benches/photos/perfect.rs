@@ -1,4 +1,4 @@
-//! The judges themselves on trial: a perfect answer must come out right, a spoilt one must not.
+//! Tests the judges: perfect answers must be judged right, spoilt answers must not.
 
 use super::hall::hall;
 use super::judge::Verdict;
@@ -14,13 +14,15 @@ use luxfer::transfer::{Results, Stage, Transfer};
 use std::sync::Arc;
 
 const PHOTOS: usize = 60;
-/// Texels along the longer side of a perfect texture.
+/// Number of texels along the longer side of a perfect texture.
 const TEXELS: f64 = 2048.0;
-/// Metres of the hall's ceiling, and per distance of the camera from the plane by default.
+/// Size of the hall's ceiling in metres, and the distance in metres of the camera from the plane that the textures
+/// assume.
 const CEILING: DVec2 = DVec2::new(16.0, 12.0);
 const DISTANCE: f64 = 1.2;
 
-/// How a perfect texture is spoilt: lengths of the whole, lengths of the lamps, and share of the lamps that are left out.
+/// A way to spoil a perfect texture: its name, a factor for the size of the pattern, a factor for the size of the
+/// lamps, and the share of the lamps that are left out.
 type Spoilt = (&'static str, f64, f64, f64);
 const SPOILT: [Spoilt; 5] = [
     ("perfect", 1.0, 1.0, 0.0),
@@ -30,7 +32,8 @@ const SPOILT: [Spoilt; 5] = [
     ("half of the lamps missing", 1.0, 1.0, 0.5),
 ];
 
-/// Judges perfect and spoilt answers to the tuning photos; then what the library makes of perfect masks.
+/// Judges perfect and spoilt textures for the tuning photos, then the textures that the library makes from perfect
+/// masks.
 pub fn perfect(words: &[String]) {
     let count = words.first().and_then(|word| word.parse().ok()).unwrap_or(PHOTOS);
     let scene = Arc::new(hall());
@@ -61,7 +64,7 @@ pub fn perfect(words: &[String]) {
     given.verdicts("masks_given");
 }
 
-/// A transfer whose masks are the true ones.
+/// A transfer whose masks are the true masks.
 fn answered(made: &Made, scene: &Arc<Scene>) -> Transfer {
     let truth = &made.photo.truth;
     let mask = |mask: &Mask| {
@@ -74,14 +77,14 @@ fn answered(made: &Made, scene: &Arc<Scene>) -> Transfer {
     Transfer { input: outcome::input(&made.photo, scene), results, ..Transfer::default() }
 }
 
-/// The room's own lamps over the whole ceiling of the hall: the room's ceiling again and again, cut where its pattern repeats
-/// best, at the middle between its outermost lamps.
+/// A texture for the hall's ceiling from the true lamps of a photo's room. The room's ceiling is repeated side by
+/// side, with the pattern scaled and the lamps spoilt as asked for.
 fn texture(made: &Made, (_, scale, lamps, missing): &Spoilt) -> Image {
     let room = &made.room;
     let unit = f64::from(made.shot.distance);
     let density = TEXELS / CEILING.x;
     let size = [TEXELS as usize, (CEILING.y * density) as usize];
-    // Texels per metre of the room.
+    // Texels per metre of the photo's room.
     let zoom = density * DISTANCE / unit * scale;
     let mut mask = Mask::new(size[0], size[1]);
     let period = DVec2::new(room.size.x.into(), room.size.z.into());
@@ -91,7 +94,7 @@ fn texture(made: &Made, (_, scale, lamps, missing): &Spoilt) -> Image {
     let kept = |i: usize| (i as f64 * (1.0 - missing)).floor() != ((i + 1) as f64 * (1.0 - missing)).floor();
     for copy in (0..count.y).flat_map(|j| (0..count.x).map(move |i| DVec2::new(i.into(), j.into()))) {
         for (_, fitting) in lit.iter().enumerate().filter(|(i, _)| kept(*i)) {
-            // As the photo shows it on the ceiling.
+            // Place the lamp where the photo shows it on the ceiling.
             let grown = unit / (unit - f64::from(fitting.drop));
             let place = |p: DVec2| (foot + (fitting.centre.as_dvec2() + p - foot) * grown + copy * period) * zoom;
             let fill = |mask: &mut Mask, factor: f64| {

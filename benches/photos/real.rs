@@ -1,4 +1,4 @@
-//! Real photographs, end to end by strokes.
+//! Runs lighting transfers on real photographs with strokes, and prints their verdicts.
 
 use super::corpus::{self, HELD, Source};
 use super::hall::hall;
@@ -9,7 +9,7 @@ use super::truth::{Photo, remove_strokes};
 use crate::harness::{absent, figure, median};
 use std::sync::Arc;
 
-/// Photos of the development part, or those whose names contain one of some words.
+/// Runs the photos that are not set aside, or those whose names contain one of the words.
 pub fn real(words: &[String]) {
     let Some(tally) = run("real", words, is_development, |_| {}) else { return };
     if words.is_empty() {
@@ -21,7 +21,7 @@ pub fn real(words: &[String]) {
     }
 }
 
-/// The quarter of the corpus that nothing is tuned on.
+/// Runs the quarter of the corpus that is set aside and never tuned on.
 pub fn held() {
     if let Some(tally) = run("held", &[], |source| !is_development(source), |_| {}) {
         tally.verdicts("held");
@@ -30,7 +30,7 @@ pub fn held() {
     }
 }
 
-/// Photos of the development part without any stroke: plane and lamps are proposed.
+/// Runs the photos that are not set aside without any stroke, so that the library proposes plane and lamps.
 pub fn without_strokes(words: &[String]) {
     let Some(tally) = run("nostrokes", words, is_development, remove_strokes) else { return };
     if words.is_empty() {
@@ -39,12 +39,12 @@ pub fn without_strokes(words: &[String]) {
     }
 }
 
-/// Whether a photo is not set aside.
+/// Whether a photo belongs to the part of the corpus that may be tuned on.
 fn is_development(source: &Source) -> bool {
     !HELD.contains(&source.name.as_str())
 }
 
-/// Runs the photos that belong to a section, each after a preparation.
+/// Runs the photos that belong to a section, each after `prepare` has changed it.
 fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool, prepare: fn(&mut Photo)) -> Option<Tally> {
     let sources = corpus::sources().map_err(|reason| absent(&format!("photos.{section}.right"), &reason)).ok()?;
     let is_wanted = |source: &&Source| words.is_empty() || words.iter().any(|word| source.name.contains(word.as_str()));

@@ -1,4 +1,4 @@
-//! Rooms from seeds: a ceiling with its lamps, walls, a floor, what stands about, and a camera.
+//! Rooms from seeds: a ceiling with its lamps, walls, a floor and furniture.
 
 use super::ceiling::{self, Ceiling, Fitting};
 use super::dice::Dice;
@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use luxfer::image::Image;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef};
 
-/// Warm, neutral and cool white, of luminance 1.
+/// Colours of white lamps, from warm to cool, with luminance of about 1.
 const WHITES: [Vec3; 5] = [
     Vec3::new(1.35, 0.93, 0.53),
     Vec3::new(1.22, 0.96, 0.70),
@@ -27,34 +27,34 @@ const COLOURS: [Vec3; 6] = [
     Vec3::new(1.8, 0.9, 0.1),
 ];
 
-/// What a mesh is in the photo.
+/// The class of a mesh, which becomes the class of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Class {
-    /// The plane: the ceiling with frames and lamps that are out.
+    /// The plane: the ceiling with frames of lamps and lamps that are switched off.
     Ceiling = 1,
-    /// A lamp that shines.
+    /// A lamp that is switched on.
     Lamp = 2,
     Wall = 3,
     Floor = 4,
     Window = 5,
     /// Furniture, columns, screens.
     Thing = 6,
-    /// What hangs from the ceiling and belongs to neither: beams, ducts, housings of lamps.
+    /// Objects that hang from the ceiling and are neither ceiling nor lamp: beams, ducts, housings of lamps.
     Hanging = 7,
 }
 
-/// A room, before it is photographed.
+/// A generated room, before it is photographed.
 pub struct Room {
     pub scene: Scene,
-    /// Of each mesh its class, and for lamps the number of the fitting.
+    /// Class of each mesh, and for lamps the number of the lamp in the ceiling.
     pub classes: Vec<(Class, usize)>,
     pub ceiling: Ceiling,
-    /// Width, height and depth in metres; the floor's corner is the origin.
+    /// Width, height and depth in metres; a corner of the floor is the origin.
     pub size: Vec3,
 }
 
 impl Room {
-    /// The room of a seed; `design` is the seed of the ceiling's design.
+    /// Makes the room of a seed; `design` is the seed that draws the design of the ceiling.
     pub fn new(seed: u64, design: u64) -> Self {
         let mut dice = Dice::new(seed, 1);
         let hall = dice.chance(0.2);
@@ -63,7 +63,7 @@ impl Room {
             if hall { dice.between(3.2, 6.0) } else { dice.between(2.4, 3.4) },
             dice.log_between(if hall { 12.0 } else { 4.5 }, if hall { 28.0 } else { 14.0 }),
         );
-        // A lower rim around the ceiling of some.
+        // Some rooms have a lower rim around the ceiling.
         let rim = if dice.chance(0.12) { dice.between(0.3, 0.9) } else { 0.0 };
         let inner = Vec2::new(size.x, size.z) - 2.0 * rim;
         let mut ceiling = ceiling::ceiling(&mut Dice::new(design, 12), &mut Dice::new(seed, 2), inner);
@@ -86,20 +86,20 @@ impl Room {
         self.scene.materials.len() - 1
     }
 
-    /// A paint under a clear layer.
+    /// Adds a glossy paint, a paint under a clear layer; returns its material.
     pub fn gloss(&mut self, colour: Vec3, roughness: f32) -> usize {
         let material = self.paint(colour, roughness);
         self.scene.materials[material].ior = 1.5;
         material
     }
 
-    /// An image for a material to use.
+    /// Adds an image as a texture that materials can use.
     pub fn texture(&mut self, image: Image) -> TextureRef {
         self.scene.textures.push(Texture::new("Texture", image));
         TextureRef::new(self.scene.textures.len() - 1)
     }
 
-    /// A paint with a pattern that repeats every `period` metres.
+    /// Adds a paint with an image that repeats every `period` metres; returns its material.
     pub fn textured(&mut self, image: Image, period: Vec2, roughness: f32) -> usize {
         self.scene.textures.push(Texture::new("Pattern", image));
         let texture = TextureRef {
@@ -111,7 +111,7 @@ impl Room {
         material
     }
 
-    /// A surface that shines from its front.
+    /// Adds a material that emits light from its front side.
     pub fn shining(&mut self, emission: Vec3) -> usize {
         let black = Material::diffuse("Lamp", Vec3::splat(0.05));
         self.scene.materials.push(Material { emission, double_sided: false, ..black });
@@ -127,7 +127,7 @@ impl Room {
         self.classes.push(class);
     }
 
-    /// A rectangle whose texture coordinates are metres.
+    /// Adds a rectangle whose texture coordinates are in metres.
     pub fn sheet(&mut self, class: Class, material: usize, corner: Vec3, u: Vec3, v: Vec3) {
         let mut mesh = Mesh::parallelogram(corner, u, v, material);
         mesh.uvs[0].iter_mut().for_each(|uv| *uv *= Vec2::new(u.length(), v.length()));
@@ -152,7 +152,7 @@ impl Room {
         };
         self.sheet(Class::Ceiling, material, Vec3::Y * y, Vec3::X * x, Vec3::Z * z);
 
-        // Beams between coffers.
+        // Add the beams between the coffers.
         let Some(([along_x, along_z], beam)) = self.ceiling.beams.clone() else { return };
         let wood = if dice.chance(0.4) { Vec3::new(0.25, 0.14, 0.07) } else { tint * grey };
         let material = self.paint(wood, 1.0);
@@ -172,7 +172,7 @@ impl Room {
         let white = if self.ceiling.is_skylight { SKY } else { dice.pick(&WHITES) };
         let coloured = !self.ceiling.is_skylight && dice.chance(0.07);
         let kinds = 1 + self.ceiling.fittings.iter().map(|f| f.kind).max().unwrap_or(0);
-        // A lamp of little area shines more brightly.
+        // Lamps with a small area are brighter.
         let area = self.ceiling.fittings.first().map_or(1.0, |f| f.form.area());
         let strength = dice.log_between(1500.0, 6000.0) * (0.3 / area).clamp(0.6, 8.0);
         let mut materials: Vec<usize> =
@@ -192,7 +192,7 @@ impl Room {
         for (number, fitting) in self.ceiling.fittings.clone().into_iter().enumerate() {
             let mut material = if coloured { dice.pick(&materials) } else { materials[fitting.kind] };
             if spread > 0.0 {
-                // Lamps age unlike each other.
+                // Lamps of different age differ in brightness.
                 let own = self.scene.materials[material].clone();
                 let emission = own.emission * (1.0 + spread * dice.normal()).max(0.5);
                 self.scene.materials.push(Material { emission, ..own });
@@ -215,7 +215,7 @@ impl Room {
         let at = |drop: f32| Vec3::new(fitting.centre.x, height - drop, fitting.centre.y);
         let low = fitting.form.outline(0.0).into_iter().fold(Vec2::MAX, Vec2::min);
         if fitting.drop >= 0.03 {
-            // A housing between the lamp and the ceiling, or hanging below it.
+            // Add a housing between the lamp and the ceiling, or around a lamp that hangs below the ceiling.
             let (a, b) = (fitting.centre + low, fitting.centre - low);
             let top = if fitting.drop > 0.12 { height - fitting.drop + 0.06 } else { height };
             let bottom = height - fitting.drop + 0.002;
@@ -240,7 +240,7 @@ impl Room {
     }
 }
 
-/// A closed box, fronts outwards.
+/// A closed box with its front faces outwards.
 pub fn cuboid(low: Vec3, high: Vec3) -> Mesh {
     let mut mesh = Mesh::default();
     for side in super::hall::cuboid("", 0, [low, high]) {
@@ -251,7 +251,7 @@ pub fn cuboid(low: Vec3, high: Vec3) -> Mesh {
     mesh
 }
 
-/// Ceiling tiles between bars: eight by eight, each a little different.
+/// A texture of eight by eight ceiling tiles between bars, with small differences of brightness.
 fn tiles(dice: &mut Dice, colour: Vec3) -> Image {
     const SIDE: usize = 64;
     let bar = dice.between(0.75, 1.0);
@@ -266,14 +266,14 @@ fn tiles(dice: &mut Dice, colour: Vec3) -> Image {
     .expect("tiles")
 }
 
-/// Wooden slats with dark gaps.
+/// A texture of wooden slats with dark gaps.
 fn slats(dice: &mut Dice) -> Image {
     let wood = Vec3::new(0.45, 0.27, 0.13) * dice.between(0.6, 1.3);
     let shades: Vec<f32> = (0..8).map(|_| 1.0 + 0.12 * dice.normal()).collect();
     Image::from_fn(256, 64, |x, _| (wood * if x % 32 < 5 { 0.15 } else { shades[x / 32] }).to_array()).expect("slats")
 }
 
-/// The cover of a lamp: tubes behind it, a louvre before it, or brighter in the middle.
+/// A texture of uneven emission of a lamp: two tubes behind its cover, a louvre before it, or a bright centre.
 fn inside(dice: &mut Dice) -> Image {
     let kind = dice.below(3);
     let depth = dice.between(0.2, 0.6);

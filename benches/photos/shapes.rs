@@ -1,37 +1,37 @@
-//! Lamps as shapes in a plane, and what a set of them has in common: size, form, and how far apart they are.
+//! Lamps as shapes in a plane, and statistics of a set of lamps: size, aspect ratio and spacing.
 
 use glam::DVec2;
 use luxfer::geometry::polygon;
 use std::f64::consts::PI;
 
-/// Lamps longer than this many times their width are lines: their ends are where the photo or a joint cuts them, so width and
-/// distance across describe them. [convention]
+/// Aspect ratio above which lamps count as lines. The photo or a joint cuts the ends of lines, so lines are described
+/// by their width and the distance between neighbouring lines. [convention]
 const LINE_ASPECT: f64 = 6.0;
 
-/// Ratio of the sides of a lamp from which its long side has a direction. [convention]
+/// Minimum aspect ratio of a lamp whose long side has a meaningful direction. [convention]
 const LONG: f64 = 1.2;
-/// Cosine of the angle up to which a step follows a row. [convention: 20 degrees]
+/// Cosine of the maximum angle between a row and a step from lamp to lamp along the row. [convention: 20 degrees]
 const ALONG: f64 = 0.94;
 
-/// One lamp.
+/// The shape of one lamp.
 #[derive(Clone, Debug)]
 pub struct Shape {
     pub centre: DVec2,
-    /// Sides of the smallest rectangle around it, the long one first.
+    /// Sides of the smallest rectangle around the lamp, the longer side first.
     pub sides: DVec2,
-    /// Direction of the long side.
+    /// Unit vector along the longer side.
     pub axis: DVec2,
     pub area: f64,
 }
 
 impl Shape {
-    /// Of a polygon; `area` is the lit area where that is not the polygon's.
+    /// Measures a polygon. `area` is the lit area, if it is not the polygon's area. `None` if the polygon has no area.
     pub fn of(outline: &[DVec2], area: Option<f64>) -> Option<Self> {
         let hull = polygon::convex_hull(outline.to_vec());
         if hull.len() < 3 {
             return None;
         }
-        // One side of the smallest rectangle lies along a side of the hull.
+        // Find the smallest rectangle: one of its sides lies along a side of the convex hull.
         let along = |i: usize| (hull[(i + 1) % hull.len()] - hull[i]).normalize_or_zero();
         let rectangle = |axis: DVec2| DVec2::new(polygon::extent(&hull, axis), polygon::extent(&hull, axis.perp()));
         let axes = (0..hull.len()).map(along).filter(|axis| *axis != DVec2::ZERO);
@@ -39,7 +39,7 @@ impl Shape {
         let sides = rectangle(axis);
         let (sides, axis) =
             if sides.x >= sides.y { (sides, axis) } else { (DVec2::new(sides.y, sides.x), axis.perp()) };
-        // The middle of that rectangle.
+        // Compute the centre of this rectangle.
         let middle = |axis: DVec2| {
             let at = hull.iter().map(|p| p.dot(axis));
             at.clone().fold(f64::MAX, f64::min) / 2.0 + at.fold(f64::MIN, f64::max) / 2.0
@@ -54,28 +54,28 @@ impl Shape {
     }
 }
 
-/// A set of lamps of one plane, in one unit of length.
+/// A set of lamps in one plane; all lengths are in one unit.
 #[derive(Clone, Debug, Default)]
 pub struct Lamps {
     /// The lamps that are seen whole.
     pub whole: Vec<Shape>,
-    /// The kind of each of these, where known.
+    /// Kind of each lamp in `whole`; empty if the kinds are not known.
     pub kinds: Vec<usize>,
-    /// Lamps that the border of a texture cuts: lines are compared by these too.
+    /// Lamps that the border of a texture cuts; they count for the statistics of lines.
     pub cut: Vec<Shape>,
-    /// Centres of further lamps, which are cut or hidden in part: they say how far apart lamps are.
+    /// Centres of further lamps, which are cut or partly hidden; they count for the spacing.
     pub others: Vec<DVec2>,
-    /// Least and largest share of the plane that may be said to be lit.
+    /// Lower and upper bound of the lit share of the plane.
     pub lit: Option<[f64; 2]>,
 }
 
 impl Lamps {
-    /// Whether most of them are lines.
+    /// Whether the median lamp is a line.
     pub fn are_lines(&self) -> bool {
         median(self.whole.iter().map(Shape::aspect)).is_some_and(|aspect| aspect > LINE_ASPECT)
     }
 
-    /// Of each kind, if there are several: median area, median aspect ratio, and share of the lamps.
+    /// For each kind: median area, median aspect ratio, and share of the lamps; empty if there is only one kind.
     pub fn by_kind(&self) -> Vec<[f64; 3]> {
         let last = self.kinds.iter().max().copied().unwrap_or(0);
         let of =
@@ -91,7 +91,7 @@ impl Lamps {
         median(self.whole.iter().map(|s| s.area))
     }
 
-    /// All that is known of lines.
+    /// All shapes that count for the statistics of lines.
     fn lines(&self) -> impl Iterator<Item = &Shape> {
         self.whole.iter().chain(&self.cut)
     }
@@ -105,7 +105,7 @@ impl Lamps {
         median(self.whole.iter().map(Shape::aspect))
     }
 
-    /// Median distance from a lamp's centre to the nearest other.
+    /// Median distance from the centre of a lamp to the nearest other centre.
     pub fn spacing(&self) -> Option<f64> {
         let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
         median((0..centres.len()).filter_map(|i| {
@@ -114,7 +114,8 @@ impl Lamps {
         }))
     }
 
-    /// Of lamps in a single row, the angle from a lamp's long side to the row, in [0, π); none of round lamps.
+    /// For lamps in a single row: the angle from a lamp's long side to the row, in [0, π). `None` for other lamps and
+    /// for lamps without a long side.
     pub fn row(&self) -> Option<f64> {
         let [first, .., last] = &self.whole[..] else { return None };
         let along = (last.centre - first.centre).try_normalize()?;
@@ -124,7 +125,8 @@ impl Lamps {
         (is_row && is_long).then(|| first.axis.angle_to(along).rem_euclid(PI))
     }
 
-    /// Median distance from a lamp's centre to the nearest other in the direction at an angle to its long side.
+    /// Median distance from a lamp's centre to the nearest other centre, in the direction at `angle` to the lamp's
+    /// long side.
     pub fn spacing_along(&self, angle: f64) -> Option<f64> {
         median(self.whole.iter().filter_map(|lamp| {
             let along = DVec2::from_angle(angle).rotate(lamp.axis);
@@ -134,7 +136,7 @@ impl Lamps {
         }))
     }
 
-    /// Median distance across from a line to the nearest beside it.
+    /// Median distance between neighbouring lines, measured perpendicular to them.
     pub fn spacing_across(&self) -> Option<f64> {
         let beside = |a: &Shape, b: &Shape| {
             let apart = b.centre - a.centre;
@@ -145,8 +147,8 @@ impl Lamps {
         median(self.lines().filter_map(|a| self.lines().filter_map(|b| beside(a, b)).min_by(f64::total_cmp)))
     }
 
-    /// Lengths of the two shortest steps from lamp to lamp that are not along one line, the shorter first: the periods of a
-    /// lattice, whichever of its places are empty.
+    /// Lengths of the two shortest steps from lamp to lamp that are not parallel, the shorter first. They are the
+    /// periods of a lattice, even if some of its sites are empty.
     pub fn steps(&self) -> Option<[f64; 2]> {
         let nearest = self.spacing()?;
         let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
@@ -161,14 +163,14 @@ impl Lamps {
     }
 }
 
-/// The mean of the steps within a tenth of one, whichever way they point.
+/// Mean of the steps that differ from `step` by less than a tenth of its length, up to sign.
 fn mean_like(steps: &[DVec2], step: DVec2) -> DVec2 {
     let turned = steps.iter().map(|d| if d.dot(step) < 0.0 { -*d } else { *d });
     let like: Vec<DVec2> = turned.filter(|d| d.distance(step) < 0.1 * step.length()).collect();
     if like.is_empty() { step } else { like.iter().sum::<DVec2>() / like.len() as f64 }
 }
 
-/// The median of some values, if there are any.
+/// Median of the values; `None` if there are none.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let values: Vec<f64> = values.into_iter().collect();
     (!values.is_empty()).then(|| crate::harness::median(&values))

@@ -1,4 +1,4 @@
-//! Contact sheets: a row for each photo, from its strokes to the room in its light.
+//! Contact sheets with a row of pictures for each photo, from its strokes to the hall in its light.
 
 use super::letters;
 use super::outcome::Outcome;
@@ -9,17 +9,18 @@ use luxfer::job::Monitor;
 use luxfer::segment::Stroke;
 use std::path::PathBuf;
 
-/// Widths of the panels: photo with strokes, masks, unwarped plane, texture, room; and their height.
+/// Widths in pixels of the panels, and their height. The panels show the photo with strokes, the masks, the unwarped
+/// plane, the texture, and the lit hall.
 const WIDTHS: [usize; 5] = [330, 330, 200, 300, 330];
 const HEIGHT: usize = 220;
-/// Rows of a sheet.
+/// Number of rows on a sheet.
 const ROWS: usize = 8;
 const GAP: usize = 4;
 const GROUND: Vec3 = Vec3::splat(0.02);
-/// Brightness that the picture of the room is shown at, relative to the photo's white of 100 cd/m².
+/// Exposure of the rendered hall: the factor from cd/m² to display values, 1 for the photo's white of 100 cd/m².
 const EXPOSURE: f32 = 0.01;
 
-/// Sheets in the making.
+/// Contact sheets that are being filled.
 pub struct Sheets {
     name: String,
     rows: Vec<Image>,
@@ -27,12 +28,12 @@ pub struct Sheets {
 }
 
 impl Sheets {
-    /// Sheets that go to `out/bench/photos/<name>_<number>.png`.
+    /// Starts sheets that are saved as `out/bench/photos/<name>_<number>.png`.
     pub fn new(name: &str) -> Self {
         Self { name: name.into(), rows: Vec::new(), written: 0 }
     }
 
-    /// Adds the row of a photo; writes a sheet when it is full.
+    /// Adds the row of a photo, and saves the sheet when it is full.
     pub fn add(&mut self, photo: &Photo, outcome: &Outcome, caption: &str) {
         let results = outcome.results();
         let mut panels = vec![strokes(photo), masks(photo, outcome)];
@@ -52,7 +53,7 @@ impl Sheets {
         }
     }
 
-    /// Writes the rows that are left.
+    /// Saves the rows that are left.
     pub fn finish(mut self) {
         if !self.rows.is_empty() {
             self.write();
@@ -72,7 +73,7 @@ impl Sheets {
     }
 }
 
-/// Writes an image into `out/bench/photos/` and says so.
+/// Saves an image in `out/bench/photos/` and prints its path.
 pub fn save(image: &Image, name: &str) {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench/photos");
     let write = || -> Result<(), String> {
@@ -86,7 +87,7 @@ pub fn save(image: &Image, name: &str) {
     }
 }
 
-/// The photo with its strokes: plane green, elsewhere dark red, lights yellow, no lights blue.
+/// Draws the strokes on the photo: plane green, not plane dark red, lights yellow, not lights blue.
 pub fn strokes(photo: &Photo) -> Image {
     let mut image = (*photo.image).clone();
     let mut draw = |strokes: &[Stroke], positive: Vec3, negative: Vec3| {
@@ -100,7 +101,7 @@ pub fn strokes(photo: &Photo) -> Image {
     image
 }
 
-/// The photo with the plane tinted green and lights tinted yellow, true lamps outlined in red.
+/// Draws the masks on the photo: the plane is tinted green, lights are tinted yellow, true lamps are outlined in red.
 fn masks(photo: &Photo, outcome: &Outcome) -> Image {
     let mut image = (*photo.image).clone();
     let mut tint = |mask: &Image, keep: f32, ink: Vec3| {
@@ -114,7 +115,7 @@ fn masks(photo: &Photo, outcome: &Outcome) -> Image {
     if let Some(lights) = &outcome.results().lights {
         tint(&lights.mask, 0.1, Vec3::new(0.9, 0.7, 0.0));
     }
-    // Outlines as wide as a pixel of the panel.
+    // Make the outlines about one pixel of the panel wide.
     let lights = &photo.truth.lights;
     let (inner, outer) = (lights.dilated(1), lights.dilated(1 + (image.width / WIDTHS[1]).max(1) as u32));
     for (_, pixel) in image.data.chunks_exact_mut(3).enumerate().filter(|(i, _)| outer.on[*i] && !inner.on[*i]) {
@@ -135,7 +136,7 @@ fn scaled(image: &Image, factor: f32) -> Image {
     Image { data: image.data.iter().map(|v| v * factor).collect(), ..*image }
 }
 
-/// An image as large as fits into a panel.
+/// Resizes an image to the largest size that fits into a panel.
 pub fn fitted(image: &Image, width: usize, height: usize) -> Image {
     let scale = (width as f64 / image.width as f64).min(height as f64 / image.height as f64);
     let side = |length: usize| ((length as f64 * scale).round() as usize).max(1);

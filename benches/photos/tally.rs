@@ -1,18 +1,19 @@
-//! The table of many runs, and the figures over them.
+//! The results of many runs as a table, and headline figures from them.
 
 use super::judge::{Judgement, Verdict};
 use super::outcome::Outcome;
 use super::truth::Photo;
 use crate::harness::{Table, figure, median, quantile};
 
-/// What is kept of one run.
+/// The results of one run that the table and the figures need.
 pub struct Line {
     pub name: String,
     pub megapixels: f64,
     pub judgement: Judgement,
-    /// Logarithm of the ratio of the estimated distance from the plane to the true one, and the stated error.
+    /// Logarithm of the ratio between the estimated and the true distance of the camera from the plane, and the stated
+    /// error of the estimate.
     pub distance: Option<[f64; 2]>,
-    /// The texture's own stated error.
+    /// Error that the library states for the texture.
     pub error: Option<f64>,
     pub seconds: f64,
     pub cpu_seconds: f64,
@@ -33,7 +34,7 @@ impl Line {
         }
     }
 
-    /// One line of words for a contact sheet.
+    /// Summary of the run in one line, for a contact sheet.
     pub fn caption(&self) -> String {
         let Judgement { precision, found, .. } = self.judgement;
         let stated = percent(self.error);
@@ -73,7 +74,7 @@ fn percent(value: Option<f64>) -> String {
     value.map_or("-".into(), |v| format!("{:.0}", 100.0 * v))
 }
 
-/// All runs of a section.
+/// The runs of one section.
 #[derive(Default)]
 pub struct Tally {
     pub lines: Vec<Line>,
@@ -104,7 +105,7 @@ impl Tally {
         table.print(title);
     }
 
-    /// Counts of the verdicts by the pattern that a generated photo's name ends in.
+    /// Prints the number of verdicts for each pattern; the name of a generated photo ends with its pattern.
     pub fn by_pattern(&self) {
         let pattern = |line: &Line| line.name.split('_').nth(1).unwrap_or_default().to_string();
         let mut patterns: Vec<String> = self.lines.iter().map(pattern).collect();
@@ -122,18 +123,18 @@ impl Tally {
         table.print("By pattern");
     }
 
-    /// Values that a run may have, of all that have one.
+    /// Values of the runs for which `of` returns a value.
     pub fn values<T>(&self, of: impl Fn(&Line) -> Option<T>) -> Vec<T> {
         self.lines.iter().filter_map(of).collect()
     }
 
-    /// Share of the judged runs, in percent.
+    /// Share in percent of the judged runs for which `is` holds.
     fn share(&self, is: impl Fn(&Line) -> bool) -> f64 {
         let judged = || self.lines.iter().filter(|line| line.judgement.verdict != Verdict::Unjudged);
         100.0 * judged().filter(|line| is(line)).count() as f64 / judged().count() as f64
     }
 
-    /// The shares of the verdicts.
+    /// Prints the shares of the verdicts as figures.
     pub fn verdicts(&self, section: &str) {
         let of = |verdict: Verdict| self.share(|line| line.judgement.verdict == verdict);
         figure(&format!("photos.{section}.right"), of(Verdict::Right), "%");
@@ -143,7 +144,7 @@ impl Tally {
         figure(&format!("photos.{section}.wrong_unwarned"), self.share(unwarned), "%");
     }
 
-    /// How well the masks of lights do.
+    /// Prints the precision and the share of found lamps of the masks of lights as figures.
     pub fn lights(&self, prefix: &str) {
         let precision = self.values(|line| line.judgement.precision);
         let precise = precision.iter().filter(|p| **p > 0.8).count() as f64 / precision.len() as f64;
@@ -157,9 +158,8 @@ impl Tally {
         );
     }
 
-    /// The stated errors of the textures.
-    /// Figures on the estimated distance of the camera from the plane: of textures that are not wrong, since a wrong lamp tells
-    /// nothing.
+    /// Prints figures on the estimated distance of the camera from the plane. Only textures that are not wrong count,
+    /// because a wrong lamp says nothing about the distance.
     pub fn distances(&self, section: &str) {
         let judged = |line: &Line| line.distance.filter(|_| line.judgement.verdict < Verdict::Wrong);
         let found = self.values(judged);
@@ -179,6 +179,7 @@ impl Tally {
         );
     }
 
+    /// Prints the errors that the textures state for themselves.
     pub fn stated_errors(&self, section: &str) {
         let errors = self.values(|line| line.error);
         let at = |p: f64| format!("{:.2}", quantile(&errors, p));

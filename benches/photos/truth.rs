@@ -1,4 +1,4 @@
-//! What a photo truly shows, as far as it is known: where its lamps are, and how they lie in their plane.
+//! The truth about a photo, as far as it is known: where its lamps are in the photo and in their plane.
 
 use super::masks::Mask;
 use super::shapes::Lamps;
@@ -8,7 +8,7 @@ use luxfer::image::Image;
 use luxfer::segment::StrokeSet;
 use std::sync::Arc;
 
-/// A photo with the strokes drawn on it and its truth.
+/// A photo with its strokes and its truth.
 #[derive(Clone)]
 pub struct Photo {
     pub name: String,
@@ -18,42 +18,44 @@ pub struct Photo {
     pub truth: Truth,
 }
 
-/// Leaves the masks of a photo to be proposed.
+/// Removes the strokes of a photo, so that the library proposes its masks.
 pub fn remove_strokes(photo: &mut Photo) {
     photo.strokes = StrokeSet::default();
 }
 
-/// A lamp as the photo shows it.
+/// A lamp in a photo.
 #[derive(Clone, Debug)]
 pub struct Lamp {
-    /// In photo pixels.
+    /// Centre in photo pixels.
     pub centre: DVec2,
     pub polygons: Vec<Vec<DVec2>>,
-    /// Its pixels (`y * width + x`), where they are known one by one.
+    /// Pixels of the lamp (`y * width + x`); empty if they are not known one by one.
     pub pixels: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Truth {
-    /// Pixels of lamps.
+    /// Pixels of all lamps.
     pub lights: Mask,
-    /// Pixels of lamps that are in no list: a mask of lights is judged there neither way.
+    /// Pixels of lamps that no list contains: there a mask of lights counts neither as right nor as wrong.
     pub unlisted: Option<Mask>,
-    /// Pixels of the plane with its lamps, where known.
+    /// Pixels of the plane with its lamps, if known.
     pub plane: Option<Mask>,
-    /// Pixels that may be taken for the plane or not, as of beams under a ceiling.
+    /// Pixels that may count as plane or not, such as beams under a ceiling.
     pub either: Option<Mask>,
     pub lamps: Vec<Lamp>,
-    /// Lamps of which the list gives the centre alone: what a mask holds there is judged neither way.
+    /// Centres of lamps of which only the centre is listed: parts of a mask there count neither as right nor as wrong.
     pub centres: Vec<DVec2>,
-    /// The lamps in their plane, where the camera is known; 1 is the distance of the camera from the plane.
+    /// The lamps in their plane, if the camera is known; the unit of length is the distance of the camera from the
+    /// plane.
     pub layout: Option<Lamps>,
-    /// That distance in metres, where known.
+    /// Distance of the camera from the plane in metres, if known.
     pub distance: Option<f64>,
-    /// From that plane to photo pixels.
+    /// Homography from the plane of `layout` to photo pixels.
     pub to_photo: Option<Homography>,
-    /// Whether the photo holds no answer, so that a run should decline or warn.
+    /// Whether the photo has no pattern of lamps, so that a run should end in an error or warn.
     pub is_trap: bool,
-    /// Whether the lamps of the photo lie on no plane or shine away from the camera, so that a run may decline.
+    /// Whether the lamps of the photo lie on no plane or shine away from the camera, so that a run may report that its
+    /// texture should not be used.
     pub may_decline: bool,
 }

@@ -1,4 +1,4 @@
-//! Where a room is photographed from, and where the camera sees things.
+//! Viewpoints of generated photos: where the camera stands in a room, and where it sees points.
 
 use super::dice::Dice;
 use super::room::{Class, Room};
@@ -8,24 +8,25 @@ use luxfer::job::Monitor;
 use luxfer::scene::Camera;
 use luxfer::scene::accel::{Accel, Ray};
 
-/// Diagonal of the 36 × 24 mm picture that focal lengths are given for, in mm. [convention]
+/// Diagonal in mm of the 36 × 24 mm picture format for which focal lengths are given. [convention]
 const DIAGONAL: f32 = 43.27;
-/// Places that are tried before a room is given up.
+/// Number of viewpoints that are tried before a room is given up.
 const TRIES: usize = 160;
-/// Rays across and down that judge a view.
+/// Numbers of rays across and down the picture that test a view.
 const RAYS: [usize; 2] = [40, 30];
-/// Least share of the picture that shows the ceiling, and least number of pixels across a lamp that counts as seen.
+/// Minimum share of the picture that shows the ceiling, and minimum number of pixels across a lamp that counts as
+/// seen.
 const MIN_CEILING: f32 = 0.08;
 const MIN_WIDTH: f64 = 4.0;
 
-/// A room's surfaces, for rays: what they meet is told by its mesh.
+/// The surfaces of a room for ray tracing: for each triangle its mesh, and for each mesh its first triangle.
 pub struct Surfaces {
     accel: Accel,
     meshes: Vec<u32>,
     firsts: Vec<u32>,
 }
 
-/// What a ray meets: the mesh, its triangle, and where in it.
+/// The hit of a ray: a mesh, a triangle of the mesh, and the position in the triangle.
 pub struct Seen {
     pub mesh: usize,
     pub triangle: usize,
@@ -51,23 +52,23 @@ impl Surfaces {
     }
 }
 
-/// A camera in a room.
+/// A camera in a room, and the size of its picture in pixels.
 #[derive(Clone, Debug)]
 pub struct Shot {
     pub camera: Camera,
     pub width: usize,
     pub height: usize,
-    /// Metres from the camera to the ceiling.
+    /// Vertical distance in metres from the camera to the ceiling.
     pub distance: f32,
     /// Focal length in mm, for a picture of 36 × 24 mm.
     pub focal: f32,
 }
 
 impl Shot {
-    /// The view with most lamps among some that will do; none where the room hides its lamps.
+    /// Draws random views until one meets the requirements; `None` if none of the attempts does.
     pub fn choose(room: &Room, surfaces: &Surfaces, dice: &mut Dice) -> Option<Self> {
         let (width, height) = size(dice);
-        // Most photos show several lamps.
+        // Most photos must show at least three lamps.
         let wanted = if dice.chance(0.05) { 1 } else { 3 };
         let aim = [dice.between(-10.0, 60.0), dice.between(-10.0, 60.0), dice.between(0.0, 45.0)];
         (0..TRIES)
@@ -113,7 +114,7 @@ impl Shot {
         self.lamps_seen(room, surfaces) >= wanted
     }
 
-    /// Number of lamps that lie wholly within the picture, are large enough, and whose middle nothing hides.
+    /// Number of lamps that lie wholly inside the picture, are large enough, and are not hidden at a test point.
     fn lamps_seen(&self, room: &Room, surfaces: &Surfaces) -> usize {
         let lamps = room.classes.iter().enumerate().filter(|(_, (class, _))| *class == Class::Lamp);
         let is_seen = |&(mesh, (_, number)): &(usize, &(Class, usize))| {
@@ -124,12 +125,12 @@ impl Shot {
                 outline.iter().map(|p| self.project(place(fitting.centre + *p))).collect();
             let Some(corners) = corners else { return false };
             let size = DVec2::new(self.width as f64, self.height as f64);
-            // Lines of light leave the picture, others should not.
+            // Lines of light may leave the picture, other lamps may not.
             let count = corners.iter().filter(|p| inside_picture(**p, size)).count();
             let is_line = room.ceiling.pattern == "slots";
             let inside = if is_line { 2 * count >= corners.len() } else { count == corners.len() };
             let (low, high) = corners.iter().fold((DVec2::MAX, DVec2::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
-            // A point of the lamp itself: a ring's middle is ceiling.
+            // Test a point of the lamp itself: the centre of a ring, for example, is ceiling.
             let edge = if is_line && !inside_picture(corners[0], size) {
                 outline[2] + outline[3]
             } else {
@@ -145,18 +146,18 @@ impl Shot {
         lamps.filter(is_seen).count()
     }
 
-    /// Pixels of focal length.
+    /// Focal length in pixels.
     pub fn focal_pixels(&self) -> f64 {
         self.height as f64 / 2.0 / f64::from(self.camera.fov_y / 2.0).tan()
     }
 
-    /// Direction of the ray through a point of the picture.
+    /// Direction of the ray through a point of the picture, given in pixels.
     pub fn direction(&self, pixel: DVec2) -> Vec3 {
         let (w, h) = (self.width as f64, self.height as f64);
         self.camera.direction((pixel.x / w) as f32, (pixel.y / h) as f32, (w / h) as f32)
     }
 
-    /// Where the camera sees a point, in pixels; nowhere behind it.
+    /// Position in pixels at which the camera sees a point; `None` for points behind the camera.
     pub fn project(&self, point: Vec3) -> Option<DVec2> {
         let camera = &self.camera;
         let v = (point - camera.position).as_dvec3();
@@ -166,13 +167,15 @@ impl Shot {
         (depth > 1e-3).then(|| DVec2::new(self.width as f64, self.height as f64) / 2.0 + offset)
     }
 
-    /// From the ceiling to pixels; on the ceiling 1 is its distance from the camera, x and z run as in the room.
+    /// Homography from the ceiling to photo pixels. On the ceiling the unit of length is its distance from the camera;
+    /// x and z are those of the room.
     pub fn to_photo(&self) -> Homography {
         let camera = &self.camera;
         let (forward, up) = (camera.forward.as_dvec3(), camera.up.as_dvec3());
         let right = forward.cross(up);
         let distance = f64::from(self.distance);
-        // A point of the ceiling from the camera: x and z times the distance, and the distance up.
+        // Row of a matrix that takes a point (x, z, 1) of the ceiling, in units of `distance`, to the coordinate along
+        // `axis` of the vector from the camera to this point.
         let from = camera.position.as_dvec3();
         let rows = |axis: DVec3| {
             DVec3::new(axis.x * distance, axis.z * distance, axis.y * distance - axis.x * from.x - axis.z * from.z)
@@ -187,7 +190,7 @@ fn inside_picture(p: DVec2, size: DVec2) -> bool {
     p.min_element() > 1.0 && (size - p).min_element() > 1.0
 }
 
-/// Pixels across and down: most photos are small, for the sake of time; some have a megapixel.
+/// Draws the size of a photo in pixels. Most photos are small, to save time; some have a megapixel.
 fn size(dice: &mut Dice) -> (usize, usize) {
     let (width, height) = dice.weighted(&[((640, 480), 6.0), ((704, 470), 3.0), ((768, 432), 1.5), ((1152, 864), 1.0)]);
     if dice.chance(0.15) { (height, width) } else { (width, height) }

@@ -1,4 +1,4 @@
-//! Ratios of actual to expected values: shared by `benches/plan.rs` and `tests/plan.rs`.
+//! Ratios between actual and predicted values, for `benches/plan.rs` and `tests/plan.rs`.
 
 use luxfer::image::Image;
 
@@ -8,7 +8,7 @@ pub struct Outcomes {
     pub errors: Vec<f64>,
 }
 
-/// The share of ratios within 25 % of 1.
+/// Share of the ratios that are within 25 % of 1.
 pub fn within(ratios: &[f64]) -> f64 {
     ratios.iter().filter(|r| (*r - 1.0).abs() <= 0.25).count() as f64 / ratios.len().max(1) as f64
 }

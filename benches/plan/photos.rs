@@ -1,4 +1,4 @@
-//! Photos with strokes.
+//! Photos with strokes, for plans of transfers.
 
 use super::harness::scenes::{Absent, data, office_photo};
 use luxfer::demo;
@@ -16,7 +16,7 @@ pub struct Photo {
     pub strokes: StrokeSet,
 }
 
-/// Photos of the generated office in these sizes.
+/// Photos of the generated office in the given sizes.
 pub fn office(sizes: &[[usize; 2]]) -> Vec<Photo> {
     let monitor = Monitor::default();
     let room = demo::exemplar_room().expect("a room");
@@ -29,7 +29,7 @@ pub fn office(sizes: &[[usize; 2]]) -> Vec<Photo> {
     sizes.iter().map(of).collect()
 }
 
-/// A real photo with the strokes of the tests, reduced by a factor.
+/// A real photo with the strokes of the tests, reduced in size by the factor `reduce`.
 pub fn real(name: &str, reduce: usize) -> Result<Photo, Absent> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = data(&format!("photos/{name}.jpg"))?;
@@ -42,7 +42,7 @@ pub fn real(name: &str, reduce: usize) -> Result<Photo, Absent> {
     Ok(Photo { name: format!("{name} / {reduce}"), image: Arc::new(image), strokes })
 }
 
-/// The strokes scaled down by a factor: all numbers of the lines are lengths.
+/// Divides the strokes of a text by a factor; all numbers of its lines are lengths in pixels.
 fn reduced(text: &str, reduce: usize) -> String {
     let word = |word: &str| word.parse::<f64>().map_or(word.to_string(), |n| (n / reduce as f64).to_string());
     let line = |line: &str| match line.split_once('#').map_or(line, |(line, _)| line) {

@@ -1,4 +1,4 @@
-//! Plans of renderings.
+//! Plans renderings and compares the predictions with the renderings.
 
 use super::harness::scenes::{self, Absent, Setting};
 use super::harness::{Clock, time};

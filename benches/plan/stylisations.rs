@@ -1,4 +1,5 @@
-//! Plans of stylisations: several artworks for one exemplar scene, at various sizes.
+//! Plans stylisations and compares the predictions with the stylisations: several artworks for one exemplar scene, at
+//! various sizes.
 
 use super::harness::scenes::{Absent, data};
 use super::harness::{Clock, time};
@@ -12,7 +13,7 @@ use luxfer::plan::{self, Goal};
 use luxfer::stylize::{self, Guide, Input, Params, Range};
 
 const GUIDES: [&str; 4] = ["fullgi", "dirdif", "dirspc", "indirb"];
-/// Factors of the exemplar's sides and of the target's.
+/// Factors for the sides of the exemplar and of the target.
 const SIZES: [[f64; 2]; 4] = [[1.0, 1.0], [0.7, 0.4], [0.5, 0.8], [0.33, 0.33]];
 
 pub fn measure(all: &mut Outcomes) {
@@ -48,7 +49,7 @@ fn outcome(artwork: &str, size: [f64; 2], turn: usize, all: &mut Outcomes, table
     let guides: Vec<Guide> = pairs.iter().map(|(s, t)| guide((s, t))).collect();
     let input = Input::new(&painted, &guides);
 
-    // Times for which the plan chooses different presets, and errors.
+    // Alternate between errors and times; the times are such that the plan chooses different presets.
     let megapixels = (target[0] * target[1]) as f64 / 1e6;
     let goal = [Goal::Seconds(5.0 * megapixels), Goal::Error(0.05), Goal::Seconds(9.0 * megapixels), Goal::Error(0.04)]
         [turn % 4];

@@ -1,4 +1,4 @@
-//! Plans of the light of whole transfers.
+//! Plans the stages of relighting and rendering of whole transfers, and compares the predictions with the runs.
 
 use super::harness::{Clock, scenes, time};
 use super::outcomes::{Outcomes, error_of, mean};
@@ -12,7 +12,7 @@ use luxfer::scene::Scene;
 use luxfer::transfer::{Params, Results, Stage, Transfer};
 use std::sync::Arc;
 
-/// Half-widths of intervals over standard errors.
+/// Ratio of the half-width of a 95 % confidence interval to the standard error.
 const HALF_WIDTH: f64 = 2.04;
 
 pub fn measure(all: &mut Outcomes) {
@@ -41,7 +41,7 @@ pub fn measure(all: &mut Outcomes) {
     let mut table = Table::new(heads);
     for (i, photo) in photos.iter().enumerate() {
         for (k, (room, scene)) in rooms.iter().enumerate() {
-            // Every photo with every room; goals and sizes alternate.
+            // Combine every photo with every room; goals and sizes alternate.
             let width = [96, 144, 208][(i + k) % 3];
             let goal = [Goal::Seconds(1.5), Goal::Error(0.2), Goal::Seconds(3.0), Goal::Error(0.1)][(i + 2 * k) % 4];
             if let Err(reason) = outcome(photo, (room, scene), width, goal, all, &mut table) {
@@ -52,7 +52,8 @@ pub fn measure(all: &mut Outcomes) {
     table.print("the light of transfers: one thread, its own time");
 }
 
-/// The demonstration room, the room at twice its length, and a kitchen.
+/// The rooms to light: the demonstration room, the demonstration room at twice its length, and a kitchen without its
+/// lamp.
 fn rooms() -> Vec<(&'static str, Arc<Scene>)> {
     let room = demo::target_room().expect("a room");
     let mut hall = room.clone();
@@ -95,7 +96,7 @@ fn outcome(
     for seed in 0..4 {
         transfer.params.relight.seed = 11 + seed;
         transfer.params.render.seed = 21 + seed;
-        // Solve several times, because a single stated error is itself uncertain by 13 %.
+        // Solve several times, because the error that one solution states is itself uncertain by 13 %.
         seconds += run(&mut transfer, Stage::Relight)? / 4.0;
         square += transfer.results.solution.as_ref().map_or(f64::NAN, |s| s.error()).powi(2) / 4.0;
         if seed < 2 {
@@ -115,15 +116,15 @@ fn outcome(
     Ok(())
 }
 
-/// Runs a stage; returns its seconds.
+/// Runs one stage of a transfer; returns its seconds.
 fn run(transfer: &mut Transfer, stage: Stage) -> Result<f64, String> {
     let (seconds, result) = time(Clock::Thread, || transfer.run(stage, stage, Monitor::default().job(), |_| ()));
     result.map_err(|e| e.to_string())?;
     Ok(seconds)
 }
 
-/// The picture under the emission at its solved colour, each channel divided by its scale: the error of its paths
-/// alone.
+/// The rendered picture with each channel divided by the solved scale of the emission. The difference of two such
+/// pictures is the error of their paths alone, without the error of the solution.
 fn unit(results: &Results) -> Image {
     let (film, solution) = (results.film.as_ref().expect("a film"), results.solution.as_ref().expect("a solution"));
     let mut image = film.beauty.clone();

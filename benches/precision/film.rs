@@ -1,4 +1,4 @@
-//! Sums of paths: a pixel with a million paths, most of them dim, a few very bright.
+//! Precision of the sum of a pixel's paths: a million paths, most of them dim, a few very bright.
 
 use super::real::Real;
 use super::{Study, Way, timed};
@@ -8,7 +8,7 @@ const PATHS: usize = 1 << 20;
 /// Number of paths that are summed before the sum is added to a pixel.
 const SLICE: usize = 8;
 
-/// Sums slices in `S` and adds the sums in `T`.
+/// Mean of the paths: sums slices in `S` and adds the sums of slices in `T`.
 fn mean<S: Real, T: Real>(paths: &[f32]) -> f64 {
     let slice = |paths: &[f32]| paths.iter().map(|&p| S::of(f64::from(p))).sum::<S>();
     let sum: T = paths.chunks(SLICE).map(|paths| T::of(slice(paths).wide())).sum();
@@ -18,7 +18,7 @@ fn mean<S: Real, T: Real>(paths: &[f32]) -> f64 {
 pub fn measure(study: &mut Study) {
     let mut rng = Rng::new(1, &[]);
     let paths: Vec<f32> = (0..PATHS).map(|_| (1.5 * rng.normal()).exp() as f32).collect();
-    // Reference: a pairwise sum in f64 of the sorted values.
+    // Compute the reference: a pairwise sum in f64 of the sorted values.
     let mut sums: Vec<f64> = paths.iter().map(|&p| f64::from(p)).collect();
     sums.sort_by(f64::total_cmp);
     while sums.len() > 1 {

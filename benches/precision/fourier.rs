@@ -1,4 +1,4 @@
-//! Autocorrelation by Fourier transforms, of a faint pattern on a bright background.
+//! Precision of autocorrelation by Fourier transforms, for a faint pattern on a bright background.
 
 use super::real::Real;
 use super::{Study, Way, timed};
@@ -7,8 +7,8 @@ use luxfer::rng::Rng;
 const LENGTH: usize = 1 << 16;
 const PERIOD: usize = 96;
 
-/// Transforms in place; the length is a power of two (Cooley and Tukey 1965). The factors are computed in f64 and
-/// rounded.
+/// Fast Fourier transform in place, for lengths that are powers of two (Cooley and Tukey 1965). The twiddle factors
+/// are computed in f64 and rounded.
 fn transform<R: Real>(signal: &mut [[R; 2]]) {
     let bits = signal.len().trailing_zeros();
     for i in 0..signal.len() {
@@ -35,7 +35,7 @@ fn transform<R: Real>(signal: &mut [[R; 2]]) {
     }
 }
 
-/// Covariance at every shift, relative to the covariance at shift 0.
+/// Circular covariance at every shift, relative to the covariance at shift 0.
 fn autocorrelation<R: Real>(values: &[f32]) -> Vec<f64> {
     let mut signal: Vec<[R; 2]> = values.iter().map(|&v| [R::of(f64::from(v)), R::ZERO]).collect();
     transform(&mut signal);

@@ -1,13 +1,13 @@
-//! Positions in the photo of the texels of an unwarped plane.
+//! Precision of the positions in the photo to which the texels of an unwarped plane map.
 
 use super::real::Real;
 use super::{Study, Way, timed};
 
-/// Sides of the photo, in pixels.
+/// Width and height of the photo, in pixels.
 const SIDE: f64 = 16_384.0;
 const TEXELS: usize = 1 << 16;
 
-/// From the unwarped plane to the photo: a plane seen at a grazing angle.
+/// Homography from the unwarped plane to the photo, for a plane that is seen at a grazing angle.
 const MAP: [[f64; 3]; 3] = [[1.9, 0.35, -900.0], [0.12, 2.3, 310.0], [4.1e-5, 9.7e-5, 1.0]];
 
 fn map<R: Real>() -> Vec<[R; 2]> {

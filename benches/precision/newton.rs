@@ -1,18 +1,18 @@
-//! Logistic regression with quadratic terms by Newton's method, on two classes that are nearly separable.
+//! Precision of logistic regression with quadratic terms by Newton's method, on two classes that are nearly separable.
 
 use super::real::Real;
 use super::{Study, Way, timed};
 use luxfer::rng::Rng;
 
 const SAMPLES: usize = 2000;
-/// Five channels, their squares and products, and the constant.
+/// Number of terms: five channels, their squares and products, and the constant.
 const TERMS: usize = 21;
 const RIDGE: f64 = 1e-6;
 const STEPS: usize = 12;
 
 type Row<R> = [R; TERMS];
 
-/// Probabilities of the samples after Newton's method has converged.
+/// Fits the classifier by Newton's method; returns the probabilities of the samples.
 fn fit<R: Real>(rows: &[Row<R>], positive: &[bool]) -> Vec<R> {
     let one = R::of(1.0);
     let probability = |w: &Row<R>, row: &Row<R>| one / (one + (-dot(w, row)).exp());
@@ -42,7 +42,7 @@ fn dot<R: Real>(a: &Row<R>, b: &Row<R>) -> R {
     a.iter().zip(b).map(|(&a, &b)| a * b).sum()
 }
 
-/// Cholesky decomposition; `None` if rounding has made the matrix indefinite.
+/// Solves the linear system by Cholesky decomposition; `None` if rounding has made the matrix indefinite.
 fn solve<R: Real>(mut a: [Row<R>; TERMS], mut b: Row<R>) -> Option<Row<R>> {
     for i in 0..TERMS {
         for j in 0..=i {
@@ -71,7 +71,7 @@ pub fn measure(study: &mut Study) {
     let (mut rows, mut positive) = (Vec::new(), Vec::new());
     for k in 0..SAMPLES {
         let is_positive = k % 2 == 0;
-        // Channels that are nearly linearly dependent, as colour and depth are on one wall.
+        // Make channels that are nearly linearly dependent, as colour and depth are on one wall.
         let shared = rng.normal() + if is_positive { 1.5 } else { -1.5 };
         let x: [f64; 5] = std::array::from_fn(|i| shared + 0.02 * (i as f64 + 1.0) * rng.normal());
         let mut row: Row<f64> = [1.0; TERMS];

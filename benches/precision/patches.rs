@@ -1,4 +1,5 @@
-//! Distances of patches, sixteen channels, five pixels wide: in the library's integers, in f32 and in halves.
+//! Precision of the distance between patches of sixteen channels, five pixels wide: in the library's integers, in f32
+//! and in half floats.
 
 use super::{Study, Way, timed};
 use half::f16;
@@ -14,7 +15,7 @@ const CHANNELS: usize = 16;
 const RUN: usize = PATCH * CHANNELS;
 const PAIRS: usize = 4096;
 
-/// Sum of squared differences of two runs, with eight partial sums for vector registers.
+/// Sum of squared differences between two rows of samples, with eight partial sums for vector registers.
 #[inline(always)]
 fn squares(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0f32; 8];
@@ -55,7 +56,7 @@ fn in_integers(features: &QuantisedImage, pairs: &[[usize; 2]]) -> Vec<u32> {
     pairs.iter().map(|&[a, b]| kernel.distance(patch(a), patch(b), RUN, PATCH, u32::MAX)).collect()
 }
 
-/// Four channels of a picture: waves with grain.
+/// An image of four channels: sine waves with fine noise.
 fn image(first: u64) -> Image {
     Image::from_fn(SIDE, SIDE, |x, y| -> [f32; 4] {
         std::array::from_fn(|c| {
@@ -66,7 +67,7 @@ fn image(first: u64) -> Image {
     .expect("an image")
 }
 
-/// Pairs of random patches, each given by the index of its first sample.
+/// Pairs of random patches; each patch is given by the index of its first sample.
 fn random_pairs() -> Vec<[usize; 2]> {
     let mut rng = Rng::new(6, &[]);
     let mut place = || {
@@ -82,7 +83,7 @@ pub fn measure(study: &mut Study) {
         println!("# distances of patches: this processor has no AVX2");
         return;
     }
-    // Matched images come from 8-bit files or renderings; here their values are exact in f32.
+    // The compared images come from 8-bit files or renderings; the values of these test images are exact in f32.
     let images: Vec<Image> = (0..CHANNELS as u64 / 4).map(image).collect();
     let weights = [1.0; CHANNELS];
     let mut features = QuantisedImage::new(SIDE, SIDE, CHANNELS).expect("features");

@@ -1,4 +1,5 @@
-//! Rays against triangles: a bumpy sheet at the origin and far from it, in scene coordinates.
+//! Precision of intersections of rays with triangles: a bumpy sheet near the origin and 1 km away, in scene
+//! coordinates.
 
 use super::real::{Real, cross, dot, minus};
 use super::{Study, Way, timed};
@@ -7,16 +8,16 @@ use luxfer::rng::Rng;
 const SIDE: usize = 24;
 const RAYS: usize = 512;
 
-/// Triangles that are intersected at once, as in the library's nodes and leaves.
+/// Number of triangles that are tested at once, as in the library's nodes and leaves.
 const LANES: usize = 8;
 
-/// Corners of the triangles, and origins and directions of the rays.
+/// Corners of the triangles, and origin and direction of each ray.
 struct Setting {
     triangles: Vec<[[f64; 3]; 3]>,
     rays: Vec<[[f64; 3]; 2]>,
 }
 
-/// Corner, coordinate, triangle.
+/// A block of triangles, indexed by corner, coordinate and triangle.
 type Block<R> = [[[R; LANES]; 3]; 3];
 
 fn blocks<R: Real>(triangles: &[[[f64; 3]; 3]]) -> Vec<Block<R>> {
@@ -27,7 +28,7 @@ fn blocks<R: Real>(triangles: &[[[f64; 3]; 3]]) -> Vec<Block<R>> {
     triangles.chunks(LANES).map(block).collect()
 }
 
-/// Distances along the rays (Möller and Trumbore 1997); infinity for a miss.
+/// Distances along the rays to their nearest hits (Möller and Trumbore 1997); infinity for a miss.
 fn distances<R: Real>(blocks: &[Block<R>], rays: &[[[R; 3]; 2]]) -> Vec<R> {
     let (zero, one, infinite) = (R::ZERO, R::of(1.0), R::of(f64::INFINITY));
     let nearest = |&[origin, direction]: &[[R; 3]; 2]| {

@@ -1,4 +1,4 @@
-//! Numbers of either width.
+//! A trait for f32 and f64, so that a kernel can be written once.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

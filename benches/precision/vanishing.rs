@@ -1,5 +1,5 @@
-//! A vanishing point from many lines: the direction most nearly perpendicular to their normals, the eigenvector of the
-//! smallest eigenvalue of a sum of outer products, by inverse iteration.
+//! Precision of a vanishing point from many lines. It is the direction most nearly perpendicular to the normals of the
+//! lines: the eigenvector of the smallest eigenvalue of a sum of outer products, found by inverse iteration.
 
 use super::real::{Real, cross, dot};
 use super::{Study, Way, timed};
@@ -19,7 +19,7 @@ fn direction<R: Real>(normals: &[[R; 3]]) -> [R; 3] {
             row.iter_mut().zip(n).for_each(|(cell, &b)| *cell += a * b);
         }
     }
-    // The adjugate is the inverse up to scale, and exists for singular matrices too.
+    // Use the adjugate: it is the inverse up to scale, and exists for singular matrices too.
     let adjugate = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
     let mut v = normalised([R::of(0.3), R::of(-0.5), R::of(0.8)]);
     for _ in 0..8 {
@@ -30,7 +30,7 @@ fn direction<R: Real>(normals: &[[R; 3]]) -> [R; 3] {
 
 pub fn measure(study: &mut Study) {
     let truth = normalised([0.2, -0.3, 0.9]);
-    // Short lines, as windows give: all normals are near each other.
+    // Make short lines, as the frames of windows give: all normals are close to each other.
     let mut rng = Rng::new(3, &[]);
     let side = normalised(cross(truth, [0.0, 1.0, 0.0]));
     let up = cross(side, truth);

@@ -1,12 +1,12 @@
-//! Error of a whole transfer against its time.
+//! Error of a whole transfer's picture against the transfer's time.
 //!
-//! The error is that of the picture, root mean square relative to its mean, against a transfer with a hundred times
-//! the default number of paths, a finer texture and a strength ten times as accurate. Each curve varies one setting
-//! and leaves the others at their defaults, so it levels off at the error of the others; the last curve shows plans
-//! for a time, including the time of planning. Times are of the whole transfer, including stages that were not run
-//! again because their input did not change.
+//! The error is the root mean square difference, relative to the mean, from the picture of a reference transfer with a
+//! hundred times the default number of paths, a finer texture and a strength ten times as accurate. Each curve varies
+//! one setting and leaves the others at their defaults, so it levels off at the error of the other settings. The last
+//! curve shows plans for a time, including the time of planning. Times are of whole transfers: they include stages
+//! that are not run again because their input has not changed.
 //!
-//! The mean of the picture is reported too: it separates the error of the solution from lamps at wrong positions,
+//! The mean of the picture is reported too. It separates the error of the solution from lamps at wrong positions,
 //! which occur if a smaller photo shows the lamps less clearly.
 
 use super::harness::plot::Plot;
@@ -29,7 +29,7 @@ pub fn draw() {
         office_photo(&photo::Params { width: PHOTO[0], height: PHOTO[1], samples: 16, ..photo::Params::default() });
     let truth = reference(&photo);
 
-    // The stages before the light, run once for all curves that do not change them.
+    // Run the stages before relighting once, for all curves that do not change them.
     let mut lit = transfer(photo.clone(), defaults());
     let (before, ()) = time(Clock::Wall, || run(&mut lit, Stage::View, Stage::Emission));
 
@@ -79,7 +79,7 @@ pub fn draw() {
     study.plot.write("transfer").expect("out/bench can be written to");
 }
 
-/// The picture of a transfer with more paths, a finer texture and a more accurate strength.
+/// The picture of the reference transfer, with more paths, a finer texture and a more accurate strength.
 fn reference(photo: &Image) -> Image {
     let (seconds, truth) = time(Clock::Wall, || {
         let mut fine = defaults();
@@ -95,7 +95,7 @@ fn reference(photo: &Image) -> Image {
     truth
 }
 
-/// The defaults of the library for a small picture.
+/// The library's default settings, for a small picture.
 fn defaults() -> Params {
     let mut params = Params::default();
     (params.render.width, params.render.height) = (PICTURE[0], PICTURE[1]);
@@ -114,7 +114,7 @@ struct Study {
 }
 
 impl Study {
-    /// A curve over some values: median seconds, and pictures with different seeds.
+    /// Adds a curve over some values of a setting: median seconds and median error over several seeds.
     fn vary<T: Display>(&mut self, name: &str, values: &[T], make: impl Fn(&T, u64) -> (f64, Image)) {
         let points = values.iter().map(|value| {
             let runs: Vec<_> = (0..ROUNDS).map(|seed| make(value, seed)).collect();
@@ -139,7 +139,7 @@ fn mean(image: &Image) -> f64 {
     image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64
 }
 
-/// Root mean square of the difference, relative to the mean of the truth.
+/// Root mean square of the difference from the true picture, relative to the mean of the truth.
 fn error(found: &Image, truth: &Image) -> f64 {
     let squares = found.data.iter().zip(&truth.data).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
     (squares / truth.data.len() as f64).sqrt() / mean(truth)

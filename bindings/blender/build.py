@@ -30,7 +30,7 @@ def build(folder: Path) -> Path:
         pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
         if importlib.util.find_spec("setuptools") and importlib.util.find_spec(
             "setuptools.command.bdist_wheel"
-        ):  # new enough: nothing to download
+        ):  # the build tools are new enough: nothing to download
             pip.append("--no-build-isolation")
         subprocess.run([*pip, "--wheel-dir", temporary, ROOT / "bindings" / "python"], check=True, stdin=subprocess.DEVNULL)
         (wheel,) = Path(temporary).glob("*.whl")

@@ -9,8 +9,8 @@
 //     render.start(params).wait([](double fraction) { return tell(fraction); });
 //     render.image().save("room.png", 0.01f);
 //
-// The C header describes every function, with units, ranges, ownership and threads; C++ uses its constants too. The
-// differences:
+// The C header describes every function, with units, ranges, ownership and threads; C++ programs use its constants
+// too. The differences from C:
 // - Each C handle X has a class with create(), and luxfer_X_verb is its method verb (get_report is report). Copies
 //   share the object and moves cost nothing; objects may be destroyed in any order.
 // - Structs XParams are the C structs luxfer_X_params, filled with the defaults.

@@ -1,11 +1,11 @@
-"""Makes luxfer/_abi.py and luxfer/types.py from include/luxfer.h, so that neither can drift from the library.
+"""Generates luxfer/_abi.py and luxfer/types.py from include/luxfer.h, so that both always agree with the library.
 
     python3 generate.py           rewrites both files
-    python3 generate.py --check   ends with 1 and names the first difference if they are not what the header says
+    python3 generate.py --check   if a file is out of date, names the first difference and exits with 1
 
-The header is generated too, by cbindgen, and regular: every item stands under one /** comment, a constant is a #define,
-an enumeration is a typedef of int32_t whose comment says "a LUXFER_X_ value". What is read here that is not so is an
-error, never skipped.
+cbindgen generates the header, so its form is regular: every item has one /** comment, a constant is a #define, and an
+enumeration is a typedef of int32_t whose comment says "a LUXFER_X_ value". Anything in another form is an error and is
+never skipped.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ class Field:
 
 @dataclass
 class Header:
-    """What the header declares, in its order."""
+    """The declarations of the header, in their order."""
 
     constants: dict[str, int] = field(default_factory=dict)
     docs: dict[str, str] = field(default_factory=dict)
-    sections: dict[str, str] = field(default_factory=dict)  # of the constants
+    sections: dict[str, str] = field(default_factory=dict)  # heading of each constant's section
     integers: list[str] = field(default_factory=list)  # typedefs of int32_t
     opaque: list[str] = field(default_factory=list)
     callbacks: dict[str, tuple[str, list[Field]]] = field(default_factory=dict)
@@ -64,13 +64,13 @@ class Header:
 
 
 def uncomment(text: str) -> str:
-    """The prose of a /** comment."""
+    """The text of a /** comment, without the comment signs."""
     lines = [re.sub(r"^\s*\*? ?", "", line) for line in text.strip().removeprefix("/**").removesuffix("*/").split("\n")]
     return "\n".join(line.rstrip() for line in lines).strip()
 
 
 def declaration(text: str, doc: str = "") -> Field:
-    """`const float *points` or `double corners[4][2]` as a Field."""
+    """Parses a declaration such as `const float *points` or `double corners[4][2]`."""
     match = re.fullmatch(r"(?:const )?(?:struct )?(\w+)\s*(\**)\s*(?:const\s+)?(\w+)((?:\[\d+\])*)", text.strip())
     if not match:
         raise SystemExit(f"cannot read the declaration {text!r}")
@@ -104,7 +104,7 @@ ITEM = re.compile(
 
 
 def header_text() -> str:
-    """The text of luxfer.h with its parts, without the inline functions, which the library does not export."""
+    """Reads luxfer.h and its parts, without the inline functions, which the library does not export."""
     text = re.sub(r'#include "(luxfer/\w+\.h)"', lambda m: (HEADER.parent / m[1]).read_text(), HEADER.read_text())
     return re.sub(r"\n/\*\* [^\n]* \*/\nstatic inline [^}]*\}\n", "", text)
 
@@ -155,11 +155,11 @@ class Enumeration:
     prefix: str
     is_flags: bool
     doc: str
-    members: dict[str, str] = field(default_factory=dict)  # name here: name in C
+    members: dict[str, str] = field(default_factory=dict)  # Python name: C name
 
 
 def enumerations(header: Header) -> dict[str, Enumeration]:
-    """By C type, or by prefix for flags. A constant belongs to the longest prefix it begins with."""
+    """The enumerations by C type, or by prefix for flags. A constant belongs to its longest matching prefix."""
     out = {"luxfer_status": Enumeration("Status", "LUXFER_", False, header.docs["luxfer_status"])}
     for name in header.integers[1:]:
         if name == "luxfer_struct_type":
@@ -196,7 +196,7 @@ from __future__ import annotations
 
 
 class Writer:
-    """Turns what was read into Python."""
+    """Writes the declarations of a header as Python code."""
 
     def __init__(self, header: Header):
         self.header = header
@@ -204,7 +204,7 @@ class Writer:
         self.is_output = set(header.structs) - set(header.settings)
 
     def prose(self, text: str) -> str:
-        """A comment of the header in the terms of Python."""
+        """Translates a comment of the header to the names of Python."""
         for e in self.enums.values():
             for name, constant in e.members.items():
                 text = re.sub(rf"\b{constant}\b", f"{e.name}.{name}", text)
@@ -216,7 +216,7 @@ class Writer:
         return text.replace("\\", "\\\\").replace("NULL", "None")
 
     def comment(self, text: str, indent: str) -> str:
-        """A docstring of it, wrapped."""
+        """Formats a comment of the header as a wrapped docstring."""
         text = re.sub(r"\s*Fill (it|them) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
         if not text:
             return ""
@@ -300,7 +300,7 @@ class Writer:
         return base
 
     def input_annotation(self, f: Field) -> str:
-        """What a setting may be given as: enumerations also by name, arrays as any sequence."""
+        """The annotation of a setting: enumerations are also accepted by name, and arrays as any sequence."""
         base = self.annotation(f)
         if f.type in self.enums or any(self.takes_flags(f, e) for e in self.enums.values()):
             base = f"{base} | str | int"

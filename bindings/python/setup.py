@@ -1,6 +1,7 @@
-"""Puts the library into the wheel, which so fits one platform but any Python; builds it first if it is not there yet.
+"""Packs the library into the wheel, which therefore fits one platform and any Python; builds the library if it is
+missing.
 
-The version and the licences are those of the library's own source tree, in which this folder lies.
+The version and the licences come from the library's source tree, which contains this folder.
 """
 
 import re
@@ -26,7 +27,7 @@ def version() -> str:
 
 
 class BuildPy(build_py):
-    """The modules and the library; an editable install finds the library in target/release."""
+    """Copies the modules and the library. An editable installation finds the library in target/release instead."""
 
     def run(self) -> None:
         if not LIBRARY.exists():
@@ -35,7 +36,7 @@ class BuildPy(build_py):
         if not self.editable_mode:
             self.copied().parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(LIBRARY, self.copied())
-            if strip := shutil.which("strip"):  # nine tenths of it are debug information
+            if strip := shutil.which("strip"):  # nine tenths of the file are debug information
                 subprocess.run([strip, "-S" if sys.platform == "darwin" else "--strip-debug", self.copied()], check=True)
 
     def copied(self) -> Path:
@@ -46,14 +47,14 @@ class BuildPy(build_py):
 
 
 class Wheel(bdist_wheel):
-    """py3-none-<platform>: no part of it is compiled for one version of Python."""
+    """Tags the wheel py3-none-<platform>, because no part of it is compiled for one version of Python."""
 
     def get_tag(self):
         return "py3", "none", super().get_tag()[2]
 
 
 class HasLibrary(Distribution):
-    """A distribution that is not the same on every platform."""
+    """Marks the distribution as specific to a platform."""
 
     def has_ext_modules(self) -> bool:
         return True

@@ -1,4 +1,5 @@
-//! Furniture of the rooms. Each piece is built at the origin with its front towards +z, then rotated and moved.
+//! Furniture of the demonstration rooms. Each piece is built at the origin with its front towards +z, then rotated and
+//! moved.
 
 use super::Builder;
 use super::shapes::{ball, cuboid, lathe, moved};
@@ -6,14 +7,14 @@ use crate::rng::Rng;
 use crate::scene::Mesh;
 use glam::{Vec2, Vec3};
 
-/// A box given by the centre of its base, the height of its base and its size.
+/// Adds a box. (x, y, z) is the centre of its base, and `size` is its extent along x, y and z, in metres.
 fn block(mesh: &mut Mesh, x: f32, y: f32, z: f32, size: [f32; 3]) {
     let half = Vec3::new(size[0] / 2.0, 0.0, size[2] / 2.0);
     let foot = Vec3::new(x, y, z);
     cuboid(mesh, foot - half, foot + half + Vec3::Y * size[1]);
 }
 
-/// A dining table 0.75 m high.
+/// Adds a dining table, 0.75 m high.
 pub fn table(b: &mut Builder, at: Vec3, size: Vec2, wood: usize) {
     let mut mesh = Mesh::default();
     block(&mut mesh, 0.0, 0.71, 0.0, [size.x, 0.04, size.y]);
@@ -28,7 +29,7 @@ pub fn table(b: &mut Builder, at: Vec3, size: Vec2, wood: usize) {
     b.add("Table", wood, moved(mesh, 0.0, at));
 }
 
-/// A wooden chair with a cushion; its back is at -z.
+/// Adds a wooden chair with a cushion. Before the rotation by `degrees`, its back is at -z.
 pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize) {
     let mut mesh = Mesh::default();
     block(&mut mesh, 0.0, 0.42, 0.0, [0.42, 0.03, 0.42]);
@@ -45,9 +46,10 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
     b.add("Cushion", cloth, moved(cushion, degrees, at));
 }
 
-/// An open shelf with its back at z = 0 and books on every board; the books take the given paints at random.
+/// Adds an open shelf with books on every board. Before the rotation, its back is at z = 0. Each book takes one of the
+/// materials `covers` at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
-    /// Depth of the shelf and heights of its boards, in metres [convention].
+    /// Depth of the shelf and heights of its boards, in metres. [convention]
     const DEPTH: f32 = 0.30;
     const BOARDS: [f32; 5] = [0.06, 0.44, 0.82, 1.20, 1.58];
     let mut frame = Mesh::default();
@@ -61,7 +63,7 @@ pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usiz
     }
     b.add("Shelf", wood, moved(frame, degrees, at));
 
-    // Books of random width and height, upright, with gaps.
+    // Books of random width and height stand upright, with gaps between some of them.
     let mut books = vec![Mesh::default(); covers.len()];
     let mut rng = Rng::new(5, &[]);
     for y in BOARDS {
@@ -83,7 +85,7 @@ pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usiz
     }
 }
 
-/// A low cupboard with doors, its back at z = 0.
+/// Adds a low cupboard with doors. Before the rotation, its back is at z = 0.
 pub fn sideboard(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, front: usize) {
     let mut body = Mesh::default();
     block(&mut body, 0.0, 0.12, 0.21, [width, 0.62, 0.42]);
@@ -123,7 +125,7 @@ pub fn vase(b: &mut Builder, foot: Vec3, scale: f32, glaze: usize) {
     b.add("Vase", glaze, mesh);
 }
 
-/// A bowl with five fruits.
+/// Adds a bowl with five fruits.
 pub fn fruit_bowl(b: &mut Builder, foot: Vec3, glaze: usize, fruit: [usize; 2]) {
     let outline = [
         (0.0, 0.0),
@@ -148,7 +150,7 @@ pub fn fruit_bowl(b: &mut Builder, foot: Vec3, glaze: usize, fruit: [usize; 2]) 
     }
 }
 
-/// A pot with a leafy ball.
+/// Adds a pot with a round leafy plant.
 pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize) {
     let outline = [(0.0, 0.0), (0.13, 0.0), (0.17, 0.30), (0.18, 0.32), (0.165, 0.32), (0.15, 0.28), (0.0, 0.28)];
     let mut mesh = Mesh::default();
@@ -166,7 +168,7 @@ pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize
     b.add("Plant", leaves, crown);
 }
 
-/// A desk with a screen, its user at +z.
+/// Adds a desk with a screen. Before the rotation, its user sits at +z.
 pub fn desk(b: &mut Builder, at: Vec3, degrees: f32, top: usize, dark: usize) {
     let mut board = Mesh::default();
     block(&mut board, 0.0, 0.72, 0.0, [1.6, 0.03, 0.8]);

@@ -1,15 +1,15 @@
-//! Self-contained demonstration scenes: two generated rooms and a photo of one of them; a sphere on a table with
-//! artworks of it, and a still life.
+//! Self-contained demonstration data: two generated rooms, with a photo of one; a sphere on a table, with drawings and
+//! a painting of that scene; and a still life.
 //!
 //! [`target_room`] is the furnished room to be lit; it has no lights. [`exemplar_room`] is a different room, an office
-//! under a grid of luminaires with known positions and colour: a rendering of it can stand for the photo, and the
-//! results can be checked against the truth.
+//! under a grid of luminaires whose positions and colour are known. A rendering of the office can serve as the
+//! exemplar photo, and results can be compared with the known truth.
 //!
-//! [`sphere_on_table`] is the exemplar of a stylisation, [`artwork`] draws it in three techniques, [`still_life`] is a
-//! target.
+//! [`sphere_on_table`] is the exemplar scene of a stylisation, [`artwork`] draws it in three techniques, and
+//! [`still_life`] is the target scene.
 //!
-//! Metres, Y up, floors at y = 0. Nothing is loaded from files: shapes are boxes, sheets and bodies of revolution,
-//! textures are noise. The result is the same to the bit every time.
+//! Coordinates are in metres, with Y up and floors at y = 0. Nothing is loaded from files: shapes are boxes, sheets
+//! and bodies of revolution, and textures are noise. The result is the same to the bit every time.
 
 pub mod artwork;
 mod furniture;
@@ -38,13 +38,13 @@ struct Builder {
 }
 
 impl Builder {
-    /// Adds a paint and returns the index of its material.
+    /// Adds a material of one colour and returns its index.
     fn paint(&mut self, name: &str, colour: Vec3, roughness: f32) -> usize {
         self.scene.materials.push(Material { roughness, ..Material::diffuse(name, colour) });
         self.scene.materials.len() - 1
     }
 
-    /// Adds a material with a pattern that repeats every `period` metres of texture coordinates.
+    /// Adds a material with a pattern that repeats every `period` metres, and returns its index.
     fn pattern(&mut self, name: &str, image: Image, period: Vec2, roughness: f32) -> usize {
         self.scene.textures.push(Texture::new(name, image));
         let transform = Mat3::from_scale(period.recip());
@@ -58,7 +58,7 @@ impl Builder {
         self.scene.meshes.push(Mesh { name: name.into(), material, ..mesh });
     }
 
-    /// Validates and returns the scene.
+    /// Validates the scene and returns it.
     fn build(self) -> Result<Scene> {
         self.scene.validate()?;
         Ok(self.scene)
@@ -113,7 +113,7 @@ mod tests {
         let lamps = scene.meshes.iter().find(|m| m.name == "Luminaires").unwrap();
         let lamp = &scene.materials[lamps.material];
         assert_eq!(lamp.emission, grid.emission);
-        // Each centre lies in a luminaire, and their areas add up.
+        // Each centre of the grid lies in a luminaire, and the areas of the luminaires add up.
         let mut area = 0.0;
         for t in 0..lamps.triangles.len() {
             let [a, b, c] = lamps.corners(t);

@@ -1,4 +1,5 @@
-//! The room to be photographed: an office of 5.4 × 9 m, 2.7 m high, under a grid of square luminaires.
+//! The exemplar room, which is to be photographed: an office of 5.4 × 9 m, 2.7 m high, under a grid of square
+//! luminaires.
 
 use super::shapes::{cuboid, pierced, sheet};
 use super::{Builder, furniture, pattern};
@@ -7,35 +8,35 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Side of the ceiling's tiles in metres, and their number along x and z [convention].
+/// Side of the ceiling's tiles in metres, and their number along x and z. [convention]
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
-/// Width and depth of the bars that carry the tiles.
+/// Width and depth in metres of the bars that carry the tiles.
 const BAR: Vec2 = Vec2::new(0.024, 0.004);
-/// Side of a luminaire in metres; the rest of its tile is a white rim [convention].
+/// Side of a luminaire in metres; the rest of its tile is a white rim. [convention]
 const LUMINAIRE: f32 = 0.56;
-/// Luminance of the luminaires in cd/m² [convention].
+/// Luminance of the luminaires in cd/m². [convention]
 const LUMINANCE: f32 = 3000.0;
-/// Linear Rec.709 of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
+/// Linear Rec.709 colour of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
 const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);
 
-/// The true grid of luminaires: positions on the ceiling as (x, z) in metres.
+/// The grid of luminaires on the ceiling, as ground truth. Positions are (x, z) in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LuminaireGrid {
     pub columns: usize,
     pub rows: usize,
     /// Centre of the luminaire with the smallest x and z.
     pub first: Vec2,
-    /// Distance between neighbouring centres along x and z.
+    /// Distance in metres between neighbouring centres along x and z.
     pub period: Vec2,
-    /// Extent of the emitting part along x and z.
+    /// Extent in metres of the emitting part of a luminaire along x and z.
     pub size: Vec2,
-    /// Emitted linear RGB in cd/m².
+    /// Emission of the luminaires: linear RGB in cd/m².
     pub emission: Vec3,
 }
 
 impl LuminaireGrid {
-    /// Centres row by row, x first.
+    /// Iterates over the centres row by row, x first.
     pub fn centres(&self) -> impl Iterator<Item = Vec2> {
         let grid = *self;
         (0..grid.rows * grid.columns)
@@ -48,13 +49,14 @@ impl LuminaireGrid {
 pub struct Exemplar {
     pub scene: Scene,
     pub grid: LuminaireGrid,
-    /// Height of the plane of ceiling tiles and luminaires.
+    /// Height in metres of the plane in which the ceiling tiles and luminaires lie.
     pub ceiling_height: f32,
-    /// Index of the camera that takes the photo: intended for an aspect of 3:2, 66° across, pitched up by 22°.
+    /// Index of the camera that takes the photo. It is meant for an aspect ratio of 3:2, with a horizontal angle of
+    /// view of 66°, and it is pitched up by 22°.
     pub camera: usize,
 }
 
-/// An office lit only by its ceiling.
+/// Builds the office, lit only by the luminaires in its ceiling.
 pub fn exemplar_room() -> Result<Exemplar> {
     let grid = LuminaireGrid {
         columns: 3,
@@ -69,7 +71,7 @@ pub fn exemplar_room() -> Result<Exemplar> {
     shell(&mut b)?;
     fittings(&mut b)?;
 
-    // Rotate the camera against the room and roll it slightly, so that all three vanishing points are finite.
+    // Rotate the camera relative to the room and roll it slightly, so that all three vanishing points are finite.
     let (yaw, pitch, roll) = (-17f32.to_radians(), 22f32.to_radians(), 1.2f32.to_radians());
     let turn = Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(pitch) * Mat3::from_rotation_z(roll);
     let fov_y = 2.0 * ((33f32.to_radians()).tan() / 1.5).atan();
@@ -83,7 +85,8 @@ pub fn exemplar_room() -> Result<Exemplar> {
     Ok(Exemplar { scene: b.build()?, grid, ceiling_height: SIZE.y, camera: 0 })
 }
 
-/// Tiles, luminaires with their rims, and the bars between them. Everything except the bars lies in one plane.
+/// Adds the ceiling: tiles, luminaires with their rims, and the bars between them. Everything but the bars lies in one
+/// plane.
 fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     let fibre = b.pattern("Ceiling tile", pattern::tile()?, Vec2::splat(TILE), 1.0);
     let white = b.paint("White steel", Vec3::splat(0.75), 0.5);
@@ -94,7 +97,7 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     });
     let diffuser = b.scene.materials.len() - 1;
 
-    // Adds a downward-facing square: x × z points down.
+    // Add a square that faces down: x × z points down.
     let square = |m: &mut Mesh, centre: Vec2, edge: f32| {
         let corner = centre - edge / 2.0;
         sheet(m, Vec3::new(corner.x, SIZE.y, corner.y), Vec3::X * edge, Vec3::Z * edge, [1, 1]);
@@ -138,7 +141,8 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     Ok(())
 }
 
-/// Lower and upper corner of each window in the wall at x = 0: distance along -z from z = 9, and height y.
+/// Returns the lower and upper corner of each window in the wall at x = 0. The coordinates of a corner are its
+/// distance along -z from z = 9 and its height y, in metres.
 fn windows() -> [[Vec2; 2]; 4] {
     std::array::from_fn(|i| {
         let start = 0.5 + 2.1 * i as f32;
@@ -194,7 +198,7 @@ fn fittings(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// Lockers along the right wall in two colours, with gaps that form vertical lines, and boxes on top.
+/// Adds lockers in two colours along the right wall, with gaps that form vertical lines, and boxes on top.
 fn lockers(b: &mut Builder) {
     let x = SIZE.x;
     let blues = [
@@ -219,7 +223,7 @@ fn lockers(b: &mut Builder) {
     b.add("Boxes", card, boxes);
 }
 
-/// The end wall: door, sign above it, board. Returns the dark material of the trim.
+/// Furnishes the end wall: a door, a sign above it and a board. Returns the dark material of the trim.
 fn end_wall(b: &mut Builder) -> usize {
     let orange = b.paint("Door orange", Vec3::new(0.62, 0.25, 0.06), 0.5);
     let white = b.paint("Board white", Vec3::splat(0.80), 0.2);
@@ -237,7 +241,7 @@ fn end_wall(b: &mut Builder) -> usize {
     dark
 }
 
-/// Desks in two rows, back to back, with dividing screens; `dark` is the material of their screens.
+/// Adds desks in two rows, back to back, with dividers between them. `dark` is the material of their screens.
 fn desks(b: &mut Builder, dark: usize) -> Result<()> {
     let top = b.pattern("Beech", pattern::wood(Vec3::new(0.55, 0.38, 0.22))?, Vec2::new(1.2, 0.6), 0.5);
     let cloth = b.pattern(

@@ -1,4 +1,4 @@
-//! Procedural textures in linear reflectance; all are tileable.
+//! Procedural textures of linear reflectance for the demonstration rooms. All of them tile without seams.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 /// Side of a texture in pixels.
 const SIDE: usize = 256;
 
-/// Smooth noise in `[0, 1]` that repeats every `period` cells (value noise on a lattice).
+/// Returns smooth noise in `[0, 1]` that repeats every `period` cells (value noise on a lattice of unit cells).
 pub(super) fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
     let cell = at.floor();
     let t = at - cell;
@@ -23,13 +23,13 @@ pub(super) fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
     top + (bottom - top) * t.y
 }
 
-/// Noise of three octaves over the unit square.
+/// Sums three octaves of noise over the unit square, with `cells` lattice cells along each side in the first octave.
 fn cloud(at: Vec2, cells: u64, seed: u64) -> f32 {
     let octave = |factor: u64| noise(at * (cells * factor) as f32, [cells * factor; 2], seed + factor);
     octave(1) * 0.5 + octave(2) * 0.3 + octave(4) * 0.2
 }
 
-/// A texture from a function of the reflectance over the unit square.
+/// Samples a texture from a function that gives the reflectance over the unit square.
 fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     Image::from_fn(SIDE, SIDE, |x, y| {
         let at = (Vec2::new(x as f32, y as f32) + 0.5) / SIDE as f32;
@@ -37,7 +37,7 @@ fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     })
 }
 
-/// Boards along u with individual tones: 8 across, with staggered ends.
+/// Wooden boards along u with individual tones: 8 boards across, with staggered ends.
 pub fn planks() -> Result<Image> {
     paint(|at| {
         let board = (at.y * 8.0).floor();
@@ -52,7 +52,7 @@ pub fn planks() -> Result<Image> {
     })
 }
 
-/// Fine wood without joints, grain along u.
+/// Fine wood without joints, whose grain runs along u.
 pub fn wood(colour: Vec3) -> Result<Image> {
     paint(|at| {
         let ring =
@@ -61,7 +61,7 @@ pub fn wood(colour: Vec3) -> Result<Image> {
     })
 }
 
-/// Painted bricks in running bond, 4 by 8.
+/// Painted bricks in running bond, 4 along u and 8 along v.
 pub fn bricks(colour: Vec3) -> Result<Image> {
     paint(|at| {
         let row = (at.y * 8.0).floor();
@@ -73,7 +73,7 @@ pub fn bricks(colour: Vec3) -> Result<Image> {
     })
 }
 
-/// Plaster: nearly uniform, slightly cloudy.
+/// Plaster of nearly uniform colour, slightly cloudy.
 pub fn plaster(colour: Vec3) -> Result<Image> {
     paint(|at| colour * (0.93 + 0.14 * cloud(at, 8, 41)))
 }
@@ -105,7 +105,7 @@ pub fn rug() -> Result<Image> {
     })
 }
 
-/// A painting: hills under an evening sky.
+/// A painting of hills under an evening sky.
 pub fn painting() -> Result<Image> {
     paint(|at| {
         let ridge = |height: f32, cells: u64, seed: u64| {
@@ -130,7 +130,7 @@ pub fn tile() -> Result<Image> {
     })
 }
 
-/// Carpet tiles, two by two, with alternating direction.
+/// Carpet tiles, two by two, whose stripes alternate in direction.
 pub fn carpet(colour: Vec3) -> Result<Image> {
     paint(|at| {
         let turned = ((at * 2.0).floor().element_sum() as i64) % 2 == 0;

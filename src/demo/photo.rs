@@ -1,4 +1,4 @@
-//! A photo of a generated room: a rendering with a model of a lens and an 8-bit sensor.
+//! Takes a photo of a demonstration room: a rendering with models of a lens and of an 8-bit sensor.
 
 use crate::error::Result;
 use crate::exec;
@@ -11,26 +11,26 @@ use crate::scene::{Camera, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Standard deviation of the lens blur in pixels [convention].
+/// Standard deviation of the lens blur in pixels. [convention]
 const LENS_BLUR: f32 = 0.7;
-/// Share of the light that the lens scatters into a glow around lamps, and the standard deviation of the glow in
-/// pixels [convention].
+/// Share of the light that the lens scatters into a glow around lamps, and the standard deviation of that glow in
+/// pixels. [convention]
 const GLARE: (f32, f32) = (0.03, 9.0);
-/// Brightness in the corner of the picture relative to its centre [convention].
+/// Brightness in the corners of the photo relative to its centre. [convention]
 const VIGNETTE: f32 = 0.8;
-/// Full-well capacity and read-out noise, in electrons [convention].
+/// Full-well capacity of a pixel, and standard deviation of the read-out noise, both in electrons. [convention]
 const WELL: (f64, f64) = (6000.0, 12.0);
-/// Strength of the camera's white balance from the colour of the light (0) to white (1): real cameras correct
-/// partially [convention].
+/// Strength of the white balance: 0 keeps the colour of the light, 1 turns the mean colour grey. Real cameras correct
+/// partially. [convention]
 const WHITE_BALANCE: f32 = 0.6;
-/// Linear value to which the median of the picture is exposed [convention].
+/// The exposure maps the median luminance of the rendering to this linear value. [convention]
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub width: usize,
     pub height: usize,
-    /// Paths per pixel.
+    /// Number of paths per pixel.
     pub samples: u32,
     pub seed: u64,
 }
@@ -41,8 +41,8 @@ impl Default for Params {
     }
 }
 
-/// Takes the picture: linear RGB in `[0, 1]` after quantisation to 8-bit sRGB, with lamps clipped to white. Also
-/// returns the exposure: the linear value of 1 cd/m².
+/// Takes the photo of `scene`. Returns linear RGB in `[0, 1]` after quantisation to 8-bit sRGB, in which lamps are
+/// clipped to white, and the exposure: the linear value of 1 cd/m².
 pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job) -> Result<(Image, f32)> {
     let world = World::build(scene, job.part(0.0, 0.05))?;
     let settings = render::Params {
@@ -54,11 +54,11 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     };
     let film = render::run(&world, camera, &settings, job.part(0.05, 0.9), &mut |_| {})?;
 
-    // Lens: slight blur, and glare around very bright parts.
+    // Lens: a slight blur, and a glow around very bright parts.
     let sharp = pyramid::blur(&film.beauty, LENS_BLUR, job.part(0.9, 0.92))?;
     let glow = pyramid::blur(&film.beauty, GLARE.1, job.part(0.92, 0.96))?;
 
-    // Expose for the room, not for its lamps.
+    // Expose for the room by its median luminance, which the few bright pixels of the lamps hardly affect.
     let mut levels = try_collect(film.beauty.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))))?;
     let half = levels.len() / 2;
     let median = *levels.select_nth_unstable_by(half, f32::total_cmp).1;

@@ -1,4 +1,4 @@
-//! The room to be lit: 6 × 4 m, 2.8 m high, furnished, without lights.
+//! The target room, which is to be lit: 6 × 4 m, 2.8 m high, furnished, without lights.
 
 use super::shapes::{ball, cuboid, flat, moved, pierced, sheet};
 use super::{Builder, furniture, pattern};
@@ -7,15 +7,15 @@ use crate::scene::{Camera, Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(6.0, 2.8, 4.0);
-/// Side of the cells into which walls, floor and ceiling are divided [convention].
+/// Side in metres of the cells into which walls, floor and ceiling are divided. [convention]
 const CELL: f32 = 0.25;
-/// Depth of door and window openings [convention].
+/// Depth in metres of the door and window openings. [convention]
 const REVEAL: f32 = 0.12;
-/// Openings in the wall at z = 0: lower and upper corner along x and y.
+/// Lower and upper corner, along x and y, of the openings in the wall at z = 0.
 const WINDOW: [Vec2; 2] = [Vec2::new(1.1, 0.95), Vec2::new(3.1, 2.25)];
 const DOOR: [Vec2; 2] = [Vec2::new(4.3, 0.0), Vec2::new(5.2, 2.05)];
 
-/// A furnished living room without lights; its first camera is named `Camera`, its ceiling `Ceiling`.
+/// Builds a furnished living room without lights. Its first camera is named `Camera`, its ceiling `Ceiling`.
 pub fn target_room() -> Result<Scene> {
     let mut b = Builder::default();
     shell(&mut b)?;
@@ -28,7 +28,7 @@ pub fn target_room() -> Result<Scene> {
     b.build()
 }
 
-/// Floor, ceiling and walls, all facing inwards.
+/// Adds floor, ceiling and walls, all of which face inwards.
 fn shell(b: &mut Builder) -> Result<()> {
     let Vec3 { x, y, z } = SIZE;
     let cells = |a: f32, b: f32| [(a / CELL).ceil() as u32, (b / CELL).ceil() as u32];
@@ -58,7 +58,8 @@ fn shell(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// A frame of bars around an opening in the wall at z = 0, as deep as the wall.
+/// Adds a frame of bars around an opening in the wall at z = 0. The bars are as deep as the opening and project 3 cm
+/// into the room.
 fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     let mut piece = |a: Vec2, b: Vec2| cuboid(m, a.extend(-REVEAL), b.extend(0.03));
     piece(Vec2::new(low.x - bar, low.y), Vec2::new(low.x, high.y));
@@ -69,7 +70,7 @@ fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     }
 }
 
-/// A window with a frosted pane and curtains, and the door.
+/// Adds the window with a frosted pane and curtains, and the door.
 fn openings(b: &mut Builder) {
     let lacquer = b.paint("Frame lacquer", Vec3::splat(0.80), 0.35);
     let frames = flat(|m| {
@@ -123,7 +124,7 @@ fn openings(b: &mut Builder) {
     b.add("Curtain rod", brass, rod);
 }
 
-/// Materials that several pieces of furniture share.
+/// Indices of the materials that several pieces of furniture share.
 struct Paints {
     oak: usize,
     walnut: usize,
@@ -143,7 +144,7 @@ fn furnish(b: &mut Builder) -> Result<()> {
     dining_table(b, &paints)?;
     left_wall(b, &paints)?;
 
-    // A plant by the window and a round pouf.
+    // A plant by the window, and a round pouf.
     let (pot, leaves) =
         (b.paint("Clay", Vec3::new(0.42, 0.20, 0.12), 0.8), b.paint("Leaves", Vec3::new(0.06, 0.22, 0.04), 0.6));
     furniture::plant(b, Vec3::new(3.85, 0.0, 0.38), 1.35, pot, leaves);
@@ -153,7 +154,7 @@ fn furnish(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// The table and its chairs on the rug.
+/// Adds the rug, and on it the table and its chairs.
 fn dining_table(b: &mut Builder, paints: &Paints) -> Result<()> {
     let (centre, rug_size) = (Vec3::new(3.0, 0.0, 1.95), Vec2::new(2.9, 2.1));
     let rug = b.pattern("Rug", pattern::rug()?, rug_size, 1.0);
@@ -172,7 +173,7 @@ fn dining_table(b: &mut Builder, paints: &Paints) -> Result<()> {
     Ok(())
 }
 
-/// Along the left wall: shelf, sideboard and painting.
+/// Furnishes the left wall: shelf, sideboard and painting.
 fn left_wall(b: &mut Builder, paints: &Paints) -> Result<()> {
     let covers = [
         ("Book red", Vec3::new(0.42, 0.05, 0.04)),
@@ -186,7 +187,7 @@ fn left_wall(b: &mut Builder, paints: &Paints) -> Result<()> {
     furniture::sideboard(b, Vec3::new(0.0, 0.0, 2.95), 90.0, 1.7, paints.oak, paints.ceramic);
     furniture::vase(b, Vec3::new(0.22, 0.741, 3.45), 1.1, paints.ceramic);
     let canvas = b.pattern("Painting", pattern::painting()?, Vec2::new(1.1, 0.75), 0.9);
-    // Texture rows run down, so the canvas starts at its upper left corner as seen from the room.
+    // The rows of a texture run down, so start the canvas at its upper left corner as seen from the room.
     let upper_left = Vec3::new(0.031, 2.15, 3.5);
     b.add(
         "Painting",

@@ -1,19 +1,19 @@
-//! Sheets, boxes and bodies of revolution.
+//! Shapes of the demonstration scenes: sheets, boxes and bodies of revolution.
 //!
-//! Texture coordinates are in metres along the surface. Flat shapes have no normals and round ones do, so the two
+//! Texture coordinates are in metres along the surface. Flat shapes have no normals but round shapes have, so the two
 //! kinds must not share a mesh.
 
 use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};
 
-/// Creates a mesh from one shape.
+/// Creates a mesh from one call of a function that adds a shape.
 pub fn flat(build: impl FnOnce(&mut Mesh)) -> Mesh {
     let mut mesh = Mesh::default();
     build(&mut mesh);
     mesh
 }
 
-/// Adds a rectangle of `cells` from a corner; its front faces along `u × v`.
+/// Adds a rectangle with sides `u` and `v` from `corner`, divided into `cells`. Its front faces along `u × v`.
 pub fn sheet(mesh: &mut Mesh, corner: Vec3, u: Vec3, v: Vec3, cells: [u32; 2]) {
     let first = mesh.positions.len() as u32;
     let [columns, rows] = cells;
@@ -33,8 +33,8 @@ pub fn sheet(mesh: &mut Mesh, corner: Vec3, u: Vec3, v: Vec3, cells: [u32; 2]) {
     }
 }
 
-/// Adds a rectangle with rectangular openings, each given by its lower and upper corner in metres along u and v; cells
-/// are at most `cell` wide. `size` is its extent along the unit directions `u` and `v`.
+/// Adds a rectangle with rectangular openings, each given by its lower and upper corner in metres along `u` and `v`.
+/// `size` is the extent of the rectangle along these unit directions. Its cells are at most `cell` metres wide.
 pub fn pierced(mesh: &mut Mesh, corner: Vec3, [u, v]: [Vec3; 2], size: Vec2, openings: &[[Vec2; 2]], cell: f32) {
     let cuts = |axis: usize| {
         let mut cuts: Vec<f32> = openings.iter().flatten().map(|p| p[axis]).chain([0.0, size[axis]]).collect();
@@ -53,13 +53,13 @@ pub fn pierced(mesh: &mut Mesh, corner: Vec3, [u, v]: [Vec3; 2], size: Vec2, ope
             let cells = (extent / cell).ceil().max(Vec2::ONE).as_uvec2().to_array();
             let first = mesh.uvs[0].len();
             sheet(mesh, corner + u * x[0] + v * y[0], u * extent.x, v * extent.y, cells);
-            // Keep the pattern continuous across pieces.
+            // Keep the texture continuous across the pieces around the openings.
             mesh.uvs[0][first..].iter_mut().for_each(|uv| *uv += Vec2::new(x[0], y[0]));
         }
     }
 }
 
-/// Adds a box.
+/// Adds a box between two opposite corners.
 pub fn cuboid(mesh: &mut Mesh, low: Vec3, high: Vec3) {
     let d = high - low;
     let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
@@ -70,7 +70,7 @@ pub fn cuboid(mesh: &mut Mesh, low: Vec3, high: Vec3) {
     }
 }
 
-/// Adds a body of revolution about the vertical through `foot`: `profile` lists radius and height along its outside
+/// Adds a body of revolution about the vertical through `foot`. `profile` lists (radius, height) along the outside
 /// from the bottom up.
 pub fn lathe(mesh: &mut Mesh, foot: Vec3, profile: &[Vec2], segments: u32) {
     let first = mesh.positions.len() as u32;
@@ -95,7 +95,7 @@ pub fn lathe(mesh: &mut Mesh, foot: Vec3, profile: &[Vec2], segments: u32) {
     }
 }
 
-/// Adds an ellipsoid.
+/// Adds an ellipsoid of revolution; `radius` holds its horizontal and its vertical radius.
 pub fn ball(mesh: &mut Mesh, centre: Vec3, radius: Vec2, segments: u32) {
     let steps = segments / 2;
     let profile: Vec<Vec2> = (0..=steps)
@@ -107,7 +107,7 @@ pub fn ball(mesh: &mut Mesh, centre: Vec3, radius: Vec2, segments: u32) {
     lathe(mesh, centre, &profile, segments);
 }
 
-/// Rotates a mesh about the vertical through the origin, then moves it.
+/// Rotates a mesh about the vertical through the origin, then moves it by `to`.
 pub fn moved(mut mesh: Mesh, degrees: f32, to: Vec3) -> Mesh {
     let turn = Mat3::from_rotation_y(degrees.to_radians());
     mesh.positions.iter_mut().for_each(|p| *p = turn * *p + to);
@@ -119,7 +119,7 @@ pub fn moved(mut mesh: Mesh, degrees: f32, to: Vec3) -> Mesh {
 mod tests {
     use super::*;
 
-    /// Volume by the divergence theorem: positive only if all faces point outwards.
+    /// Computes the volume by the divergence theorem. It is positive if the faces point outwards.
     fn volume(mesh: &Mesh) -> f32 {
         (0..mesh.triangles.len()).map(|t| mesh.corners(t)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
     }

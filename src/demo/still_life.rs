@@ -1,8 +1,8 @@
-//! The two scenes of a stylisation: the sphere on a table that an artist paints (StyLit, section 3.1), and a still
-//! life of other shapes on the same table under the same lamp.
+//! The two scenes of a stylisation: the exemplar, a sphere on a table as an artist paints it (StyLit, section 3.1),
+//! and the target, a still life of other shapes on the same table under the same lamp.
 //!
-//! Both show the effects of light that artists paint differently: a highlight, a core shadow, the red light that the
-//! object reflects onto the table, and its cast shadow with a soft edge.
+//! Both scenes show the effects of light that artists paint differently: a highlight, a core shadow, the red light
+//! that the object reflects onto the table, and the object's cast shadow with a soft edge.
 
 use super::Builder;
 use super::shapes::{ball, flat, lathe, moved, sheet};
@@ -10,14 +10,15 @@ use crate::error::Result;
 use crate::scene::{Camera, Environment, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
-/// Corner, width and depth of the lamp, which faces the table.
+/// Two opposite corners of the rectangular lamp, which faces the table.
 const LAMP: [Vec3; 2] = [Vec3::new(0.12, 0.62, -0.12), Vec3::new(0.34, 0.56, 0.06)];
-/// Luminance of the lamp in cd/m² [convention].
+/// Luminance of the lamp in cd/m². [convention]
 const LAMP_LUMINANCE: f32 = 12_000.0;
-/// Luminance of the dim surroundings.
+/// Luminance of the dim surroundings in cd/m², per channel.
 const SURROUNDINGS: Vec3 = Vec3::new(120.0, 125.0, 135.0);
 
-/// The exemplar: a glossy red ball on a white table before a white wall. Object names: `Ball`, `Table`, `Wall`.
+/// Builds the exemplar: a glossy red ball on a white table before a white wall. Its objects are named `Ball`, `Table`
+/// and `Wall`.
 pub fn sphere_on_table() -> Result<Scene> {
     let mut b = stage();
     let red = paint(&mut b);
@@ -27,7 +28,7 @@ pub fn sphere_on_table() -> Result<Scene> {
     b.build()
 }
 
-/// The target: a vase, a ring and two balls. Object names: `Vase`, `Ring`, `Balls`, `Table`, `Wall`.
+/// Builds the target: a vase, a ring and two balls. Its objects are named `Vase`, `Ring`, `Balls`, `Table` and `Wall`.
 pub fn still_life() -> Result<Scene> {
     let mut b = stage();
     let red = paint(&mut b);
@@ -48,7 +49,7 @@ pub fn still_life() -> Result<Scene> {
     b.build()
 }
 
-/// Table, wall, lamp, surroundings and camera.
+/// Builds the parts that both scenes share: table, wall, lamp, surroundings and camera.
 fn stage() -> Builder {
     let mut b = Builder::default();
     let white = b.paint("White", Vec3::splat(0.75), 1.0);
@@ -75,14 +76,14 @@ fn stage() -> Builder {
     b
 }
 
-/// Adds the glossy red paint of the objects.
+/// Adds the glossy red paint of the objects and returns its index.
 fn paint(b: &mut Builder) -> usize {
     let red = b.paint("Red", Vec3::new(0.62, 0.035, 0.03), 0.22);
     b.scene.materials[red].ior = 1.6;
     red
 }
 
-/// Radius and height of the vase along its outside, from the foot to the rim and a little into the neck.
+/// Returns (radius, height) of the vase along its outside, from the foot to the rim and a little into the neck.
 fn vase_profile() -> Vec<Vec2> {
     let corners = [
         (0.034, 0.0),
@@ -97,7 +98,7 @@ fn vase_profile() -> Vec<Vec2> {
         (0.037, 0.198),
         (0.023, 0.168),
     ];
-    // A Catmull-Rom spline through the corners.
+    // Interpolate the corners by a Catmull-Rom spline.
     let at = |i: isize| Vec2::from(corners[i.clamp(0, corners.len() as isize - 1) as usize]);
     let steps = 10;
     let mut profile = vec![Vec2::new(0.0, 0.0)];
@@ -113,7 +114,8 @@ fn vase_profile() -> Vec<Vec2> {
     profile
 }
 
-/// Adds a ring about the vertical through the origin, with the radii of its centre line and of its tube.
+/// Adds a ring about the vertical through the origin. `radius` is the radius of its centre line, `tube` the radius of
+/// its cross section.
 fn torus(mesh: &mut Mesh, radius: f32, tube: f32) {
     let (around, across) = (128u32, 48u32);
     let first = mesh.positions.len() as u32;

@@ -1,4 +1,4 @@
-//! The strokes that a user would paint on the photo of the exemplar room.
+//! The strokes with which a user would mark the ceiling and the lamps on the photo of the exemplar room.
 
 use super::Exemplar;
 use crate::error::Result;
@@ -7,10 +7,10 @@ use crate::scene::Camera;
 use crate::segment::{Stroke, StrokeSet};
 use glam::{DVec2, Vec2, Vec3};
 
-/// Brush radius as a share of the photo's height [convention].
+/// Brush radius as a share of the photo's height. [convention]
 const RADIUS: f64 = 0.006;
 
-/// Strokes on a photo of `width` × `height` pixels taken by the room's own camera.
+/// Returns the strokes for a photo of `width` × `height` pixels, taken by the room's own camera.
 pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<StrokeSet> {
     let camera = &exemplar.scene.cameras[exemplar.camera];
     let grid = &exemplar.grid;
@@ -20,14 +20,14 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         let seen: Vec<DVec2> = points.iter().filter_map(|&p| project(camera, p, width, height)).collect();
         Stroke::polyline(&seen, radius, positive, width, height)
     };
-    // Lamp `(column, row)`, and the tile half a period to its right.
+    // Centre of the lamp at `(column, row)`, and the point half a period to its right.
     let lamp = |column: usize, row: usize| grid.first + grid.period * Vec2::new(column as f32, row as f32);
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Positive strokes on the ceiling: along it between two columns of lamps, far and near, and across between two
-    // rows. Negative strokes: on the walls and the objects in front of them. No two strokes cross, so that a single
-    // drawing can hold them all.
+    // Strokes for the plane. Positive strokes lie on the ceiling: along the room between two columns of lamps, both
+    // far and near, and across the room between two rows. Negative strokes lie on the walls and on objects in front of
+    // them. No two strokes cross, so that a single drawing can hold them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
         let middle = Vec2::new(0.0, 0.5) * grid.period;
@@ -48,7 +48,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         set.plane.push(stroke(points, false)?);
     }
 
-    // Positive strokes on lights: across three lamps. Negative strokes: the ceiling.
+    // Strokes for the lights. Positive strokes run across three lamps; negative strokes lie on the ceiling.
     for (column, row) in [(0, 2), (1, 1), (1, 3)] {
         let centre = lamp(column, row);
         set.lights.push(stroke(&[on_ceiling(centre - half), on_ceiling(centre + half)], true)?);
@@ -58,7 +58,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     Ok(set)
 }
 
-/// All strokes in one drawing, in the colours that [`crate::segment::strokes::from_image`] reads.
+/// Draws all strokes into one image, in the colours that [`crate::segment::strokes::from_image`] reads.
 pub fn drawing(set: &StrokeSet, width: usize, height: usize) -> Result<Image> {
     let mut image = Image::new(width, height, 3)?;
     let colours = [(&set.plane, [Vec3::Y, Vec3::X]), (&set.lights, [Vec3::new(1.0, 1.0, 0.0), Vec3::Z])];
@@ -73,7 +73,7 @@ pub fn drawing(set: &StrokeSet, width: usize, height: usize) -> Result<Image> {
     Ok(image)
 }
 
-/// The pixel position at which a camera sees a point; `None` if it is behind the camera.
+/// Returns the position in pixels at which a camera sees a point; `None` if the point is behind the camera.
 fn project(camera: &Camera, point: Vec3, width: usize, height: usize) -> Option<DVec2> {
     let v = point - camera.position;
     let depth = v.dot(camera.forward);

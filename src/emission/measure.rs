@@ -13,20 +13,20 @@ use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
 pub struct Measure {
-    /// Median longer side and median shorter side of the whole lamps; 0 without a whole lamp.
+    /// Two medians over the whole lamps: of the longer side, and of the shorter side. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Median share of its bounding box that a whole lamp covers: 1 for rectangles along the axes, π/4 for discs; 0
-    /// without a whole lamp.
+    /// Median over the whole lamps of the share of the bounding box that a lamp covers: 1 for rectangles along the
+    /// axes, π/4 for discs. 0 without a whole lamp.
     pub lamp_fill: f64,
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
     /// nearest other whole lamp; 0 if there are fewer than two.
     pub spacing: f64,
-    /// Number of columns with at least one shown pixel.
+    /// Number of columns of the unwarped image with at least one shown pixel.
     pub width: f64,
     pub(super) reading: Reading,
 }
 
-/// Measures an exemplar. Errors as of [`super::run`].
+/// Measures an exemplar. Errors: as for [`super::run`].
 pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     params.check()?;
     input.check()?;
@@ -41,7 +41,7 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
             nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
         }
     };
-    // A lamp that will be drawn from its design has the size of the design.
+    // Lamps that will be drawn from a design have the size of the design.
     let designs = match params.whole_lamps && params.clean_lamps && input.photo.is_some() {
         true => Designs::find(exemplar, &outlines(exemplar, input, job)?),
         false => Designs::default(),

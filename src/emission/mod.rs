@@ -1,29 +1,32 @@
-//! Emission: an emissive texture of any size from the unwarped lights of a photo ("Lighting Style Transfer", §6).
+//! Emission: synthesises an emissive texture of any size from the unwarped lights of a photo ("Lighting Style
+//! Transfer", §6).
 //!
 //! ```text
 //! unwarped photo + light + valid ─▶ exemplar ─▶ lattice ─▶ quilt ─▶ lamps ─▶ compose ─▶ agreement
 //! ```
-//! 1. [`exemplar`]: the usable part of the photo, its lights (connected components) and their roles, and a reduced
-//!    size to work at.
-//! 2. [`lattice`]: the lattice that the lamps lie on, from the autocorrelation of the mask, and the lattice sites that
-//!    the border cuts.
-//! 3. [`quilt`]: metadata (confidence, signed x and y distance to the nearest light), and quilting over colour and
-//!    metadata with minimum-error seams. Patches stay on the lattice, and the amount of light is kept in balance.
-//! 4. [`lamps`]: every lamp that patches show becomes one piece again, cut by no seam; its outline, kind and colour.
-//! 5. [`compose`]: plans the positions of lamps and patches, renders texels in full detail from the photo, and lists
-//!    the lamps.
-//! 6. [`agreement`]: how far the texture's statistics are from the exemplar's, and how much of that sampling alone
-//!    explains.
+//! 1. [`exemplar`] finds the usable part of the photo, its lights (connected components) and their roles, and reduces
+//!    the image to the working size of the synthesis.
+//! 2. [`lattice`] finds the lattice that the lamps lie on, from the autocorrelation of the light mask, and the lattice
+//!    sites that the border cuts.
+//! 3. [`quilt`] computes metadata (confidence, signed x and y distance to the nearest light), and quilts colour and
+//!    metadata with minimum-error seams. Patches keep their phase on the lattice, and the amount of light is kept in
+//!    balance.
+//! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it; measures its
+//!    outline, kind and colour.
+//! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
+//!    lists the lamps.
+//! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
+//!    is sampling error.
 //!
-//! A texture that fits inside the exemplar is copied from it, unless the lamps have ragged outlines and lie on a
-//! lattice.
+//! A texture that fits inside the exemplar is copied from it. The exception is an exemplar whose lamps have ragged
+//! outlines and lie on a lattice: such lamps are placed and drawn anew.
 //!
-//! Beyond the paper: the lattice, and lamps that stay in one piece, because image quilting alone lets regular patterns
-//! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that lamps
-//! must keep clear of ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
+//! Beyond the paper: the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns
+//! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that must
+//! stay free of lamps ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
 //! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
-//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in textures that repeat,
-//! where edges may be off by the stretch of a few cells.
+//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in tileable textures, whose
+//! edges may be displaced by the stretch of a few cells.
 
 mod agreement;
 mod compose;
@@ -67,7 +70,8 @@ use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
 
-/// Makes an emission from a texture that the caller supplies. A texel is light if any of its channels is above 0.
+/// Makes an emission from a texture that the caller supplies. A texel counts as light if any of its channels is above
+/// 0.
 pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
     if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
@@ -108,14 +112,14 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     blend(input, &[], params, job)
 }
 
-/// Like [`run`], but blends in the lights of further exemplars by their weight maps. Apart from the texture, its lamps
-/// and its statistics, the result describes the first exemplar only. Errors: as for [`run`]; weights that are not in
-/// `[0, 1]`, or add up to more than 1.
+/// Like [`run`], but blends in the lights of further exemplars by their weight maps. The texture, its lamps and its
+/// statistics describe the blend; the other fields of the result describe the first exemplar only. Errors: as for
+/// [`run`]; weights that are not in `[0, 1]`, or add up to more than 1.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
     make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
 }
 
-/// Like [`blend`], but uses the reading of the first exemplar that [`measure`] has made.
+/// Like [`blend`], but uses the analysis of the first exemplar that [`measure`] has made, instead of repeating it.
 pub fn blend_measured(
     measured: Measure,
     input: &Input,
@@ -127,8 +131,8 @@ pub fn blend_measured(
     make(composition, input, styles, params, job)
 }
 
-/// Takes the bars between the panes of a luminous ceiling out of the unwarped light, so that each pane is a lamp of its
-/// own. Returns the light unchanged where there are no such bars.
+/// Removes the bars between the panes of a luminous ceiling from the unwarped light mask, so that each pane becomes a
+/// lamp. Returns the mask unchanged if there are no such bars.
 pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
     Ok(panes::part(&plane, job)?.unwrap_or(light))
@@ -142,13 +146,13 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
 
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = composition.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
-        // An exemplar that repeats as a whole is one period.
+        // If the exemplar repeats as a whole, the exemplar itself is one period.
         let periods = match layer.continuation {
             Continuation::Tile(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
         let own = layer.exemplar.statistics(input.unwarped, periods);
-        // A lamp drawn from its design lacks the bloom of the photo, so its area differs.
+        // A lamp drawn from its design lacks the bloom of the photo, so correct the expected area.
         let own = if layer.is_clean() { own.with_area(layer.designs.area_ratio(&layer.exemplar)) } else { own };
         (own.scaled(1.0 / layer.scale), composition.weights.mean(k))
     });
@@ -185,7 +189,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
     })
 }
 
-/// The statistics of a texture. A lamp counts as whole if it does not touch the border.
+/// Computes the statistics of a texture. A lamp counts as whole if it does not touch the border.
 fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>; 2]) -> Statistics {
     let (width, height) = (texture.width, texture.height);
     let inside = |c: &Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
@@ -194,8 +198,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// The exemplar's metadata, rearranged by the patch map. Pixels without a patch get confidence 0 and the largest
-/// distance.
+/// The exemplar's metadata (confidence, x and y distance to the nearest light), arranged by the patch map as the
+/// texture shows them. Pixels without a patch get confidence 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

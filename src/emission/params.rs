@@ -1,4 +1,4 @@
-//! What emission is given: the unwarped photo, and the settings.
+//! The input of emission (the unwarped photo), and its settings.
 
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
@@ -6,37 +6,39 @@ use crate::image::Image;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
-/// Pixels of the unwarped photo that a texel may stand for. \[convention\]
+/// Range of the scale: unwarped pixels per texel. \[convention\]
 pub const SCALES: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// The exemplar as it comes from unwarping.
+/// The exemplar: a plane of the photo after unwarping, with its light mask.
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// Unwarped photo, linear RGB.
     pub unwarped: &'a Image,
-    /// Unwarped confidence that a pixel is light, in `[0, 1]`.
+    /// Confidence of each unwarped pixel that it is light, in `[0, 1]`.
     pub light: &'a Image,
-    /// 1 where `unwarped` and `light` show the plane.
+    /// 1 where `unwarped` and `light` show the plane, else 0.
     pub valid: &'a Image,
-    /// The photo, from which full detail is recovered, and the map from unwarped pixels into the photo. If absent, the
+    /// The photo, which has full resolution, and the homography from unwarped pixels to photo pixels. If absent, the
     /// unwarped image is the finest source.
     pub photo: Option<(&'a Image, Homography)>,
 }
 
-/// How the lights of an exemplar go on.
+/// The law by which the lights of an exemplar continue: a lattice, a row, repetition of the whole exemplar, or free
+/// patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// The law that predicts the lamps of the photo best. The law read from the correlation is kept unless another one
+    /// The law that predicts the lamps of the photo best. The law found by autocorrelation is kept unless another one
     /// scores clearly higher.
     Best,
-    /// The law read from the correlation of the lights with themselves, with `least_regularity` as its threshold.
+    /// The law found by the autocorrelation of the lights, with `min_regularity` as its threshold.
     Correlation,
-    /// The lattice (for `Row`, the row) read from the correlation; if there is none, the best of all that are proposed.
+    /// The lattice (for `Row`, the row of lamps) found by the autocorrelation; if there is none, the best of all
+    /// proposed ones.
     Lattice,
     Row,
     /// The exemplar repeats as a whole.
     Whole,
-    /// Patches go anywhere.
+    /// Patches are placed without a lattice.
     Free,
 }
 
@@ -48,44 +50,48 @@ pub struct Params {
     pub height: usize,
     /// Unwarped pixels per texel, > 0.
     pub scale: f64,
-    /// Side of a patch in working pixels; 0 chooses it from the spacing of the lights.
+    /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
+    /// lights.
     pub block: usize,
-    /// Most patches that are compared for each block where no lattice restricts them, in `[1, 65536]`.
+    /// Maximum number of patches that are compared for each block where no lattice restricts them, in `[1, 65536]`.
     pub candidates: usize,
-    /// Longest side of the exemplar during synthesis, in pixels, in `[16, 2048]`.
+    /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,
-    /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
+    /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) against
+    /// colour; 0 is plain quilting.
     pub metadata_weight: f32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. A pattern
-    /// without a lattice has no beginning: there the offset shifts the lamps of a tileable texture, and must be 0 in
-    /// other textures.
+    /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
+    /// `[-1e6, 1e6]`. A pattern without a lattice has no origin: there the offset shifts the lamps of a tileable
+    /// texture, and must be 0 in other textures.
     pub offset: DVec2,
-    /// Smallest correlation of the lights with themselves at which they count as regular, in `[0, 1]`. At 0 any
-    /// repetition is followed exactly; at 1 none is, and patches go anywhere.
-    pub least_regularity: f32,
-    /// How the lights go on.
+    /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
+    /// exactly; at 1, none is, and patches are placed without a lattice.
+    pub min_regularity: f32,
+    /// The law by which the lights continue beyond the exemplar: lattice, row, repetition or none.
     pub law: Law,
-    /// Largest magnification at which the exemplar is used, in length and relative to its least magnified pixel. Parts
-    /// that are magnified more count as not shown. In `[1, 1e6]`, or 0 to use the whole exemplar.
+    /// Maximum magnification of the parts of the exemplar that are used, in length and relative to the least magnified
+    /// pixel. Parts with a larger magnification count as not shown. In `[1, 1e6]`, or 0 to use the whole exemplar.
     pub max_magnification: f64,
-    /// Shows every lamp as one piece. If false, seams may cut lamps, as in the paper.
+    /// Copies every lamp as a whole. If false, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
     /// Every lamp shines evenly, in its mean colour.
     pub even_lamps: bool,
-    /// All lamps of a kind get one size and an outline that is exact at any resolution, and lie at the sites of their
-    /// lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the mask.
+    /// Gives all lamps of a kind one size and one outline that is exact at any resolution, and places them at the
+    /// sites of their lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the light
+    /// mask.
     pub clean_lamps: bool,
-    /// Makes a texture that can be repeated: a lamp that leaves it on one side comes in on the opposite side. Lattices
-    /// are stretched, by less than half a period over the whole texture, so that a whole number of periods fits. Needs
-    /// `whole_lamps`. Lights that the edge of the exemplar cuts do not count as whole lamps; they join across the
-    /// border of the texture only if they lie on a lattice.
+    /// Makes a tileable texture: a lamp that leaves it on one side re-enters on the opposite side. Lattices are
+    /// stretched so that the texture holds a whole number of periods; the stretch is below half a period over the
+    /// whole texture. Needs `whole_lamps`. Lights that the edge of the exemplar cuts do not count as whole lamps; they
+    /// join across the border of the texture only if they lie on a lattice.
     pub tileable: bool,
-    /// Lays a lattice out evenly between the sides of the texture: a lamp, or the middle between two lamps, lies at the
-    /// texture's centre, so that the border cuts as few lamps as possible. The offset shifts the lattice from there.
+    /// Centres the lattice in the texture: a lamp, or the middle between two lamps, lies at the texture's centre, so
+    /// that the border cuts as few lamps as possible. The offset shifts the lattice from there.
     pub centred: bool,
-    /// Channel value from which the unwarped photo counts as clipped, in `[0, 1]`; clipped parts of a lamp get the
-    /// colour of its rim. 0: nothing counts as clipped. The level should lie below the largest 8-bit value, at which
-    /// the photo itself is clipped, because an unwarped pixel is a mean of clipped and other pixels.
+    /// Channel value at or above which a pixel of the unwarped photo counts as clipped, in `[0, 1]`; clipped parts of
+    /// a lamp get the colour of its rim. 0: nothing counts as clipped. The level should lie below the largest 8-bit
+    /// value, at which the photo itself is clipped, because an unwarped pixel is a mean of clipped and unclipped
+    /// pixels.
     pub clip_level: f32,
     pub seed: u64,
 }
@@ -101,7 +107,7 @@ impl Default for Params {
             working_side: 256,
             metadata_weight: 1.0,
             offset: DVec2::ZERO,
-            least_regularity: 0.6,
+            min_regularity: 0.6,
             law: Law::Best,
             max_magnification: 0.0,
             whole_lamps: true,
@@ -127,7 +133,7 @@ impl Params {
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
-        check_range("emission.min_regularity", self.least_regularity, 0.0, 1.0)?;
+        check_range("emission.min_regularity", self.min_regularity, 0.0, 1.0)?;
         if self.max_magnification != 0.0 {
             check_range("emission.max_magnification", self.max_magnification, 1.0, 1e6)?;
         }
@@ -140,7 +146,7 @@ impl Params {
 }
 
 impl Input<'_> {
-    /// Checks that the images agree in size and channels.
+    /// Checks the numbers of channels, and that all images have the same size.
     pub fn check(&self) -> Result<()> {
         self.unwarped.check_same_size("unwarped", self.light, "light")?;
         self.unwarped.check_same_size("unwarped", self.valid, "valid")?;
@@ -158,7 +164,8 @@ impl Input<'_> {
     }
 }
 
-/// Most working pixels of a texture; a larger texture is planned at a coarser working size.
+/// Maximum number of working pixels of a texture, the pixels of its layout. For a larger texture, the layout of lamps
+/// and patches is computed at a lower resolution.
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {
@@ -173,8 +180,8 @@ impl Params {
     }
 }
 
-/// Longest side of the exemplar at working size, in pixels. It is smaller than `params.working_side` where the texture
-/// would otherwise have too many working pixels.
+/// Longest side of the exemplar at working size, in pixels. It is below `params.working_side` if the texture would
+/// otherwise have too many working pixels.
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);

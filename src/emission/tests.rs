@@ -1,4 +1,4 @@
-//! The stage as a whole: patterns with known statistics, exact copies, and inputs at the edge of sense.
+//! Tests of emission as a whole: patterns with known statistics, exact copies, and extreme inputs.
 
 mod blending;
 mod extremes;
@@ -24,7 +24,8 @@ struct Design {
 }
 
 impl Design {
-    /// Lamps where `lamp` says so; colours vary from pixel to pixel so that every source pixel can be told.
+    /// An exemplar with lamps where `lamp` is true. Colours vary from pixel to pixel, so that every source pixel can
+    /// be identified.
     fn new(width: usize, height: usize, lamp: impl Fn(f64, f64) -> bool) -> Self {
         let on = |x: usize, y: usize| lamp(x as f64 + 0.5, y as f64 + 0.5);
         let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
@@ -39,7 +40,7 @@ impl Design {
         Self { unwarped: unwarped.unwrap(), light: light.unwrap(), valid: valid.unwrap() }
     }
 
-    /// Cuts two corners off, as an unwarped photo has them.
+    /// Marks two corners as invalid, as in a typical unwarped photo.
     fn with_corners_cut(mut self) -> Self {
         let (w, h) = (self.valid.width as f64, self.valid.height as f64);
         for i in 0..self.valid.data.len() {
@@ -60,16 +61,17 @@ impl Design {
     }
 }
 
-/// Statistics of a texture against its exemplar.
+/// The statistics of a texture, compared with its exemplar.
 #[derive(Debug)]
 struct Score {
-    /// Ratios of lamps per area and of mean lamp area.
+    /// Two ratios of texture to exemplar: number of lamps per area, and mean lamp area.
     density: f64,
     area: f64,
-    /// Lamps off the border smaller than 70 % of the smallest of the exemplar, or larger than 130 % of its largest.
+    /// Number of lamps inside the texture that are smaller than 70 % of the exemplar's smallest lamp, and number of
+    /// those larger than 130 % of its largest lamp.
     cut: usize,
     merged: usize,
-    /// RMS distance from the lattice through the lamps, in parts of the period.
+    /// Root mean square distance of the lamps from the best-fitting lattice, as a share of the period.
     phase: f64,
 }
 
@@ -80,12 +82,13 @@ fn inner(lamps: &[Luminaire], width: usize, height: usize) -> Vec<&Luminaire> {
     lamps.iter().filter(off_border).collect()
 }
 
-/// Evaluates against the lamps per area and the lamp areas of the design itself.
+/// Scores a texture. `per_area` is the exemplar's number of lamps per area; `areas` holds its smallest, mean and
+/// largest lamp area.
 fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option<[DVec2; 2]>) -> Score {
     let (width, height) = (result.mask.width, result.mask.height);
     let lamps = inner(&result.luminaires, width, height);
     let mean = lamps.iter().map(|l| l.area).sum::<f64>() / lamps.len() as f64;
-    // Lamps are counted by their light, so that those on the border count by their part.
+    // Count lamps by their light, so that lamps at the border count with their visible part.
     let lit = result.mask.data.iter().sum::<f32>() as f64;
     let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
     let phase = basis.map_or(0.0, |basis| statistics::phase(&centres, basis));
@@ -151,7 +154,7 @@ fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
         check(name, &score(&result, 1.0 / a.perp_dot(b), (0.9 * area, area, 1.1 * area), Some([a, b])));
     }
 
-    // Square and round lamps in alternate columns: both kinds stay, in their own columns.
+    // Square and round lamps in alternate columns: both kinds must stay in their own columns.
     let exemplar = Design::new(360, 300, |x, y| {
         let (u, v) = ((x - 10.0).rem_euclid(100.0) - 25.0, (y - 6.0).rem_euclid(50.0) - 25.0);
         (u.abs() < 12.0 && v.abs() < 12.0) || (u - 50.0).hypot(v) < 8.0
@@ -196,7 +199,7 @@ fn every_block_size_serves() {
     }
 }
 
-/// Round lamps at random, at least `gap` apart.
+/// Returns round lamps at random positions, whose centres are more than `gap` apart, and the number of lamps.
 fn blobs(width: usize, height: usize, gap: f64) -> (Design, usize) {
     let mut rng = Rng::new(21, &[]);
     let mut centres: Vec<(DVec2, f64)> = Vec::new();
@@ -223,9 +226,10 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
     assert_eq!(result.continuation, Continuation::Free);
     let s = score(&result, per_area, (least, mean, most), None);
-    // Patches show contiguous pieces again and again, so the texture is a sample of no more lamps than the exemplar has. Their
-    // areas vary by a third: the mean area, and the number at a given share of light, have a standard deviation of a third
-    // over the root of that number; three of them are allowed. The share of light itself is kept more closely.
+    // Patches repeat contiguous parts of the exemplar, so the texture is a sample of no more lamps than the exemplar
+    // has. Lamp areas vary by a third. The mean area, and the number of lamps at a given lit share, therefore have a
+    // standard deviation of a third divided by the root of the number of lamps. Allow three standard deviations. The
+    // lit share itself is kept more closely.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");
@@ -257,7 +261,8 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
         assert!(if mask > 0.0 { known.contains(&key(texel)) } else { texel == [0.0; 3] });
     }
 
-    // A photo twice as fine: two texels per unwarped pixel show its own pixels.
+    // With a photo of twice the resolution, and two texels per unwarped pixel, the texture must show the photo's
+    // pixels.
     let photo = Image::from_fn(400, 400, |x, y| [(x % 7) as f32, (y % 5) as f32, (x * y % 3) as f32]).unwrap();
     let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(2.0)));
     let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
@@ -273,7 +278,7 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
 
 #[test]
 fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
-    // Edges in steps of 5 unwarped pixels, a pixel of the photo each, other ones on every lamp.
+    // Edges with steps of 5 unwarped pixels, the length of a photo pixel; the steps differ from lamp to lamp.
     let is_lamp = |x: f64, y: f64| {
         let (x, y) = (x as usize, y as usize);
         let step = [0, 2, 4, 1][(x / 50 + 3 * (y / 40) + y / 5) % 4];
@@ -323,25 +328,25 @@ fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
     let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
     assert!(matches!(result.continuation, Continuation::Tile(_)));
     assert_eq!(result.luminaires.len(), 9);
-    // The mask is unsure by a tenth at the edge.
+    // The confidence of edge pixels is uncertain by a tenth, which changes the areas slightly.
     assert!(result.luminaires.iter().all(|l| (l.area / 320.0 - 1.0).abs() < 0.01));
     assert!(result.error < 1e-6);
 }
 
 #[test]
 fn lights_that_touch_every_border_go_on() {
-    // All light.
+    // An exemplar that is entirely light.
     let all = Design::new(64, 48, |_, _| true);
     let result = all.run(&Params { width: 200, height: 150, ..Params::default() }).unwrap();
     assert!(result.mask.data.iter().all(|&m| m == 1.0));
     assert_eq!(result.luminaires.len(), 1);
 
-    // Lines that run through the whole image keep their spacing.
+    // Lines that run through the whole exemplar keep their spacing.
     let lines = Design::new(200, 200, |_, y| (y - 5.0).rem_euclid(24.0) < 6.0);
     let result = lines.run(&Params { width: 500, height: 480, ..Params::default() }).unwrap();
     assert!(result.error < 0.05, "{}", result.error);
     assert_eq!(result.luminaires.len(), 20);
-    // The mask is unsure by a tenth at the edge.
+    // The confidence of edge pixels is uncertain by a tenth, which changes sizes and areas slightly.
     assert!(result.luminaires.iter().all(|l| (l.size - DVec2::new(500.0, 6.0)).abs().max_element() < 0.3));
     assert!(result.luminaires.iter().all(|l| (l.area / 3000.0 - 1.0).abs() < 0.01));
 }
@@ -357,23 +362,23 @@ fn odd_sizes_give_finite_results() {
             assert_eq!(result.texture.count_non_finite() + result.metadata.count_non_finite(), 0);
         }
     }
-    // One valid pixel.
+    // An exemplar with a single valid pixel.
     let mut point = Design::new(40, 40, |_, _| true);
     point.valid.data.fill(0.0);
     point.valid.data[40 * 7 + 9] = 1.0;
     let result = point.run(&Params { width: 50, height: 50, working_side: 16, ..Params::default() }).unwrap();
     assert!(result.mask.data.iter().all(|&m| m == 1.0));
 
-    // All light.
+    // An exemplar that is entirely light.
     let all = Design::new(60, 50, |_, _| true);
     for params in
-        [Params { width: 150, height: 130, ..Params::default() }, Params { least_regularity: 1.0, ..Params::default() }]
+        [Params { width: 150, height: 130, ..Params::default() }, Params { min_regularity: 1.0, ..Params::default() }]
     {
         let result = all.run(&params).unwrap();
         assert!(result.mask.data.iter().all(|&m| m == 1.0) && result.texture.count_non_finite() == 0);
     }
 
-    // A patch larger than the exemplar.
+    // Patches larger than the exemplar.
     let params = Params { width: 400, height: 300, block: 5000, ..Params::default() };
     let result = exemplar.run(&params).unwrap();
     let basis = [DVec2::X * 25.0, DVec2::Y * 20.0];
@@ -430,7 +435,7 @@ fn even_lamps_have_one_colour_each_and_keep_their_light() {
     let params = Params { width: 300, height: 300, ..Params::default() };
     let (plain, even) = (exemplar.run(&params).unwrap(), exemplar.run(&Params { even_lamps: true, ..params }).unwrap());
     assert_eq!(plain.mask, even.mask);
-    // The border shows parts of lamps, in the mean colour of the whole.
+    // Compare complete lamps only: a part of a lamp at the border has the mean colour of the whole lamp.
     for (a, b) in inner(&plain.luminaires, 300, 300).into_iter().zip(inner(&even.luminaires, 300, 300)) {
         assert!((a.colour - b.colour).abs().max_element() < 1e-5 && (a.flux_share / b.flux_share - 1.0).abs() < 1e-3);
         let (x, y) = (b.centre.x as usize, b.centre.y as usize);
@@ -440,7 +445,7 @@ fn even_lamps_have_one_colour_each_and_keep_their_light() {
 
 #[test]
 fn clipped_lamps_of_two_colours_keep_them_in_the_texture() {
-    // Warm lamps in even columns, cool ones in odd; all far beyond white, and blurred at their edges.
+    // Warm lamps in even columns and cool lamps in odd columns; all are far brighter than white, with blurred edges.
     let (warm, cool) = (Vec3::new(4.0, 2.4, 1.2), Vec3::new(1.6, 2.4, 4.0));
     let lamp = |x: f64, y: f64| {
         let (u, v) = ((x - 20.0).rem_euclid(40.0) - 20.0, (y - 20.0).rem_euclid(40.0) - 20.0);
@@ -459,7 +464,7 @@ fn clipped_lamps_of_two_colours_keep_them_in_the_texture() {
         let ratio = |c: Vec3| c.x / c.z;
         let truth = ratio(if lamp.colour.x > lamp.colour.z { warm } else { cool });
         assert!((ratio(lamp.colour) / truth - 1.0).abs() < 0.1, "{} for {truth}", lamp.colour);
-        // Taken as it is, the photo shows the lamps almost white.
+        // Without the correction, the photo shows the lamps almost white.
         assert!(ratio(before.colour).ln().abs() < 0.6 * truth.ln().abs(), "{}", before.colour);
     }
 }
@@ -472,7 +477,7 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     assert_eq!((measured.lamp_sides, measured.width), ([14.0, 10.0], 200.0));
     assert_eq!(measured.lamp_fill, 1.0);
     assert!((measured.spacing - 36.0).abs() < 0.1, "{}", measured.spacing);
-    // Without a lattice, from lamp to lamp: at least the gap that these keep.
+    // Without a lattice, the spacing is the distance between neighbouring lamps, which is at least their gap.
     let scattered = of(&blobs(256, 256, 26.0).0).spacing;
     assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));
@@ -484,7 +489,7 @@ fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();
     let params = Params { width: 300, height: 280, ..Params::default() };
     let job = Monitor::default();
-    // Read with other settings it is read again.
+    // If the settings differ, the exemplar must be analysed again.
     for read_with in [Params::default(), params.clone(), Params { working_side: 64, ..Params::default() }] {
         let measured = measure(&exemplar.input(), &read_with, job.job()).unwrap();
         let result = blend_measured(measured, &exemplar.input(), &[], &params, job.job()).unwrap();
@@ -495,7 +500,7 @@ fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
 
 #[test]
 fn a_chandelier_is_repeated_as_it_hangs() {
-    // Twelve bulbs on a ring and three in its middle, none at equal distances, on a bare ceiling.
+    // Twelve bulbs on a ring and three in its middle, at unequal distances, on a bare ceiling.
     let bulbs: Vec<DVec2> = (0..12)
         .map(|i| (DVec2::from_angle(std::f64::consts::TAU * (f64::from(i) + 0.15 * f64::from(i % 3)) / 12.0), i))
         .map(|(direction, i)| DVec2::new(150.0, 130.0) + direction * (44.0 + 5.0 * f64::from(i % 2)))
@@ -519,14 +524,14 @@ fn textures_smaller_than_a_patch_show_what_fits() {
     let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     for (width, height) in [(1, 1), (30, 9), (59, 41), (41, 59)] {
         for (block, scale) in [(0, 1.0), (150, 1.0), (150, 0.25)] {
-            // Laid out anew, not copied.
+            // With `centred`, the texture is not a copied part of the exemplar.
             let params = Params { width, height, block, scale, centred: true, ..Params::default() };
             let result = exemplar.run(&params).unwrap();
             assert!(matches!(result.continuation, Continuation::Lattice(_)));
             let lamps = inner(&result.luminaires, width, height);
             let area = 196.0 / (scale * scale);
             assert!(lamps.iter().all(|l| (l.area / area - 1.0).abs() < 0.15), "{width} x {height} {lamps:?}");
-            // One in the middle.
+            // If exactly one lamp fits, it must lie at the centre.
             let size = DVec2::new(width as f64, height as f64);
             let side = 14.0 / scale;
             if size.min_element() > side + 2.0 && size.max_element() < 40.0 / scale {

@@ -1,19 +1,20 @@
-//! Reasons to doubt an emissive texture.
+//! Warnings about doubtful emissive textures.
 
 use super::{Continuation, Emission};
 use crate::warning::{Code, Warning, percent};
 
-/// Largest relative difference between the statistics of texture and photo. [judged on 38 photos]
+/// Maximum relative difference between the statistics of texture and photo. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// The same limit for lamps that lie on no lattice. [judged on 38 photos]
+/// Maximum relative difference for lamps without a lattice. [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
-/// Relative difference of a texture without any light: its lit share is off by all of the photo's. [convention]
+/// Relative difference of a texture without any light: its lit share differs by all of the photo's lit share.
+/// [convention]
 const UNLIT_ERROR: f64 = 1.0;
-/// Fewest whole lamps that show a size and a spacing. [convention]
+/// Minimum number of whole lamps from which a lamp size and a spacing can be measured. [convention]
 const MIN_LAMPS: usize = 2;
 
 impl Emission {
-    /// Reasons to doubt the texture. A texture that the caller supplied gets no warnings.
+    /// Returns warnings about the texture. A texture that the caller supplied gets none.
     pub fn warnings(&self) -> Vec<Warning> {
         if self.is_given() {
             return Vec::new();

@@ -1,4 +1,5 @@
-//! The last step of the stage: interleaves colour, depth, positions by Eq. 1 and normals of one row.
+//! Assembles the feature channels of one row, the last step of the features: colour, screen depth, position by Eq. 1,
+//! and normal.
 
 use super::depth::Surface;
 use super::frustum::Frustum;
@@ -7,7 +8,7 @@ use crate::image::{Image, colour, interleave};
 use crate::simd::widest;
 use glam::{Mat3, Vec2, Vec3};
 
-/// Pixels processed together, so that their channel planes stay in the first-level cache.
+/// Number of pixels processed together: their channel planes stay in the first-level cache.
 const TILE: usize = 64;
 
 /// One feature channel of the pixels of a tile.
@@ -16,11 +17,12 @@ type Plane = [f32; TILE];
 /// Inputs of the geometric channels of a tile.
 struct Geometry<'a> {
     inverse_depth: &'a [f32],
-    /// Three channels, interleaved.
+    /// Normals in camera space: three channels, interleaved.
     normals: &'a [f32],
     frustum: &'a Frustum,
     to_room: Mat3,
-    /// Normalised device coordinates of the first pixel, and the step between neighbouring pixels.
+    /// Normalised device coordinates of the first pixel (`start`), and the step of x between neighbouring pixels
+    /// (`step`).
     start: Vec2,
     step: f32,
 }

@@ -18,7 +18,7 @@ impl Face {
     pub const COUNT: usize = 5;
     pub const ALL: [Self; Self::COUNT] = [Self::Left, Self::Right, Self::Ceiling, Self::Floor, Self::Back];
 
-    /// The room axis along the face's normal.
+    /// Returns the room axis along the face's normal.
     pub fn axis(self) -> usize {
         match self {
             Self::Left | Self::Right => HORIZONTAL_A,
@@ -27,7 +27,7 @@ impl Face {
         }
     }
 
-    /// The unit normal into the room, in room axes.
+    /// Returns the unit normal into the room, in room axes.
     pub fn normal(self) -> DVec3 {
         match self {
             Self::Left => DVec3::X,
@@ -44,20 +44,20 @@ impl Face {
 pub struct Layout {
     /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
     pub sides: [f64; 4],
-    /// Agreement of the segments with the box; at most 1 for an empty room.
+    /// Agreement of the segments with the box: at most 1 if no segment lies on a seam between faces, higher otherwise.
     pub score: f64,
-    /// Confidence in the box as a whole, in `[0, 1]`: depends on its lead in score over every clearly different box
-    /// and on the number of segments.
+    /// Confidence in the box as a whole, in `[0, 1]`. It depends on the lead in score over every clearly different
+    /// box, and on the number of segments.
     pub trust: f64,
 }
 
-/// The room's axes with z along the viewing direction and x to its right; the vertical is unchanged.
+/// Returns the room's axes, with z along the viewing direction and x to its right; the vertical axis is unchanged.
 pub fn facing_axes(perspective: &Perspective) -> DMat3 {
     let axes = perspective.axes;
     if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
 }
 
-/// The two faces that a ray meets first, each with the inverse of the ray parameter at the face.
+/// Returns the two faces that a ray meets first, each with the inverse of the ray parameter at the face.
 pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     let x = if ray.x < 0.0 { (Face::Left, -ray.x / sides[0]) } else { (Face::Right, ray.x / sides[1]) };
     let y = if ray.y < 0.0 { (Face::Ceiling, -ray.y / sides[2]) } else { (Face::Floor, ray.y / sides[3]) };
@@ -73,12 +73,12 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     }
 }
 
-/// Ratio by which an enlarged room exceeds the lamps that it must hold, so that these lamps have plane around them.
-/// [convention]
+/// An enlarged room extends beyond the pixels that it must show by this ratio, so that lamps at these pixels are
+/// surrounded by the plane. [convention]
 const MARGIN: f64 = 1.05;
 
 impl Layout {
-    /// The face that shows most of the given pixels.
+    /// Returns the face that shows most of the given pixels.
     pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
@@ -88,8 +88,8 @@ impl Layout {
     }
 
     /// Enlarges the room as little as needed for `face` to show the given pixels. The face itself keeps its place.
-    /// Returns the new room, and the largest factor by which another face has moved away. Pixels whose rays do not meet
-    /// the face are left out.
+    /// Returns the new room, and the largest factor by which another face has moved away. Pixels whose rays do not
+    /// meet the face are left out.
     pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;
@@ -114,11 +114,12 @@ impl Layout {
         }
         let sides = [left, right, top, bottom];
         let growth = sides.iter().zip(self.sides).map(|(new, old)| new / old).fold(back, f64::max);
-        // The back wall is at distance one.
+        // Rescale the room, so that the back wall is at distance one.
         (Self { sides: sides.map(|side| side / back), ..*self }, growth)
     }
 
-    /// The face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the face.
+    /// Returns the face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the
+    /// face.
     pub fn hit(&self, ray: DVec3) -> (Face, f64) {
         faces(&self.sides, ray)[0]
     }

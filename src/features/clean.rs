@@ -1,4 +1,4 @@
-//! Replaces invalid pixels: NaN, infinite and negative values.
+//! Replaces the invalid pixels of a photo: NaN, infinite and negative values.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,11 +6,12 @@ use crate::image::Image;
 use crate::job::Job;
 use std::borrow::Cow;
 
-/// Values above this count as infinite, because their squares would overflow [rounding].
+/// Values above this count as infinite, because their squares would overflow. [rounding]
 const MAX_VALUE: f32 = 1e18;
 
-/// Returns the photo with each invalid pixel replaced by the nearest valid one in its row or column (black if there is
-/// none), and the number of replaced pixels. Converts to RGB if there are any.
+/// Returns the photo with each invalid pixel replaced by the nearest valid one in its row (black if the whole photo is
+/// invalid), and the number of replaced pixels. Rows without valid pixels copy the nearest row that has one. The
+/// result is RGB if a pixel was replaced.
 pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> {
     let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=MAX_VALUE).contains(v));
     let (width, channels) = (photo.width, if photo.channels < 3 { 1 } else { 3 });
@@ -23,7 +24,7 @@ pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> 
         return Ok((Cow::Borrowed(photo), 0));
     }
     let mut rgb = photo.to_rgb()?;
-    // Fill along rows first; then copy rows without any valid pixel from the nearest row that has one.
+    // Fill along rows first. Then copy rows without any valid pixel from the nearest row that has one.
     let good_rows: Vec<usize> = (0..rgb.height).filter(|&y| bad_in_rows[y] < width).collect();
     exec::for_rows(&mut rgb.data, width * 3, job, |y, row| {
         if bad_in_rows[y] == width {
@@ -45,7 +46,7 @@ pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> 
     Ok((Cow::Owned(rgb), non_finite))
 }
 
-/// The element of a sorted, non-empty list nearest to `x`.
+/// Returns the element of a sorted, non-empty list that is nearest to `x`.
 fn nearest(sorted: &[usize], x: usize) -> usize {
     let after = sorted.partition_point(|&g| g < x).min(sorted.len() - 1);
     let before = after.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Depth from the caller, and the neutral prior: a surface as inverse depth, normals and confidence.
+//! Builds the surface (inverse depth, normals and confidence) from the caller's depth map or from a neutral prior.
 
 use super::frustum::Frustum;
 use super::input::{DepthKind, DepthMap};
@@ -18,15 +18,16 @@ pub struct Surface {
     pub confidence: Image,
 }
 
-/// Confidence in the neutral prior [convention].
+/// Confidence in the neutral prior. [convention]
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
-/// Depths are clamped to within this factor of the median; larger ratios are not meaningful [origin not recorded].
+/// Depths are clamped to within this factor of the median; more extreme depths are not meaningful.
+/// [origin not recorded]
 const MAX_RATIO: f32 = 1e4;
-/// Maximum number of depths from which quantiles are estimated.
+/// Maximum number of depth samples from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;
 
-/// The caller's depth, scaled so that its 2 % quantile lies on the near plane, with holes filled from their
-/// surroundings.
+/// Builds the surface from the caller's depth map. Scales the depth so that its 2 % quantile lies on the near plane,
+/// and fills holes from their surroundings.
 pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let depth = map.image;
     let (width, height) = (depth.width, depth.height);
@@ -76,7 +77,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     Ok(surface)
 }
 
-/// Samples the known inverse depths at regular intervals: enough to estimate quantiles to a thousandth.
+/// Samples the known inverse depths at regular intervals, enough of them to estimate quantiles to a thousandth.
 fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + Sync, job: Job) -> Result<Vec<f32>> {
     let (width, height) = (depth.width, depth.height);
     let at = |x: usize, y: usize| inverse_at(x, y, depth.data[y * width + x]);
@@ -88,7 +89,7 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
     let mut before = 0usize;
     let mut skips = Vec::with_capacity(height);
     for count in &counts {
-        // Skip to the next index in this row that is a multiple of the stride.
+        // In this row, skip to the first known pixel whose index among all known pixels is a multiple of the stride.
         skips.push(before.next_multiple_of(stride) - before);
         before += count;
     }
@@ -101,8 +102,8 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
     Ok(sampled.concat())
 }
 
-/// The prior for an interior without any knowledge of the photo: farthest at mid-height, nearer towards the ceiling
-/// above and the floor below. `1/z` rises quadratically with height, to twice its central value.
+/// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling
+/// above and the floor below. `1/z` rises quadratically with the distance from mid-height, to twice its central value.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;
@@ -123,7 +124,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
     if !has_holes.contains(&true) {
         return Ok(());
     }
-    // Inverse depth and normal, premultiplied by the known flag; the fifth channel is that flag.
+    // Channels: inverse depth and normal, premultiplied by the known flag, and the flag itself as the fifth.
     let mut base = Image::new(width, height, 5)?;
     for (i, out) in base.data.chunks_exact_mut(5).enumerate() {
         if surface.confidence.data[i] > 0.0 {
@@ -132,7 +133,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
             out[4] = 1.0;
         }
     }
-    // Pull: each level sums four pixels of the finer one and limits the weight to 1.
+    // Pull: each level sums four pixels of the next finer level and limits the weight to 1.
     let mut levels = vec![base];
     while let Some(fine) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
         job.check()?;
@@ -150,7 +151,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
         }
         levels.push(coarse);
     }
-    // Push: fill missing weight from the next coarser level by bilinear interpolation.
+    // Push: fill the missing weight from the next coarser level by bilinear interpolation.
     for fine in (0..levels.len() - 1).rev() {
         job.check()?;
         let (finer, coarser) = levels.split_at_mut(fine + 1);

@@ -46,14 +46,14 @@ impl Frustum {
         Vec2::new((2 * x + 1) as f32 / width as f32 - 1.0, (2 * y + 1) as f32 / height as f32 - 1.0)
     }
 
-    /// The direction through normalised device coordinates, scaled to z = 1.
+    /// Returns the direction through normalised device coordinates, scaled to z = 1.
     pub fn ray(&self, ndc: Vec2) -> Vec3 {
         let x = self.left + (self.right - self.left) * (ndc.x + 1.0) / 2.0;
         let y = self.top + (self.bottom - self.top) * (ndc.y + 1.0) / 2.0;
         Vec3::new(x / self.near, y / self.near, 1.0)
     }
 
-    /// Screen depth of a point with inverse depth `1/z`.
+    /// Returns the screen depth of a point with inverse depth `1/z`.
     pub fn screen_depth(&self, inverse_depth: f32) -> f32 {
         (1.0 / self.near - inverse_depth) / (1.0 / self.near - 1.0 / self.far)
     }

@@ -7,7 +7,7 @@ use crate::image::Image;
 
 /// Number of feature channels: L*, a*, b*, depth, x, y, z, and the normal's x, y, z.
 pub const CHANNELS: usize = 10;
-/// The first channel of the position, and the first of the normal.
+/// The first channel of the position (`POSITION`), and the first of the normal (`NORMAL`).
 pub const POSITION: usize = 4;
 pub const NORMAL: usize = 7;
 
@@ -27,13 +27,13 @@ pub struct DepthMap<'a> {
     pub kind: DepthKind,
 }
 
-/// Known geometry of the room, from which the built-in depth is laid out.
+/// Known geometry of the room, from which the built-in depth is computed.
 #[derive(Clone, Copy)]
 pub struct RoomView<'a> {
     pub perspective: &'a Perspective,
     /// Detected segments, each with the index (0, 1, 2) of the room axis it runs along, if any.
     pub segments: &'a [(Segment, Option<usize>)],
-    /// Strokes on one plane of the room (any one), and strokes on other surfaces, if any.
+    /// The user's strokes: positive ones lie on a single plane of the room (any plane), the others on other surfaces.
     pub strokes: &'a [PlaneStroke<'a>],
     /// The layout of the room if it is known. If `None`, the room is laid out from the segments and the strokes.
     pub layout: Option<Layout>,
@@ -44,7 +44,7 @@ pub struct RoomView<'a> {
 pub struct PlaneStroke<'a> {
     /// Pixel indices `y * width + x`; indices outside the photo are ignored.
     pub pixels: &'a [u32],
-    /// Whether the stroke lies on the plane or on another surface.
+    /// True if the stroke lies on the plane, false if it lies on another surface.
     pub positive: bool,
 }
 
@@ -62,8 +62,9 @@ pub struct Params {
     pub near: f32,
     /// Far plane of Eq. 1, in `[1.001, 1e6]` times `near`.
     pub far: f32,
-    /// Half-width in pixels of the window of the normals' plane fits, in `[1, 64]`; 0 selects one pixel per 100
-    /// columns, at least 2. Wider windows suppress more noise and smooth away more small detail.
+    /// Normals come from planes fitted in a square window around each pixel; this is half the width of the window in
+    /// pixels, in `[1, 64]`. 0 selects 1 % of the photo's width, at least 2 pixels and at most 64. Wider windows
+    /// suppress more noise and smooth away more small detail.
     pub normal_radius: usize,
 }
 

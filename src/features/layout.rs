@@ -1,11 +1,11 @@
-//! The built-in depth: the room as a single box aligned with its axes, seen from inside (after Hedau, Hoiem and
-//! Forsyth 2009).
+//! The built-in depth: lays out the room as a single box aligned with the room's axes, seen from inside (after Hedau,
+//! Hoiem and Forsyth 2009).
 //!
-//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall is at distance
-//! one. This fixes the scale, which a single image cannot determine (if the camera is 1.6 m above the floor, the wall
-//! is at `1.6 / bottom` metres). The four numbers are thus the sides of the back wall in its central projection. Their
-//! candidates are the detected segments that could be these sides, and the search covers all boxes that the candidates
-//! form (see `search`). `score` rates a box.
+//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall is at
+//! distance one. This fixes the scale, which a single image cannot determine (if the camera is 1.6 m above the floor,
+//! the wall is at `1.6 / bottom` metres). The four numbers are thus the sides of the back wall in its central
+//! projection. Candidates for a side are the detected segments that could be this side of the back wall; `search`
+//! covers all boxes that the candidates form, and `score` rates each box.
 
 use super::box_room::{Face, Layout, facing_axes};
 use super::depth::Surface;
@@ -19,7 +19,7 @@ use crate::job::Job;
 use glam::{DVec2, Vec3};
 
 impl Layout {
-    /// Inverse depth, normals and confidence of every pixel.
+    /// Computes the inverse depth, normal and confidence of every pixel.
     pub fn surface(
         &self,
         room: &RoomView,
@@ -32,7 +32,8 @@ impl Layout {
         let to_room = axes.transpose();
         let ray = |x: f64, y: f64| to_room * room.perspective.ray(DVec2::new(x, y));
 
-        // Put the nearest depth on the near plane, as for the caller's depth.
+        // Scale the depth so that the nearest depth (98 % quantile of inverse depth) lies on the near plane, as for a
+        // caller's depth map.
         let steps = |n: usize| (0..48).map(move |i| (i as f64 + 0.5) / 48.0 * n as f64);
         let mut samples: Vec<f64> =
             steps(height).flat_map(|y| steps(width).map(move |x| (x, y))).map(|(x, y)| self.hit(ray(x, y)).1).collect();
@@ -57,7 +58,8 @@ impl Layout {
         Ok(Surface { inverse_depth, normals, confidence })
     }
 
-    /// Confidence falls with the distance to the nearest segment that lies on the same face and is consistent with it.
+    /// Computes the confidence of each pixel. It falls with the distance to the nearest segment on the same face,
+    /// among the segments whose direction the face can contain.
     fn confidence(&self, room: &RoomView, width: usize, height: usize, job: Job) -> Result<Image> {
         let to_room = facing_axes(room.perspective).transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
@@ -72,7 +74,7 @@ impl Layout {
             .collect();
         let falloff = 0.15 * DVec2::new(width as f64, height as f64).length();
 
-        // Evaluate on a coarse grid, then interpolate bilinearly.
+        // Evaluate the confidence on a coarse grid, then interpolate bilinearly.
         let (columns, rows) = (width.div_ceil(16).min(64), height.div_ceil(16).min(64));
         let cell = DVec2::new(width as f64 / columns as f64, height as f64 / rows as f64);
         let mut coarse = Image::new(columns, rows, 1)?;

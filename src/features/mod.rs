@@ -14,10 +14,10 @@
 //! | 4-6 | position by Eq. 1, in units of the frustum; in room axes if the room is known | finite |
 //! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
 //!
-//! Axes are x right, y down, z forward: camera axes, or the room's axes in the order the camera sees them
-//! ([`RoomView`]). If the perspective is known, its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from
-//! the real focal length, so that planes stay planes. Only ratios of depth are meaningful; the nearest depth (its 2 %
-//! quantile) is put on the near plane.
+//! Axes are x right, y down, z forward: camera axes, or the room's axes if the room is known ([`RoomView`]). If the
+//! perspective is known, its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from the real focal length,
+//! so that planes stay planes. Only ratios of depth are meaningful; the nearest depth (its 2 % quantile) is put on the
+//! near plane.
 //!
 //! A depth map may also be estimated from the photo alone, by a network that the caller supplies as an ONNX file
 //! (Cargo feature `onnx`).
@@ -101,7 +101,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
         }
     };
-    // Allocate the output meanwhile: it takes a tenth of the total time.
+    // Meanwhile, allocate the output: allocation takes a tenth of the total time.
     let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;

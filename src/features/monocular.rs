@@ -1,14 +1,14 @@
-//! Depth from a single photo by a network that the caller supplies, in the form in which MiDaS and DPT are published
-//! as ONNX files (Ranftl et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision Transformers for
-//! Dense Prediction").
+//! Estimates depth from a single photo with a network that the caller supplies, in the form in which MiDaS and DPT are
+//! published as ONNX files (Ranftl et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision
+//! Transformers for Dense Prediction").
 //!
-//! Photo to network, as in the published scripts: sRGB values in `[0, 1]`, resized to the network's input by cubic
+//! Input of the network, as in the published scripts: sRGB values in `[0, 1]`, resized to the network's input by cubic
 //! convolution (slope -0.75, no low-pass filter), minus a mean, divided by a standard deviation. If the file leaves
-//! its input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of
+//! the input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of
 //! 32.
 //!
-//! Network to depth: the map is resized back by cubic convolution, normalised by its extremes to `m` in `[0, 1]`, and
-//! taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then lies on the near plane of
+//! Output of the network: the map is resized back by cubic convolution, normalised by its extremes to `m` in `[0, 1]`,
+//! and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then lies on the near plane of
 //! [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of Eq. 1 (see `frustum`).
 //!
 //! Not modelled: the unknown offset of the network's inverse depth, which the far plane replaces; metric networks.
@@ -21,11 +21,11 @@ use crate::image::{Image, colour::linear_to_srgb};
 use crate::job::Job;
 use crate::network::{Network, Tensor, resize_cubic};
 
-/// The input normalisation the network was trained with. The file does not record it.
+/// The input normalisation with which the network was trained. The file does not record it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Normalisation {
-    /// By the input size of the published networks: [`Self::ImageNet`] for inputs of 256 x 256 (MiDaS small), else
-    /// [`Self::Half`] (DPT).
+    /// Chosen by the input size, as for the published networks: [`Self::ImageNet`] for inputs of 256 x 256 (MiDaS
+    /// small), else [`Self::Half`] (DPT).
     BySize,
     /// Subtract the mean of ImageNet's colours and divide by their standard deviation: MiDaS 2.1, large and small.
     ImageNet,
@@ -41,12 +41,13 @@ pub struct DepthNetwork {
     pub normalisation: Normalisation,
 }
 
-/// For networks with inputs of any size: length of the longer side, and a number of which both sides are multiples.
+/// Input size of networks that accept any size: length of the longer side (`OPEN_SIDE`), and a number of which both
+/// sides are multiples (`MULTIPLE`).
 const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
-/// Maximum side of a network's input.
+/// Maximum number of rows and of columns of a network's input.
 const MAX_INPUT_SIDE: usize = 4096;
-/// Confidence in depth estimated by a network; measured depth has confidence 1 [convention].
+/// Confidence in depth estimated by a network; measured depth has confidence 1. [convention]
 const CONFIDENCE: f32 = 0.5;
 
 impl DepthNetwork {
@@ -57,7 +58,7 @@ impl DepthNetwork {
         Ok(network)
     }
 
-    /// Rows and columns of the network's input for a photo.
+    /// Returns the rows and columns of the network's input for a photo.
     fn input_size(&self, width: usize, height: usize) -> Result<[usize; 2]> {
         let shape = self.network.input_shape();
         let is = |size: Option<usize>, wanted: usize| size.is_none_or(|n| n == wanted);
@@ -83,7 +84,8 @@ impl DepthNetwork {
         }
     }
 
-    /// Depth along z of every pixel of a photo (linear RGB, 1 = display white), from `near` to `far`; 1 channel.
+    /// Estimates the depth along z of every pixel of a photo (linear RGB, 1 = display white), from `near` to `far`;
+    /// one channel.
     pub fn estimate(&self, photo: &Image, near: f32, far: f32, job: Job) -> Result<Image> {
         let (width, height) = (photo.width, photo.height);
         let [rows, columns] = self.input_size(width, height)?;
@@ -132,7 +134,7 @@ impl DepthNetwork {
     }
 }
 
-/// Mean and standard deviation of ImageNet's colours in `[0, 1]` [convention].
+/// Mean and standard deviation of ImageNet's colours in `[0, 1]`. [convention]
 const IMAGENET: [[f32; 3]; 2] = [[0.485, 0.456, 0.406], [0.229, 0.224, 0.225]];
 
 fn not_an_image(shape: &[Option<usize>]) -> Error {
@@ -146,7 +148,8 @@ fn not_a_map(shape: &[usize]) -> Error {
     Error::new(ErrorKind::Unsupported, format!("the network's output has shape {shape:?}; one map of depth is needed"))
 }
 
-/// The features of a photo with depth from a network, and that depth. Ignores `input.depth`.
+/// Computes the features of a photo with depth from a network. Returns the features and the depth; ignores
+/// `input.depth`.
 pub fn run_with_network(input: &Input, network: &DepthNetwork, params: &Params, job: Job) -> Result<(Features, Image)> {
     params.check()?;
     let depth = network.estimate(input.photo, params.near, params.far, job.part(0.0, 0.9))?;

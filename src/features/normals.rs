@@ -1,4 +1,4 @@
-//! Normals from the pixel grid, by fitting a plane to each pixel's neighbourhood.
+//! Estimates normals from the depth image, by fitting a plane to each pixel's neighbourhood.
 //!
 //! On a plane `n · p = c` the point of a pixel is `p = z ray`, so `1/z = (n / c) · ray`: inverse depth is affine in
 //! pixel coordinates. The plane fit is therefore a linear regression of `1/z` over a window (see `plane_fit`), exact
@@ -14,17 +14,17 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Rows processed together: the window sums slide from one row to the next.
+/// Number of rows processed together: the window sums slide from one row to the next.
 const BAND: usize = 64;
-/// Factor on the cost of the centred window: a shifted window must fit better by this factor to be preferred [origin
-/// not recorded].
+/// Factor on the cost of the centred window. A shifted window is preferred only if its cost is below this share of the
+/// cost of the centred window. [origin not recorded]
 const PREFER_CENTRED: f32 = 0.5;
-/// Offsets, in radii, of the centres of the windows that contain a pixel; ties go to the first.
+/// Offsets, in radii, from a pixel to the centres of its windows. Of equally good windows, the first is taken.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];
 
-/// Pixels of a row whose windows are selected together, so that the candidates stay in the first-level cache.
+/// Number of pixels of a row whose windows are selected together: the candidates stay in the first-level cache.
 const TILE: usize = 128;
-/// Pixels whose best plane is held in registers.
+/// Number of pixels whose best planes are held in registers.
 const LANES: usize = 16;
 
 /// The best plane of each pixel of a tile: its cost, and the derivatives of inverse depth along x and y.
@@ -34,29 +34,29 @@ struct Best {
     dy: [f32; TILE],
 }
 
-/// The windows at one offset from the pixels of a tile.
+/// The windows at one offset from the pixels of a tile, and their plane fits.
 #[derive(Clone, Copy)]
 struct Windows<'a> {
     fits: FitRow<'a>,
     /// Offset from the window centre to the pixel, in columns and rows.
     steps: [f32; 2],
-    /// Factor on the cost.
+    /// Factor on the cost of these windows; a smaller factor favours them.
     favour: f32,
 }
 
 /// Ray directions of a tile of pixels.
 #[derive(Clone, Copy)]
 struct Rays {
-    /// x of the first ray, and its step per pixel.
+    /// x of the first ray (`first_x`), and its step per pixel (`step_x`).
     first_x: f32,
     step_x: f32,
-    /// y of all rays, and its step per row.
+    /// y of all rays (`y`), and its step per row (`step_y`).
     y: f32,
     step_y: f32,
 }
 
-/// Unit normals in camera space, towards the camera. Pixels of confidence 0 are ignored and get a normal facing the
-/// camera.
+/// Computes unit normals in camera space, towards the camera. Pixels of confidence 0 are ignored and get a normal
+/// facing the camera.
 pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius: usize, job: Job) -> Result<Image> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
     let bands = || {
@@ -64,7 +64,7 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
             plane_fit::band(inverse_depth, confidence, radius, band * BAND..((band + 1) * BAND).min(height))
         })
     };
-    // Allocate the output in parallel: that takes time too.
+    // Allocate the output in parallel with the fits, because allocation takes time.
     let (bands, normals) = exec::both(bands, || Image::new(width, height, 3));
     let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
@@ -133,7 +133,7 @@ widest! {
     }
 }
 
-/// Values from `start` on, padded with zeros.
+/// Returns `LANES` values from `start` on, padded with zeros.
 #[inline(always)]
 fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
     match values.get(start..start + LANES).map(TryInto::try_into) {
@@ -143,8 +143,8 @@ fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
 }
 
 widest! {
-    /// Normals of the planes `1/z = a · ray` from the inverse depth `w` and its derivatives, oriented towards the
-    /// camera.
+    /// Computes normals of the planes `1/z = a · ray` from the inverse depth `w` and its derivatives. The normals
+    /// point towards the camera.
     fn plane_normals(w: &[f32], confidence: &[f32], best: &Best, rays: Rays, out: &mut [f32]) {
         let n = w.len().min(TILE);
         let (w, confidence) = (&w[..n], &confidence[..n]);

@@ -1,12 +1,14 @@
-//! Regression planes of inverse depth over windows around all pixels, by sliding sums: updated down the columns from
-//! row to row, and differences of running sums along the rows. In `f64`, because the differences cancel.
+//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums. Sums over the columns of a
+//! window are updated from row to row; sums over its rows are differences of running sums. The sums are `f64`, because
+//! the differences cancel.
 
 use crate::image::Image;
 use crate::simd::widest;
 use std::ops::Range;
 
-/// Below this ratio of the determinant to the product of the variances, the points are collinear. Non-collinear points
-/// with integer coordinates in the largest window have at least 1e-9; rounding yields 1e-15 [rounding].
+/// Points count as collinear if the ratio of the determinant to the product of the variances is below this. For
+/// non-collinear points with integer coordinates in the largest window, the ratio is at least 1e-9; rounding yields
+/// 1e-15. [rounding]
 const SINGULAR: f64 = 1e-12;
 
 /// The regression planes of a row, each relative to its own pixel: `w ≈ value + dx i + dy j`, and the mean squared
@@ -20,7 +22,7 @@ pub struct FitRow<'a> {
 }
 
 impl<'a> FitRow<'a> {
-    /// Row `y` of the output of [`band`].
+    /// Selects row `y` of the output of [`band`].
     pub fn of(band: &'a [f32], y: usize, width: usize) -> Self {
         let plane = |k: usize| &band[(4 * y + k) * width..(4 * y + k + 1) * width];
         Self { value: plane(0), dx: plane(1), dy: plane(2), residual: plane(3) }
@@ -37,7 +39,7 @@ impl<'a> FitRow<'a> {
     }
 }
 
-/// Sums over the window's part of each column: `j` is the row offset, `w` the inverse depth.
+/// Sums over the part of each column inside the window: `j` is the row offset, `w` the inverse depth.
 struct Columns {
     n: Vec<f64>,
     j: Vec<f64>,
@@ -47,16 +49,16 @@ struct Columns {
     ww: Vec<f64>,
 }
 
-/// Prefix sums over columns, where `i` is the column: the difference of two is the sum over a window. Padded by the
-/// window's radius before the first column and after the last.
+/// Prefix sums over columns, where `i` is the column: the difference of two prefix sums is the sum over a window. They
+/// are padded by the window's radius before the first column and after the last.
 struct Running {
-    /// n, i, ii, j, jj, ij, w, iw, jw, ww.
+    /// The sums of 1 (the count n), i, i², j, j², i j, w, i w, j w and w², in this order.
     sums: [Vec<f64>; 10],
     radius: usize,
 }
 
-/// The fits of all pixels of some rows; for each row the values, the derivatives along x and y, and the residuals (see
-/// [`FitRow`]).
+/// Fits planes for all pixels of some rows. Returns for each row the values, the derivatives along x and y, and the
+/// residuals (see [`FitRow`]).
 pub fn band(inverse_depth: &Image, confidence: &Image, radius: usize, rows: Range<usize>) -> Vec<f32> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
     let zeros = || vec![0.0; width];
@@ -86,7 +88,7 @@ pub fn band(inverse_depth: &Image, confidence: &Image, radius: usize, rows: Rang
 }
 
 impl Columns {
-    /// Adds (`sign` 1) or removes (-1) a row at offset `j`.
+    /// Adds (`sign` = 1) or removes (`sign` = -1) an image row at the row offset `j`.
     fn add(&mut self, w: &[f32], confidence: &[f32], j: f64, sign: f64) {
         add_row(self, w, confidence, j, sign);
     }
@@ -112,7 +114,7 @@ widest! {
 }
 
 widest! {
-    /// Re-bases the row offsets to the next row.
+    /// Makes the row offsets `j` relative to the next row.
     fn move_down(columns: &mut Columns) {
         let width = columns.n.len();
         let (n, w) = (&columns.n[..width], &columns.w[..width]);
@@ -146,8 +148,8 @@ impl Running {
 }
 
 widest! {
-    /// Least squares of `w` on `(1, i, j)`, about the means, for the windows of a row; no fit where the points are
-    /// collinear.
+    /// Least-squares regression of `w` on `(1, i, j)` about the means, for the windows of a row. A window whose points
+    /// are collinear gets no plane.
     fn regress(running: &Running, out: &mut [f32]) {
         let width = out.len() / 4;
         let [n, i, ii, j, jj, ij, w, iw, jw, ww] = running.sums.each_ref().map(|sums| {

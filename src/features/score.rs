@@ -1,4 +1,4 @@
-//! Score of a box room. Segments must lie on faces that contain their direction (a vertical edge cannot lie on the
+//! Rates a box room. Segments must lie on faces that can contain their direction (a vertical edge cannot lie on the
 //! ceiling); seams between faces should coincide with segments along them; the strokes of a plane should lie on a
 //! single face.
 
@@ -11,36 +11,37 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Number of longest segments used; more do not change the layout.
+/// Maximum number of segments used, the longest ones; further segments do not change the layout.
 pub const MAX_SEGMENTS: usize = 160;
-/// Sample points along each segment, as shares of its length [origin not recorded].
+/// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// Penalty, relative to its weight, of a segment on a face that cannot contain it [origin not recorded].
+/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [origin not recorded]
 const IMPOSSIBLE: f64 = 1.5;
-/// Additional reward of a segment on a seam, relative to one on a face [origin not recorded].
+/// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [origin not recorded]
 const SEAM: f64 = 2.0;
-/// Relative difference of the distances to two faces at which a segment no longer lies on their seam [origin not
-/// recorded].
+/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share.
+/// [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
-/// it too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes on the
-/// wrong face wins only if the lines rule out nearly all others [origin not recorded].
+/// this face too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes
+/// on the wrong face wins only if the lines rule out nearly all others. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
-/// Sums run in lanes, whose order is independent of the processor.
+/// Number of partial sums that are computed in parallel. It is fixed, so that the order of additions does not depend
+/// on the processor.
 const LANES: usize = 8;
 
 /// A segment and the room axis that it runs along, which decides which faces can contain it.
 struct RoomSegment {
     axis: usize,
-    /// Ray through its midpoint, in room axes.
+    /// Ray through the segment's midpoint, in room axes.
     middle: DVec3,
-    /// Weight: its share of the length of all segments.
+    /// Weight: the segment's share of the length of all segments.
     weight: f64,
 }
 
-/// Sample points of segments along one axis: the absolute coordinates of their rays along this axis and along the
-/// other two.
+/// Sample points of segments along one axis: the absolute coordinates of their rays along this axis (`own`) and along
+/// the two other axes (`p`, `q`).
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,
@@ -49,31 +50,31 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// The part of the view towards one side wall and towards either ceiling or floor. Its score depends on these two
-/// sides of the box only.
+/// A quarter of the view: the directions towards one side wall, and towards either the ceiling or the floor. The score
+/// of a quadrant depends only on these two sides of the box.
 #[derive(Default)]
 pub struct Quadrant {
-    /// Sample points for each axis.
+    /// Sample points of the segments along each axis.
     points: [Points; 3],
-    /// For each stroke sample the absolute coordinates of its ray, and its weight in the score of the face that it
-    /// hits.
+    /// For each stroke sample, the absolute coordinates of its ray, and the sample's weight in the score of the face
+    /// that the ray hits.
     stroke_samples: Vec<(DVec3, f64)>,
 }
 
-/// The classified segments and the strokes of a view.
+/// The evidence of a view about its box: the segments with their axes, and the strokes.
 pub struct Evidence {
     segments: Vec<RoomSegment>,
-    /// Upper left, upper right, lower left, lower right.
+    /// The upper left, upper right, lower left and lower right quarter of the view.
     pub quadrants: [Quadrant; 4],
     /// Whether any stroke lies on the plane.
     pub has_plane: bool,
 }
 
-/// For each axis, the other two.
+/// For each axis, the two other axes.
 const OTHERS: [[usize; 2]; 3] = [[VERTICAL, HORIZONTAL_B], [HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL]];
 
 impl Evidence {
-    /// Collects the segments and strokes of a view; `axes` are the room's axes in the order the camera sees them.
+    /// Collects the segments and strokes of a view; `axes` are the room's axes, with z along the viewing direction.
     pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
@@ -103,7 +104,7 @@ impl Evidence {
         }
         quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
 
-        // Strokes elsewhere are uninformative unless some stroke lies on the plane.
+        // Strokes elsewhere are uninformative without a stroke on the plane.
         let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
         let has_plane = stroke_samples.iter().any(|s| s.positive);
         for sample in stroke_samples.iter().filter(|_| has_plane) {
@@ -118,17 +119,17 @@ impl Evidence {
         self.segments.len()
     }
 
-    /// Agreement of the segments with a box: at most 1 if none lies on a seam, and `1 + SEAM` if all do.
+    /// Returns the agreement of the segments with a box: at most 1 if none lies on a seam, and `1 + SEAM` if all do.
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
         let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Values of one side (left, right, ceiling, floor) at which a segment could be the back wall's edge, in order of
-    /// falling support.
+    /// Returns candidate distances of one side (left, right, ceiling, floor), at each of which a segment would be an
+    /// edge of the back wall. Sorted by falling support.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
-        // The edge at a side wall is vertical; the edge at ceiling or floor runs along the horizontal axis of the back
-        // wall.
+        // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
+        // axis of the back wall.
         let (edge_axis, across) = if side < 2 { (VERTICAL, 0) } else { (HORIZONTAL_A, 1) };
         let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
         let mut values: Vec<(f64, f64)> = (self.segments.iter())
@@ -153,14 +154,14 @@ impl Evidence {
     }
 }
 
-/// The quadrant a ray points to, and its absolute coordinates; a direction behind the camera is treated as z = 0.
+/// Returns the quadrant to which a ray points, and the ray's absolute coordinates; a negative z becomes 0.
 fn quadrant(ray: DVec3) -> (usize, DVec3) {
     let index = usize::from(ray.x >= 0.0) + 2 * usize::from(ray.y >= 0.0);
     (index, DVec3::new(ray.x.abs(), ray.y.abs(), ray.z.max(0.0)))
 }
 
 impl Quadrant {
-    /// Agreement of its segments with a side wall and a ceiling or floor at the given inverse distances.
+    /// Returns the agreement of the segments with a side wall and a ceiling or floor at the given inverse distances.
     pub fn lines(&self, wall: f64, level: f64) -> f64 {
         let inverse = [wall, level, 1.0];
         let agreement = self.points.iter().zip(OTHERS).enumerate().map(|(axis, (points, [p, q]))| {
@@ -169,7 +170,8 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// Score of its strokes if the plane is the side wall, the ceiling or floor, or the back wall.
+    /// Returns the score of the strokes for each face that the plane may be: the side wall, the ceiling or floor, and
+    /// the back wall.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
         for (size, weight) in &self.stroke_samples {
@@ -189,7 +191,7 @@ impl Points {
         self.weight.push(weight);
     }
 
-    /// Pads with points of zero weight to a multiple of the lanes.
+    /// Pads the list to a multiple of the lanes, with points of zero weight.
     fn fill_up(&mut self) {
         while !self.weight.len().is_multiple_of(LANES) {
             self.push([0.0, 1.0, 1.0], 0.0);
@@ -198,8 +200,9 @@ impl Points {
 }
 
 widest! {
-/// Weighted agreement of sample points of segments along an axis. `inverse` holds, for this axis and the two others,
-/// the inverse distances of the faces perpendicular to them; the ray hits the face with the largest inverse parameter.
+/// Returns the weighted agreement of sample points of segments along an axis. `inverse` holds the inverse distances of
+/// the faces perpendicular to this axis and to the two others; the ray hits the face with the largest inverse
+/// parameter.
 fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3]) -> f64 {
     let mut sums = [0.0; LANES];
     let others = p.chunks_exact(LANES).zip(q.chunks_exact(LANES));

@@ -1,10 +1,10 @@
-//! The search over all boxes.
+//! Searches for the best box over all combinations of candidate sides.
 //!
 //! The face that a ray meets depends on two of the four sides: a side wall, and either the ceiling or the floor. The
-//! score of a box is therefore a sum of four parts (see [`Quadrant`](super::score::Quadrant)), each a table over the
-//! values of two sides. This allows the exact optimum over all boxes of many values: for every pair of left and right,
-//! the best ceiling and the best floor are found independently. The best, clearly different boxes are then refined on
-//! finer grids of values.
+//! score of a box is therefore a sum over the four quadrants of the view (see [`Quadrant`](super::score::Quadrant)).
+//! The score of a quadrant is a table over the values of its two sides. This allows an exact optimum over all
+//! combinations of many values: for every pair of left and right, the best ceiling and the best floor are found
+//! independently. The best boxes that clearly differ from each other are then refined on finer grids of values.
 
 use super::box_room::{Face, Layout, faces, facing_axes};
 use super::input::RoomView;
@@ -16,29 +16,31 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Prior of a side (in units of the distance to the back wall) where nothing is seen of it, and the cost of the
-/// squared logarithm of its ratio to the prior. Equal for all sides, so that the result does not depend on the photo's
-/// orientation [origin not recorded].
+/// `PRIOR_SIDE`: expected distance of a wall, ceiling or floor of which the photo shows nothing, in units of the
+/// distance to the back wall. It is equal for all sides, so that the result does not depend on the photo's
+/// orientation. `PRIOR_COST`: factor on the squared logarithm of the ratio of a side to `PRIOR_SIDE`.
+/// [origin not recorded]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
-/// Sides tried regardless of the evidence: `MIN_SIDE × RATIO^k` [origin not recorded].
+/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`.
+/// [origin not recorded]
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
-/// Candidates per side from segments.
+/// Maximum number of candidates per side from segments.
 const PEAKS: usize = 24;
 /// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than this factor [origin not recorded].
+/// differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
-/// Rays along each side of the photo by which boxes are compared.
+/// Boxes are compared along a grid of rays: number of rays along each side of the photo.
 const RAYS: usize = 9;
-/// Number of boxes that are refined; ratios of neighbouring values in the two refinements; and number of values on
-/// either side [origin not recorded].
+/// Number of boxes that are refined; ratio of neighbouring values in each of the two refinements; and number of values
+/// on either side of the current one. [origin not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;
-/// Sums run in lanes, whose order is independent of the processor.
+/// Number of partial maxima that are computed in parallel.
 const LANES: usize = 8;
 
 /// The sides of a box, and its score.
@@ -67,7 +69,7 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
         }
     }
 
-    // Refine each on finer grids.
+    // Refine each box on finer grids.
     let mut tops = Vec::with_capacity(starts.len());
     for start in starts {
         let mut top = start;
@@ -82,7 +84,7 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
     tops.sort_by(|a, b| b.1.total_cmp(&a.1));
     let best = tops[0];
 
-    // Compute the confidence from the lead over the best clearly different box.
+    // Compute the confidence from the lead over the best box that clearly differs.
     let runner_up = |all: &[ScoredBox]| {
         let other = all.iter().find(|other| differ(&view, &other.0, &best.0));
         other.map_or(f64::NEG_INFINITY, |other| other.1)
@@ -98,7 +100,7 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
     })
 }
 
-/// Rays over the whole photo, in room axes.
+/// Returns rays over the whole photo, in room axes.
 fn rays(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2]) -> Vec<DVec3> {
     let to_room = axes.transpose();
     let places = |n: usize| (0..RAYS).map(move |i| (i as f64 + 0.5) / RAYS as f64 * n as f64);
@@ -114,8 +116,8 @@ fn differ(view: &[DVec3], a: &[f64; 4], b: &[f64; 4]) -> bool {
     view.iter().filter(is_other).count() as f64 > MIN_DIFFERENT_SHARE * view.len() as f64
 }
 
-/// The four parts of the score over the values of their two sides: rows for the wall, columns for the ceiling or
-/// floor; one set of tables for each face that may be the plane.
+/// The score of each quadrant, as a table over the values of its two sides: rows for the wall, columns for the ceiling
+/// or floor. `parts` holds one set of four tables for each face that may be the plane of the strokes.
 struct Tables {
     values: [Vec<f64>; 4],
     parts: Vec<[Vec<f64>; 4]>,
@@ -123,9 +125,9 @@ struct Tables {
 
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
-        // Each face may be the plane of the strokes.
+        // Without strokes on a plane, one set of tables suffices; otherwise each face may be the plane.
         let planes = if evidence.has_plane { &Face::ALL[..] } else { &Face::ALL[..1] };
-        // Fill one row of one part per task.
+        // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
         let prior_cost = |value: f64| PRIOR_COST * (value / PRIOR_SIDE).ln().powi(2);
@@ -135,7 +137,8 @@ impl Tables {
             let quadrant = &evidence.quadrants[part];
             let at = values[wall][row];
             let entry = |&height: &f64| {
-                // Each side occurs in two parts: halve the cost of its prior.
+                // Each wall, and each of ceiling and floor, belongs to two quadrants, so each quadrant counts half of
+                // its prior cost.
                 let prior = -0.5 * (prior_cost(at) + prior_cost(height));
                 let lines = quadrant.lines(1.0 / at, 1.0 / height) + prior;
                 let strokes = quadrant.strokes(1.0 / at, 1.0 / height);
@@ -158,7 +161,7 @@ impl Tables {
         Ok(Self { values, parts })
     }
 
-    /// For every pair of left and right, the best box; sorted by falling score.
+    /// Returns the best box for every pair of left and right, sorted by falling score.
     fn best(&self, job: Job) -> Result<Vec<ScoredBox>> {
         let [lefts, rights, tops, bottoms] = self.values.each_ref().map(Vec::len);
         let found = exec::map(lefts, job, |left| -> Vec<ScoredBox> {
@@ -181,7 +184,7 @@ impl Tables {
 }
 
 widest! {
-/// The largest sum of two items at equal positions of the lists.
+/// Returns the largest sum of two items at equal positions of the lists.
 fn largest_sum(a: &[f64], b: &[f64]) -> f64 {
     let mut largest = [f64::NEG_INFINITY; LANES];
     let (a, b) = (a.chunks(LANES), b.chunks(LANES));

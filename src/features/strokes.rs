@@ -1,5 +1,5 @@
-//! Strokes as evidence about the room: at most one sample of each kind per cell of a grid, so that neither brush width
-//! nor the number of strokes affects the result.
+//! Turns strokes into evidence about the room: at most one sample of each kind per cell of a grid, so that neither
+//! brush width nor the number of strokes affects the result.
 
 use super::input::RoomView;
 use crate::error::Result;
@@ -7,21 +7,21 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Cells along each side of the photo. Odd, so that no pixel centre lies between two cells and a mirrored photo has
-/// mirrored cells.
+/// Number of cells along each side of the photo. It is odd, so that no pixel centre lies between two cells and a
+/// mirrored photo has mirrored cells.
 const CELLS: usize = 15;
 
 /// The strokes of one kind within a cell.
 pub struct StrokeSample {
-    /// Ray through the mean of their pixels, in room axes.
+    /// Ray through the mean of the strokes' pixels in the cell, in room axes.
     pub ray: DVec3,
-    /// Whether they lie on the plane or elsewhere.
+    /// True for strokes on the plane, false for strokes elsewhere.
     pub positive: bool,
-    /// Weight: one over the number of samples of this kind.
+    /// Weight: one over the number of samples of this kind in the view.
     pub weight: f64,
 }
 
-/// The samples of a view's strokes. Pixels outside the image are ignored; pixels covered by both kinds count for both.
+/// Samples the strokes of a view. Pixels outside the image are ignored; pixels covered by both kinds count for both.
 pub fn stroke_samples(
     room: &RoomView,
     to_room: &DMat3,

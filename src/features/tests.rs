@@ -25,14 +25,14 @@ fn photo(width: usize, height: usize) -> Image {
     Image::from_fn(width, height, |x, y| [x as f32 / width as f32, 0.5, y as f32 / height as f32]).unwrap()
 }
 
-/// Depth along z, and the index of the face, at a pixel of the box with the given sides.
+/// Returns the depth along z, and the index of the face, at a pixel of the box with the given sides.
 fn truth(camera: &Perspective, sides: &[f64; 4], x: usize, y: usize) -> (f64, usize) {
     let ray = camera.axes.transpose() * camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
     let (face, inverse) = faces(sides, ray)[0];
     (1.0 / inverse, face as usize)
 }
 
-/// Segments of a box room with their axes: seams, and lines drawn on its faces.
+/// Returns segments of a box room with their axes: seams, and lines drawn on its faces.
 fn room_segments(camera: &Perspective, sides: &[f64; 4], width: usize, height: usize) -> Vec<(Segment, Option<usize>)> {
     let [l, r, t, b] = *sides;
     let project = |p: DVec3| {
@@ -45,20 +45,20 @@ fn room_segments(camera: &Perspective, sides: &[f64; 4], width: usize, height: u
         for y in [-t, b] {
             lines.push((DVec3::new(x, y, 0.2), DVec3::new(x, y, 1.0), 2));
         }
-        // A door in each side wall.
+        // Add a door in each side wall.
         lines.push((DVec3::new(x, b, 0.6), DVec3::new(x, b * 0.1, 0.6), 1));
         lines.push((DVec3::new(x, b * 0.1, 0.6), DVec3::new(x, b * 0.1, 0.75), 2));
     }
     for y in [-t, b] {
         lines.push((DVec3::new(-l, y, 1.0), DVec3::new(r, y, 1.0), 0));
-        // Tiles.
+        // Add tiles.
         for k in 1..4 {
             let x = -l + (r + l) * f64::from(k) / 4.0;
             lines.push((DVec3::new(x, y, 0.4), DVec3::new(x, y, 0.95), 2));
             lines.push((DVec3::new(-l, y, 0.2 + 0.2 * f64::from(k)), DVec3::new(r, y, 0.2 + 0.2 * f64::from(k)), 0));
         }
     }
-    // A window in the back wall.
+    // Add a window in the back wall.
     lines.push((DVec3::new(0.0, -t * 0.6, 1.0), DVec3::new(0.0, b * 0.3, 1.0), 1));
     lines.push((DVec3::new(0.0, -t * 0.6, 1.0), DVec3::new(r * 0.6, -t * 0.6, 1.0), 0));
     let inside = |p: DVec2| p.x >= 0.0 && p.y >= 0.0 && p.x <= width as f64 && p.y <= height as f64;
@@ -101,7 +101,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
             for x in 0..width {
                 let p = features.image.pixel(x, y);
                 let (z, face) = truth(&camera, &sides, x, y);
-                // Include pixels at creases, where the fit uses a window on one side.
+                // Check pixels at creases too, where the fit uses a window on one side of the crease.
                 let off = Vec3::from_slice(&p[7..10]).angle_between(normals[face]);
                 all += 1;
                 exact += usize::from(off < 1e-3);
@@ -120,7 +120,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
 fn noise_depth_edges_and_holes_leave_normals_robust() {
     let (width, height) = (320, 240);
     let camera = camera(0.0, 0.0, 0.0, width, height);
-    // A nearby slanted board in front of the back wall, with 1 % noise in disparity and a hole.
+    // A nearby slanted board stands in front of the back wall, with 0.2 % noise in depth and a hole.
     let noise = |x: usize, y: usize| 1.0 + 0.002 * Rng::new(5, &[x as u64, y as u64]).normal();
     let board = |x: usize| x > 100 && x < 220;
     let depth = Image::from_fn(width, height, |x, y| {
@@ -194,7 +194,7 @@ fn without_segments_the_layout_is_the_prior_room_with_low_confidence() {
     let features = run_with(&photo(64, 48), None, Some(room)).unwrap();
     assert_eq!(features.depth_source, DepthSource::Layout);
     assert!(features.depth_confidence.data.iter().all(|&c| c <= 0.05));
-    // Segments of zero length and of unknown axis are no evidence either.
+    // Segments of zero length or of unknown axis are no evidence either.
     let point = Segment { a: DVec2::ONE, b: DVec2::ONE };
     let segments = [(point, Some(1)), (point, None), (point, Some(9))];
     let room = RoomView { perspective: &camera, segments: &segments, strokes: &[], layout: None };
@@ -216,12 +216,12 @@ fn degenerate_depth_has_a_right_answer_or_a_clear_error() {
     let wrong_size = Image::new(41, 30, 1).unwrap();
     assert!(with(&wrong_size).unwrap_err().message.contains("41 x 30"));
     assert!(with(&Image::new(40, 30, 3).unwrap()).is_err());
-    // Next to measured values, zeros and infinities are holes.
+    // In a map with measured values, zeros, infinities and NaN are holes.
     let mixed = |x: usize, y: usize| [[2.0, 0.0, f32::INFINITY, -0.0, f32::NAN, f32::NEG_INFINITY][(x + y) % 6]];
     let features = with(&Image::from_fn(40, 30, mixed).unwrap()).unwrap();
     assert!(features.image.data.chunks_exact(CHANNELS).all(|p| p[3].abs() < 1e-6));
     assert_eq!(features.depth_confidence.data.iter().filter(|&&c| c == 1.0).count(), 40 * 30 / 6);
-    // A single measured pixel: all others are filled from it.
+    // From a single measured pixel, all others are filled.
     let mut one = constant(0.0);
     one.pixel_mut(7, 9)[0] = 3.0;
     let features = with(&one).unwrap();
@@ -286,7 +286,7 @@ fn any_photo_has_finite_features() {
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind: DepthKind::AlongRay }), None).unwrap();
         assert_eq!(features.image.count_non_finite(), 0);
     }
-    // A binary image.
+    // The features of a binary image are exact.
     let bit = |x: usize, y: usize| f32::from(Rng::new(6, &[x as u64, y as u64]).next_f32() < 0.5);
     let features = run_with(&Image::from_fn(31, 23, |x, y| [bit(x, y)]).unwrap(), None, None).unwrap();
     for (i, p) in features.image.data.chunks_exact(CHANNELS).enumerate() {
@@ -348,14 +348,15 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     let camera = camera(0.2, -0.3, 0.05, 640, 480);
     let small = Layout { sides: [0.8, 0.7, 0.4, 0.5], score: 0.0, trust: 0.0 };
     let axes = super::box_room::facing_axes(&camera);
-    // Points of the ceiling beyond the far wall and beyond the right one.
+    // The points lie on the ceiling, beyond the far wall and beyond the right wall.
     let points = [DVec3::new(0.3, -0.4, 1.6), DVec3::new(0.9, -0.4, 0.9)];
     let pixels = || points.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.face_of(&camera, pixels().take(1)), Face::Back);
     assert_eq!(small.face_of(&camera, pixels().skip(1)), Face::Right);
     let (large, growth) = small.enlarged(Face::Ceiling, &camera, pixels());
     assert!(pixels().all(|p| large.face_of(&camera, std::iter::once(p)) == Face::Ceiling), "{large:?}");
-    // The far wall is the unit: by it the ceiling, the floor and the left wall have kept their places.
+    // Sides are in units of the distance to the far wall. In the old unit, the ceiling, the floor and the left wall
+    // have kept their places.
     let back = 0.4 / large.sides[2];
     assert!(back > 1.6 && back < 1.8 && (growth - back).abs() < 1e-9, "{back} {growth}");
     let moved = large.sides.map(|side| side * back);
@@ -363,7 +364,7 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
         (moved[0] - 0.8).abs() < 1e-9 && (moved[3] - 0.5).abs() < 1e-9 && moved[1] > 0.9 && moved[1] < 1.0,
         "{moved:?}"
     );
-    // What the room holds already changes nothing, nor does what does not meet the face.
+    // Pixels that the face already shows change nothing, and neither do pixels whose rays do not meet the face.
     let inside = [DVec3::new(0.1, -0.4, 0.8), DVec3::new(0.1, 0.5, 0.8)];
     let pixels = inside.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.enlarged(Face::Ceiling, &camera, pixels), (small, 1.0));

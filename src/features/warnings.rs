@@ -1,4 +1,4 @@
-//! Reasons to doubt the depth of the features.
+//! Warnings about features whose depth may be wrong.
 
 use super::{DepthSource, Features};
 use crate::warning::{Code, Warning, percent};
@@ -7,7 +7,7 @@ use crate::warning::{Code, Warning, percent};
 const MIN_LAYOUT_TRUST: f64 = 0.2;
 
 impl Features {
-    /// Reasons to doubt the features. A depth map, or the depth of a caller's network, gives no warning.
+    /// Returns warnings about the depth. A depth map, or the depth of a caller's network, gives no warning.
     pub fn warnings(&self) -> Vec<Warning> {
         let advice =
             "give a depth map or a network that estimates one, or paint a stroke on each wall and on the floor";

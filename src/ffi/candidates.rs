@@ -1,8 +1,9 @@
 //! Candidates for the ceiling
 //!
-//! The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
-//! that let the user choose the surface with the lights. Pass the name of a candidate to luxfer_scene_find_surface or
-//! luxfer_transfer_set_scene. A list is a copy, which stays as it is when the scene changes.
+//! Lists the objects and the materials of a scene with their area, height and direction, sorted so that the likeliest
+//! ceiling comes first. A host can show this list to let the user choose the surface that receives the lights. Pass
+//! the name of the chosen candidate to luxfer_scene_find_surface or luxfer_transfer_set_scene. A list is a copy: later
+//! changes of the scene do not change it.
 
 use super::context::Context;
 use super::guard::enter;
@@ -16,19 +17,19 @@ use crate::scene::surface::{self, Candidate, Kind};
 use std::ffi::{CString, c_char};
 use std::sync::Arc;
 
-/// A list of candidates. See luxfer_scene_get_candidates.
+/// A list of candidates for the ceiling. See luxfer_scene_get_candidates.
 pub struct luxfer_candidates {
     _opaque: [u8; 0],
 }
 
-/// The kind of a candidate: a LUXFER_CANDIDATE_ value.
+/// Whether a candidate is an object or a material: a LUXFER_CANDIDATE_ value.
 pub type luxfer_candidate_kind = i32;
-/// All meshes of one name.
+/// An object: all meshes with one name.
 pub const LUXFER_CANDIDATE_OBJECT: luxfer_candidate_kind = 0;
-/// All triangles of one material.
+/// A material: all triangles that use it.
 pub const LUXFER_CANDIDATE_MATERIAL: luxfer_candidate_kind = 1;
 
-/// An object or a material of a scene.
+/// A candidate for the ceiling: an object or a material of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_candidate {
@@ -36,31 +37,34 @@ pub struct luxfer_candidate {
     pub struct_size: u32,
     /// LUXFER_CANDIDATE_ value.
     pub kind: luxfer_candidate_kind,
-    /// Index of the object's first mesh, or of the material.
+    /// Index of the object's first mesh in the scene, or index of the material.
     pub index: u32,
     /// Number of triangles whose area is not 0.
     pub triangles: u32,
-    /// Area in m².
+    /// Area of all triangles in m².
     pub area: f32,
-    /// Area in m² of the triangles that are inclined by less than 15 degrees, on either side.
+    /// Area in m² of the level triangles: those inclined by at most 15 degrees to the horizontal, facing up or down.
     pub level_area: f32,
-    /// Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0.
+    /// Mean height (y coordinate) in metres of the level triangles, weighted by area; of all triangles if none is
+    /// level.
     pub height: f32,
-    /// Lowest point, in metres.
+    /// Height (y coordinate) of the lowest point, in metres.
     pub low: f32,
-    /// Highest point, in metres.
+    /// Height (y coordinate) of the highest point, in metres.
     pub high: f32,
-    /// Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a box.
+    /// Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals cancel,
+    /// as for a closed box.
     pub normal: [f32; 3],
-    /// Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the floor
-    /// area of the scene's bounding box, and of the square of the height as a share of the scene's height. A name such
-    /// as "ceiling" raises the score.
+    /// Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area / area;
+    /// level_area / floor area of the scene's bounding box; and the square of the height above the scene's lowest
+    /// point / height of the scene. A name such as "ceiling" raises the score.
     pub score: f32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
-    /// Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates.
+    /// Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub name: *const c_char,
-    /// The reason for the score, in English and with its figures.
+    /// The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string lives as
+    /// long as the luxfer_candidates.
     pub reason: *const c_char,
 }
 
@@ -85,13 +89,13 @@ versioned!(luxfer_candidate, [SIZE], {
     }
 });
 
-/// The candidates behind a handle.
+/// The object behind a `luxfer_candidates` handle.
 pub(super) struct Candidates {
     context: Arc<Context>,
     list: Vec<Entry>,
 }
 
-/// A candidate, and its texts as C strings.
+/// A candidate, with its name and its reason as C strings.
 struct Entry {
     candidate: Candidate,
     name: CString,
@@ -116,8 +120,8 @@ impl Candidates {
     }
 }
 
-/// Lists the objects of a scene and the materials in use, the likeliest ceilings first. The call reads each triangle
-/// once. The caller releases *candidates. Any thread.
+/// Creates a list of the candidates for the ceiling: all objects of a scene and all materials that its triangles use,
+/// the likeliest ceiling first. The call reads each triangle once. The caller releases *candidates. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_candidates(
@@ -139,7 +143,7 @@ pub unsafe extern "C" fn luxfer_scene_get_candidates(
     })
 }
 
-/// Counts the candidates of a list. Any thread.
+/// Gets the number of candidates in a list. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_candidates_get_count(
     candidates: *mut luxfer_candidates,
@@ -151,8 +155,8 @@ pub unsafe extern "C" fn luxfer_candidates_get_count(
     })
 }
 
-/// Gets a candidate of a list. size is sizeof *candidate. Any thread.
-/// LUXFER_NOT_FOUND if there is no such candidate.
+/// Gets one candidate of a list; index starts at 0. size is sizeof *candidate. Any thread.
+/// LUXFER_NOT_FOUND if index is beyond the end of the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_candidates_get(
     candidates: *mut luxfer_candidates,

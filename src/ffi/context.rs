@@ -4,20 +4,21 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Structs: a function that fills a struct takes the size of the struct; pass sizeof. Such functions are the _init
-//! functions of settings and the functions that get reports. They set struct_size, the first field; leave it as it is.
-//! So a program that was built with an older header works with a newer library: settings that the program does not know
-//! keep their defaults.
+//! Structs: each function that fills a struct of the caller takes the size of the struct; pass sizeof. These functions
+//! are the _init functions of settings and the functions that get reports. They store the size in struct_size, the
+//! first field; leave this field as it is. From the size the library knows which version of the header the program was
+//! built with. So a program that was built with an older header works with a newer library: settings that the program
+//! does not know keep their defaults.
 //!
-//! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
-//! handle in most cases, but not if its memory has been reused.
+//! Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. A released
+//! handle gives LUXFER_INVALID_ARGUMENT too, unless its memory has been used again.
 //!
 //! Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
 //! use different objects at the same time, and also the same object: calls that change an object wait for each other.
 //! Only the release of the last reference must not overlap with another use of the object.
 //!
-//! The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
-//! not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+//! The library prints nothing, not even the message of a defect (LUXFER_INTERNAL). It reads no environment variables,
+//! does not end the process on an error and installs no signal handlers. All state belongs to a context, with one
 //! exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
 //! allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
 //!
@@ -25,11 +26,11 @@
 //! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
 //! luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
 //!
-//! Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
+//! Stack: a thread of the host needs 128 KiB of stack for calls that load files or do other work before they return.
 //!
-//! With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
-//! any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
-//! the mode of the host on return. Callbacks run in the standard mode.
+//! Reproducibility: on one machine, equal inputs, parameters and seeds give results that are equal to the bit, for any
+//! number of threads and any floating-point mode (rounding, flush to zero) of the host. A call sets the standard mode
+//! on entry and restores the mode of the host on return. Callbacks run in the standard mode.
 
 pub(super) use super::shared_context::{Charge, Context};
 
@@ -53,19 +54,20 @@ pub struct luxfer_context {
 pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
-    /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
-    /// these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
-    /// or on another set of as many threads, which the context starts when such a call first needs it.
+    /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
+    /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: they run
+    /// on the calling thread or on threads of their own. Each such call gets a set of num_threads threads. The context
+    /// starts as many sets as calls run at the same time, and keeps up to four sets for later calls.
     pub num_threads: u32,
-    /// Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. While a picture file is read, the
-    /// memory of its decoder counts too. The working memory of jobs and their results do not count.
+    /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
+    /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is
+    /// read, the memory of its decoder counts too. The working memory and the results of jobs do not count.
     pub memory_budget_mib: u64,
 }
 
 versioned!(luxfer_context_params, [16], { Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 } });
 
-/// A handle's own reference to its context.
+/// The object behind a `luxfer_context` handle: the handle's own reference to its context.
 pub(super) struct ContextObject(Arc<Context>);
 
 impl Owned for ContextObject {
@@ -99,11 +101,11 @@ pub unsafe extern "C" fn luxfer_context_create(
     })
 }
 
-/// Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
-/// truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
-/// has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
-/// that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
-/// valid leaves no message. Any thread.
+/// Copies the message of the calling thread's latest failed call in this context into buffer: zero-terminated UTF-8,
+/// truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole message
+/// needs. If no call of this thread has failed, the message is empty. A message stays until the thread's next failure;
+/// the context keeps the messages of the 256 threads that failed last. buffer may be NULL if capacity is 0. A call
+/// that fails because its first handle is not valid leaves no message. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_get_last_error(
     context: *mut luxfer_context,

@@ -1,7 +1,7 @@
 //! Demonstration
 //!
-//! Scenes and artworks that the library generates itself, for examples and tests: equal to the bit every time, without
-//! files.
+//! Scenes and artworks for examples and tests. The library generates them without any files, and equal to the bit in
+//! every call.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -17,28 +17,29 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// A generated scene: a LUXFER_DEMO_ value.
+/// A scene that the library generates: a LUXFER_DEMO_ value.
 pub type luxfer_demo = i32;
 /// A furnished room without lights; its ceiling is the object "Ceiling".
 pub const LUXFER_DEMO_TARGET_ROOM: luxfer_demo = 0;
-/// An office under a grid of luminaires; camera 0 takes the photo.
+/// An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0.
 pub const LUXFER_DEMO_EXEMPLAR_ROOM: luxfer_demo = 1;
 /// A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation.
 pub const LUXFER_DEMO_SPHERE_ON_TABLE: luxfer_demo = 2;
-/// A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a stylisation.
+/// A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a
+/// stylisation.
 pub const LUXFER_DEMO_STILL_LIFE: luxfer_demo = 3;
 
 /// The style of a generated artwork: a LUXFER_ARTWORK_ value.
 pub type luxfer_artwork = i32;
-/// Hatching with a pen and two inks.
+/// Pen: hatching in two inks.
 pub const LUXFER_ARTWORK_PEN: luxfer_artwork = 0;
-/// Dots of two inks.
+/// Stipple: dots of two inks.
 pub const LUXFER_ARTWORK_STIPPLE: luxfer_artwork = 1;
-/// Oil on canvas.
+/// Paint: oil on canvas.
 pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 
 /// Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// LUXFER_INVALID_ARGUMENT if which is another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,
@@ -52,10 +53,10 @@ pub unsafe extern "C" fn luxfer_demo_create_scene(
     })
 }
 
-/// Draws an artwork of a scene in place of an artist, of the size of its guides and aligned with them; designed for
-/// LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to a few seconds. The caller releases
-/// *image. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
+/// Generates an artwork of the scene that guides show, as an artist would paint it. The artwork has the size of the
+/// guides and is aligned with them. The styles are designed for LUXFER_DEMO_SPHERE_ON_TABLE. style is a
+/// LUXFER_ARTWORK_ value. The call takes up to a few seconds. The caller releases *image. Any thread.
+/// LUXFER_INVALID_ARGUMENT if style is another value; LUXFER_NOT_READY before the guides are rendered.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_artwork(
     guides: *mut luxfer_guides,

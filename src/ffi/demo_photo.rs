@@ -1,7 +1,7 @@
 //! Demonstration photo
 //!
-//! A photo of the generated office, as a camera would take it, and strokes on it, as a user would paint them: the input
-//! of a lighting transfer without files.
+//! Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user
+//! would paint them. They are the input of a lighting transfer without files.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -24,12 +24,12 @@ pub struct luxfer_demo_photo {
 
 /// An image of the demonstration photo: a LUXFER_DEMO_PHOTO_ value.
 pub type luxfer_demo_photo_image = i32;
-/// The photo: linear RGB, 1 = display white; its lamps are clipped.
+/// The photo: linear RGB, 1 = display white; lamps are clipped to white.
 pub const LUXFER_DEMO_PHOTO_PICTURE: luxfer_demo_photo_image = 0;
-/// The strokes on it, in the colours of luxfer_strokes_add_image.
+/// The strokes on the photo, as a drawing in the colours of luxfer_strokes_add_image.
 pub const LUXFER_DEMO_PHOTO_STROKES: luxfer_demo_photo_image = 1;
 
-/// Settings of the photo. Fill them with luxfer_demo_photo_params_init.
+/// Settings of the demonstration photo. Fill them with luxfer_demo_photo_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_demo_photo_params {
@@ -39,9 +39,9 @@ pub struct luxfer_demo_photo_params {
     pub width: u32,
     /// Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2.
     pub height: u32,
-    /// Paths per pixel, in [2, 1048576]; default 12, which leaves some noise.
+    /// Paths per pixel, in [2, 1048576]; default 12, which leaves visible noise.
     pub samples: u32,
-    /// Seed of the paths and the noise; default 1.
+    /// Seed of the paths and of the sensor noise; default 1.
     pub seed: u64,
 }
 
@@ -50,7 +50,7 @@ versioned!(luxfer_demo_photo_params, [24], {
     Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
 });
 
-/// The photo and the drawing of its strokes.
+/// The result of the generator: the photo and the drawing of its strokes.
 pub(super) struct Taken {
     picture: Image,
     strokes: Image,
@@ -62,7 +62,7 @@ impl Handle for luxfer_demo_photo {
     const NAME: &'static str = "luxfer_demo_photo";
 }
 
-/// Creates the stage. The caller releases *demo. Any thread.
+/// Creates a generator of the demonstration photo. The caller releases *demo. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_create(
     context: *mut luxfer_context,
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_create(
 }
 
 /// Starts a job that renders the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// LUXFER_INVALID_OPERATION if a job is already running; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_start(
     demo: *mut luxfer_demo_photo,
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_start(
     })
 }
 
-/// Gets an image; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+/// Gets the photo or its strokes; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_get_image(

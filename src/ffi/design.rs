@@ -1,7 +1,8 @@
 //! Lighting design
 //!
-//! Realises a solved light with real luminaires: the drive levels of LED primaries, the nearest blackbody light, the
-//! electric power, and the requirements of a standard. These calls return when their work is done.
+//! Helps to realise a solved light with real luminaires: the drive levels of LED primaries that mix a colour, the
+//! blackbody light that is nearest to a target, and the requirements of a standard. These calls are synchronous: they
+//! do their work before they return.
 
 use super::context::luxfer_context;
 use super::geometry::{list, numbers};
@@ -17,7 +18,7 @@ use crate::relight::{MAX_PRIMARIES, mix_primaries};
 use glam::DVec3;
 use std::ffi::c_char;
 
-/// A colour mixed from primaries.
+/// A colour mixed from LED primaries: the result of luxfer_mix_primaries.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_mixture {
@@ -26,7 +27,7 @@ pub struct luxfer_mixture {
     /// 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     /// mixture.
     pub in_gamut: u32,
-    /// Linear colour of the mixture.
+    /// Linear RGB colour of the mixture.
     pub colour: [f64; 3],
     /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
     pub delta_e: f64,
@@ -34,21 +35,23 @@ pub struct luxfer_mixture {
 
 versioned!(luxfer_mixture, [40], { Self { struct_size: 40, in_gamut: 0, colour: [0.0; 3], delta_e: 0.0 } });
 
-/// The blackbody light that fits a target best.
+/// The blackbody light that fits a target best: the result of luxfer_fit_temperature.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_temperature_fit {
     /// sizeof(luxfer_temperature_fit), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
     /// Correlated colour temperature, in [1000, 20000] kelvin.
     pub kelvin: f64,
-    /// Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m².
+    /// Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
+    /// cd/m².
     pub luminance: f64,
     /// Mean radiance of the target from this light and all other light, in cd/m².
     pub achieved: [f64; 3],
-    /// CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle grey.
+    /// CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted radiance
+    /// as middle grey.
     pub delta_e: f64,
 }
 
@@ -56,8 +59,8 @@ versioned!(luxfer_temperature_fit, [56], {
     Self { struct_size: 56, reserved: 0, kelvin: 0.0, luminance: 0.0, achieved: [0.0; 3], delta_e: 0.0 }
 });
 
-/// Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
-/// is binding.
+/// Requirements of EN 12464-1 for one kind of room, as manufacturers of luminaires quote them. Only the standard
+/// itself is binding.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_preset {
@@ -65,11 +68,11 @@ pub struct luxfer_preset {
     pub struct_size: u32,
     /// Year of the edition of the standard.
     pub edition: u32,
-    /// Minimum mean illuminance of the task area, in lux.
+    /// Minimum mean illuminance of the task area (maintained illuminance), in lux.
     pub illuminance: f64,
     /// Maximum unified glare rating.
     pub glare: f64,
-    /// Minimum uniformity U0 of the task area.
+    /// Minimum uniformity U0 (minimum / mean illuminance) of the task area.
     pub uniformity: f64,
     /// Minimum colour rendering index.
     pub rendering: f64,
@@ -85,9 +88,10 @@ versioned!(luxfer_preset, [56], {
 });
 
 /// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
-/// the linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1,
-/// 64]. drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the
-/// colour, the one with the smallest sum of squared drive levels is returned. size is sizeof *mixture. Any thread.
+/// three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative for LEDs outside
+/// the gamut of Rec.709. count is in [1, 64]. drives receives count drive levels in [0, max_drive]; max_drive is >= 0
+/// and may be infinite. If several mixtures give the colour, the result is the mixture with the smallest sum of
+/// squared drive levels. size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -120,10 +124,10 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     })
 }
 
-/// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
-/// a wanted radiance. Each array holds three channels: response is the response to a white emission, from
-/// luxfer_relight_get_report or luxfer_importance_respond; background is the radiance from other lights; target is the
-/// wanted radiance. size is sizeof *fit. Any thread.
+/// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
+/// to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
+/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is its mean
+/// radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(
@@ -160,7 +164,7 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     })
 }
 
-/// Gets the number of presets. Any thread.
+/// Gets the number of presets: kinds of rooms with requirements. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {
@@ -169,8 +173,8 @@ pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, c
     })
 }
 
-/// Gets the requirements of a preset. size is sizeof *preset. Any thread.
-/// LUXFER_NOT_FOUND if there is no such preset.
+/// Gets the requirements for one kind of room; index starts at 0. size is sizeof *preset. Any thread.
+/// LUXFER_NOT_FOUND if index is beyond the last preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get(
     context: *mut luxfer_context,
@@ -196,8 +200,9 @@ pub unsafe extern "C" fn luxfer_preset_get(
 }
 
 /// Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
-/// capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
-/// LUXFER_NOT_FOUND if there is no such preset.
+/// capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
+/// thread.
+/// LUXFER_NOT_FOUND if index is beyond the last preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get_name(
     context: *mut luxfer_context,

@@ -1,7 +1,7 @@
 //! Luminous intensity distributions
 //!
 //! The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
-//! calls return when their work is done.
+//! calls are synchronous: they do their work before they return.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
@@ -23,22 +23,22 @@ pub struct luxfer_distribution {
 
 /// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
 pub type luxfer_distribution_format = i32;
-/// IES LM-63, type C.
+/// IES LM-63 (.ies), with type C photometry.
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
-/// EULUMDAT.
+/// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 
-/// Summary of a distribution.
+/// Summary of a luminous intensity distribution.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_distribution_report {
     /// sizeof(luxfer_distribution_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of C planes.
+    /// Number of C planes, the half-planes through the axis in which the intensities are given.
     pub planes: u32,
-    /// Number of vertical angles in each plane.
+    /// Number of vertical angles gamma in each C plane.
     pub angles: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
     /// Luminous flux in lumens: the integral of the intensity over all directions.
     pub flux: f64,
@@ -46,8 +46,9 @@ pub struct luxfer_distribution_report {
     pub lamp_flux: f64,
     /// Electric power in watts; 0 if unknown.
     pub watts: f64,
-    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones.
-    /// These are the length, width and height of IES, and the width, length and height of EULUMDAT.
+    /// Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
+    /// for a round opening, as in IES: its absolute value is the diameter. The three values are the length, width and
+    /// height of an IES file, and the width, length and height of a EULUMDAT file.
     pub size: [f64; 3],
 }
 
@@ -78,7 +79,7 @@ impl Handle for luxfer_distribution {
     const NAME: &'static str = "luxfer_distribution";
 }
 
-/// The format that a path's extension names.
+/// Returns the format that a path's extension names: .ies or .ldt.
 fn format_of(path: &Path) -> Result<luxfer_distribution_format> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {
@@ -96,9 +97,9 @@ fn read(bytes: &[u8], format: luxfer_distribution_format) -> Result<Luminaire> {
     }
 }
 
-/// Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+/// Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
-/// LUXFER_UNSUPPORTED for types A and B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+/// LUXFER_UNSUPPORTED for IES photometry of types A and B, LUXFER_INVALID_ARGUMENT if the path has another extension.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load(
     context: *mut luxfer_context,
@@ -118,8 +119,8 @@ pub unsafe extern "C" fn luxfer_distribution_load(
     })
 }
 
-/// Loads a distribution from a file in memory of size bytes; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
-/// luxfer_distribution_load.
+/// Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value.
+/// Ownership, threads and errors are as for luxfer_distribution_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load_memory(
     context: *mut luxfer_context,
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn luxfer_distribution_load_memory(
 
 /// Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
 /// complete. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+/// LUXFER_INVALID_ARGUMENT if the path has another extension, LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_save(
     distribution: *mut luxfer_distribution,
@@ -179,8 +180,8 @@ pub unsafe extern "C" fn luxfer_distribution_get_report(
     })
 }
 
-/// Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
-/// receives the capacity that the whole name needs. Any thread.
+/// Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes including the zero.
+/// *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_name(
     distribution: *mut luxfer_distribution,
@@ -191,8 +192,8 @@ pub unsafe extern "C" fn luxfer_distribution_get_name(
     enter(distribution, |object| copy_text(&object.luminaire.name, buffer, capacity, needed))
 }
 
-/// Gets the luminous intensity in candela in a direction. Angles are in degrees: c turns around the axis, gamma goes
-/// from straight down at 0 to straight up at 180. Any thread.
+/// Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
+/// the C plane around the axis, and gamma is the angle from straight down (0) to straight up (180). Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_intensity(
     distribution: *mut luxfer_distribution,

@@ -1,7 +1,7 @@
 //! Emission
 //!
-//! Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
-//! luminaires.
+//! Synthesises an emissive texture of any size and lists its luminaires. The texture continues the light pattern of an
+//! exemplar, which is an unwarped photo of a plane with lamps.
 
 use super::context::{Context, luxfer_context};
 use super::emission_law::{self, LUXFER_LAW_BEST, LUXFER_LAW_COPY, luxfer_emission_law};
@@ -30,16 +30,17 @@ pub struct luxfer_emission {
 
 /// An image of the emission: a LUXFER_EMISSION_ value.
 pub type luxfer_emission_image = i32;
-/// The texture: linear RGB relative to the photo's white; 0 outside lamps.
+/// The texture: linear RGB, where 1 is the photo's white; 0 outside lamps.
 pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
-/// 1 on lamps, else 0; 1 channel.
+/// The mask of the texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
-/// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
+/// Metadata of the exemplar, at the resolution that working_side gives: confidence of light, and signed x and y
+/// distance to the nearest light in pixels of this image; 3 channels.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// Metadata of the result, with the channels of LUXFER_EMISSION_EXEMPLAR_METADATA.
+/// Metadata of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch like the texture.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
-/// Settings of the emission. Fill them with luxfer_emission_params_init.
+/// Settings of an emissive texture. Fill them with luxfer_emission_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_params {
@@ -49,51 +50,57 @@ pub struct luxfer_emission_params {
     pub width: u32,
     /// Height of the texture in texels, in [1, 65536]; default 1024.
     pub height: u32,
-    /// Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights.
+    /// Side of the square patches that are copied, in pixels of the exemplar at working size, in [0, 65536]; 0, the
+    /// default: chosen from the spacing of the lights.
     pub block: u32,
     /// Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1.
     pub scale: f64,
-    /// Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256.
+    /// Working size: length in pixels to which the longest side of the exemplar is reduced during synthesis, in [16,
+    /// 2048]; default 256.
     pub working_side: u32,
-    /// Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting.
+    /// Weight of the metadata channels relative to colour when patches are compared, in [0, 1e3]; default 1; 0 is
+    /// plain image quilting.
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
-    /// continued exactly; at 1 no repetition is, and patches may lie anywhere.
+    /// The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
+    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
+    /// anywhere.
     pub min_regularity: f32,
-    /// 1, the default: every lamp stays in one piece; 0: seams may cut lamps.
+    /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-    /// default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is tileable, where
-    /// it shifts the lamps.
+    /// default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must be 0 for
+    /// other textures.
     pub offset: [f64; 2],
-    /// Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the colour
-    /// of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped.
+    /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
+    /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0:
+    /// no lamp counts as clipped.
     pub clip_level: f32,
-    /// 1: every lamp has its mean colour everywhere; 0, the default: as in the photo.
+    /// 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo.
     pub even_lamps: u32,
-    /// 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side, and
-    /// a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps. Default 0.
+    /// 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side,
+    /// and a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps.
+    /// Default 0.
     pub tileable: u32,
-    /// 1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle between
-    /// two lamps, so that the border cuts as few lamps as possible. Default 0.
+    /// 1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle between two
+    /// lamps, then lies at the centre of the texture, so that the border cuts as few lamps as possible.
     pub centred: u32,
-    /// Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536]; default
-    /// 192.
+    /// Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
+    /// lattice, in [1, 65536]; default 192.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
     /// The law by which the texture continues the lights: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default
     /// LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
-    /// 1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie exactly
-    /// at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its outline in
-    /// the mask.
+    /// 1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is exact at
+    /// any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
+    /// lamp has the outline of the mask.
     pub clean_lamps: u32,
-    /// Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which the
-    /// photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts beyond it
-    /// count as not shown. Default 0: all parts are used.
+    /// Parts of the exemplar with a magnification above this value, in [1, 1e6], count as not shown in the photo; 0,
+    /// the default: all parts are used. The magnification of a pixel is the factor in length by which the photo is
+    /// magnified there, relative to the least magnified pixel of the exemplar.
     pub max_magnification: f64,
 }
 
@@ -108,7 +115,7 @@ versioned!(luxfer_emission_params, [104], {
         working_side: d.working_side as u32,
         metadata_weight: d.metadata_weight,
         seed: d.seed,
-        min_regularity: d.least_regularity,
+        min_regularity: d.min_regularity,
         whole_lamps: u32::from(d.whole_lamps),
         offset: d.offset.to_array(),
         clip_level: d.clip_level,
@@ -136,7 +143,7 @@ impl luxfer_emission_params {
             working_side: self.working_side as usize,
             metadata_weight: self.metadata_weight,
             offset: DVec2::from_array(self.offset),
-            least_regularity: self.min_regularity,
+            min_regularity: self.min_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
             tileable: params::flag(self.tileable, "tileable")?,
@@ -151,38 +158,37 @@ impl luxfer_emission_params {
     }
 }
 
-/// Quality of the texture.
+/// Quality of the texture, or contents of a plan.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
     /// sizeof(luxfer_emission_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of luminaires; see luxfer_emission_get_luminaire.
+    /// Number of luminaires in the texture; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
-    /// whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as exemplar_lamps
-    /// allows. NaN for a plan, which has no texture yet.
+    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
+    /// of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the less
+    /// reliable is this error. NaN for a plan, which has no texels yet.
     pub error: f64,
     /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
     /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
     /// large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
     pub exemplar_lamps: u32,
-    /// Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
-    /// error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
-    /// this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
-    /// exemplars, and for a plan.
+    /// Estimated sampling error of the statistics that error compares: their root mean square difference between the
+    /// whole texture and parts of it that are as large as the exemplar. If error is at most twice this value, it does
+    /// not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended exemplars, and for
+    /// a plan.
     pub sampling_error: f32,
     /// The law by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
-    /// The best of the other laws: a LUXFER_LAW_ value.
+    /// The law that scored best among the other laws: a LUXFER_LAW_ value.
     pub runner_up: luxfer_emission_law,
-    /// How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in proportion to
-    /// their pixels in the photo. NaN if laws were not compared, for example because too few of the lights are whole
-    /// lamps.
+    /// Score of law in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps weigh in
+    /// proportion to their pixels in the photo. NaN if the laws were not compared, for example because too few of the
+    /// lights are whole lamps.
     pub law_score: f64,
-    /// law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
-    /// better.
+    /// law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly better.
     pub margin: f64,
 }
 
@@ -201,7 +207,7 @@ versioned!(luxfer_emission_report, [56], {
     }
 });
 
-/// A lamp of the texture.
+/// A luminaire: one lamp of the texture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_luminaire {
@@ -215,14 +221,14 @@ pub struct luxfer_luminaire {
     pub size: [f64; 2],
     /// Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2].
     pub orientation: f64,
-    /// Area in texels; texels at the edge count with the share that the lamp covers.
+    /// Area in square texels; texels at the edge count with the share that the lamp covers.
     pub area: f64,
     /// Share of the luminous flux of all lamps of the texture, in [0, 1].
     pub flux_share: f64,
-    /// Mean linear colour, relative to the photo's white.
+    /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
-    /// Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are sorted by
-    /// the number of their lamps, the largest first. 0 if the border cuts the lamp.
+    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
+    /// lamps. 0 if the border of the texture cuts the lamp.
     pub kind: u32,
 }
 
@@ -240,15 +246,15 @@ versioned!(luxfer_luminaire, [80], {
     }
 });
 
-/// An exemplar as the caller has given it.
+/// An exemplar as the caller set it.
 #[derive(Clone)]
 pub(super) struct Exemplar {
-    /// The unwarped photo, its light, and where both are valid.
+    /// The unwarped photo, the unwarped confidence of its lights, and the mask of the pixels where both are valid.
     pub unwarped: [Arc<Pixels>; 3],
     pub photo: Option<(Arc<Pixels>, Homography)>,
 }
 
-/// A further exemplar.
+/// An exemplar that `luxfer_emission_add_style` has added.
 #[derive(Clone)]
 pub(super) struct Further {
     pub exemplar: Exemplar,
@@ -263,14 +269,14 @@ pub(super) struct Inputs {
     pub styles: Vec<Further>,
 }
 
-/// What the stage has made: a texture, or the plan of one and what it was made from.
+/// The result of the stage: a texture, or the plan of a texture.
 #[derive(Default)]
 pub(super) struct Made {
     pub texture: Option<Arc<Emission>>,
     pub plan: Option<Planned>,
 }
 
-/// A plan, its lamps, and what it was made from.
+/// The plan of a texture, its lamps, and the inputs that the plan was made from.
 pub(super) struct Planned {
     pub plan: emission::Composition,
     pub lamps: LampList,
@@ -312,7 +318,7 @@ impl Further {
 }
 
 impl Inputs {
-    /// Hands the exemplars, as synthesis takes them, to `work`.
+    /// Calls `work` with the first exemplar and the added exemplars, in the form that the synthesis takes.
     pub(super) fn with<T>(&self, work: impl FnOnce(&emission::Input, &[Style]) -> Result<T>) -> Result<T> {
         let unwarped = need(&self.unwarped, "luxfer_emission_set_exemplar")?.clone();
         let first = Exemplar { unwarped, photo: self.photo.clone() };
@@ -321,14 +327,15 @@ impl Inputs {
     }
 }
 
-/// The texture of a stage that has made one.
+/// Returns the texture of a stage; an error if the stage has made none or only a plan.
 fn texture(stage: &Stage<Inputs, Made>) -> Result<Arc<Emission>> {
     stage.output()?.texture.clone().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, "the stage has planned a texture; luxfer_emission_start makes one as a whole")
     })
 }
 
-/// The images of an exemplar: the unwarped photo, its light, and where both are valid.
+/// Borrows the images of an exemplar from their handles: the unwarped photo, the confidence of its lights, and the
+/// mask of the pixels where both are valid.
 pub(super) fn unwarped_of(
     context: &Arc<Context>,
     [unwarped, light, valid]: [*mut luxfer_image; 3],
@@ -340,7 +347,7 @@ pub(super) fn unwarped_of(
     ])
 }
 
-/// A photo and the map into it, or none.
+/// Borrows a photo from its handle and reads the homography into it; `None` if `photo` is NULL.
 pub(super) fn photo_of(
     context: &Arc<Context>,
     photo: *mut luxfer_image,
@@ -356,7 +363,7 @@ impl Handle for luxfer_emission {
     const NAME: &'static str = "luxfer_emission";
 }
 
-/// Creates the stage. The caller releases *emission. Any thread.
+/// Creates a synthesis of an emissive texture, without inputs. The caller releases *emission. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_create(
     context: *mut luxfer_context,
@@ -387,9 +394,9 @@ pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     })
 }
 
-/// Sets the photo from which full detail is recovered, and the homography from unwarped to photo pixels, 9 doubles row
-/// by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the unwarped image only. Any
-/// thread.
+/// Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
+/// pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the
+/// unwarped image only. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_photo(
     emission: *mut luxfer_emission,
@@ -405,10 +412,11 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the whole texture in memory; for very large textures use luxfer_emission_start_plan. params
-/// may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
+/// luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -425,7 +433,7 @@ pub unsafe extern "C" fn luxfer_emission_start(
     })
 }
 
-/// Gets an image of the result; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
+/// Gets an image of the texture; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(
@@ -447,7 +455,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the quality of the texture, or the contents of a plan. size is sizeof *report. Any thread.
+/// Gets the quality of the texture. For a plan, only the fields that need no texels are set. size is sizeof *report.
+/// Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -485,9 +494,9 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture. A plan has no texels yet, so it describes each luminaire as the exemplar shows
-/// it, cut at the edges of the texture; only lights that cross their whole exemplar are described as they are in the
-/// texture. size is sizeof *luminaire. Any thread.
+/// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
+/// described as the exemplar shows it, cut at the edges of the texture. Only lights that run through the whole
+/// exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -515,12 +524,13 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
     })
 }
 
-/// Gets a corner of a luminaire's outline, in texels. Any thread.
+/// Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
 ///
-/// The outline runs where the lamp would cover half of a texel. If the confidence of the lights has values between 0
-/// and 1, the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels
-/// are larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead for
-/// lamps up to two texels wide, for masks of only 0 and 1, and for lights of a plan that follow its patches.
+/// The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
+/// the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
+/// larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead in three
+/// cases: lamps up to two texels wide, masks of only 0 and 1, and lights of a plan that run through the whole
+/// exemplar.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(

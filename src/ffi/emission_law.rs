@@ -1,29 +1,30 @@
 //! Laws of an emission
 //!
-//! How an emissive texture continues the lights of its exemplar.
+//! A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
 
 use crate::emission::{Continuation, Law};
 use crate::error::{Error, Result};
 
 /// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best: the law of LUXFER_LAW_CORRELATION, unless another law is clearly
-/// better.
+/// The law that predicts the lamps of the photo best. The law that LUXFER_LAW_CORRELATION gives is kept unless another
+/// law is clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that follows from the autocorrelation of the lights and from min_regularity.
+/// The law that the autocorrelation of the lights suggests. min_regularity of luxfer_emission_params is the least
+/// correlation that counts.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
 /// The lamps form a row with one period; the extent of the exemplar serves as the other period.
 pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
-/// The exemplar repeats as a whole.
+/// The exemplar repeats as a whole, edge to edge.
 pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
 /// The lights have no period: patches of the exemplar may lie anywhere.
 pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
-/// In results only: the texture is a part of the exemplar, or the caller gave it.
+/// In results only: the texture is a copied part of the exemplar, or the caller supplied the texture.
 pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
 
-/// The law that a LUXFER_LAW_ value of the settings stands for.
+/// Converts a LUXFER_LAW_ value of the settings to the [`Law`] of the synthesis.
 pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     Ok(match number {
         LUXFER_LAW_BEST => Law::Best,
@@ -39,7 +40,7 @@ pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     })
 }
 
-/// The LUXFER_LAW_ value that stands for a law in results.
+/// Returns the LUXFER_LAW_ value of a law that the synthesis has used.
 pub(super) fn number(continuation: Continuation) -> luxfer_emission_law {
     match continuation {
         Continuation::Copy => LUXFER_LAW_COPY,

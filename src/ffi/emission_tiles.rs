@@ -1,8 +1,8 @@
 //! Styles and tiles
 //!
-//! Textures from several exemplars, and textures that are too large to make as a whole: luxfer_emission_start_plan
-//! decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of the texture. A plan holds
-//! the exemplars, the place of each lamp and the outlines of the patches, but no texels.
+//! Textures from several exemplars, and textures that are too large to make as a whole. For such large textures,
+//! luxfer_emission_start_plan decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of
+//! the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
 
 use super::emission::{
     Exemplar, Further, Made, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
@@ -20,12 +20,13 @@ use crate::image::Image;
 
 /// Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
 /// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
-/// luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
-/// channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images
-/// of one size whose sum is at most 1; the first exemplar has the rest of the weight.
+/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3].
+/// weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are added,
+/// their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar has
+/// the rest.
 ///
-/// Each lamp comes from one exemplar, chosen with the probability of its weight there, so that the light per area
-/// blends linearly. Each lattice keeps its own period and phase. Any thread.
+/// Each lamp of the texture comes from one exemplar, chosen at random with the weights as probabilities, so that the
+/// light per area blends linearly. The lattice of each exemplar keeps its own period and phase. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_add_style(
     emission: *mut luxfer_emission,
@@ -60,10 +61,10 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
     })
 }
 
-/// Starts a job that plans the texture instead of making it as luxfer_emission_start does, and removes the results of
-/// that function. params, and the statuses of the call and the job, are as for luxfer_emission_start.
-/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan. The caller releases
-/// *job. Any thread.
+/// Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
+/// texture that luxfer_emission_start has made. params, and the statuses of the call and the job, are as for
+/// luxfer_emission_start. luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan.
+/// The caller releases *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_plan(
     emission: *mut luxfer_emission,
@@ -84,10 +85,10 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
     })
 }
 
-/// Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
-/// linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
-/// luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
-/// *tile. Any thread; several threads may render tiles at the same time.
+/// Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
+/// texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
+/// bit to the texture and mask of luxfer_emission_start, for any size and order of the tiles. The call takes up to a
+/// second per megapixel. The caller releases *tile. Any thread; several threads may render tiles at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
 /// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

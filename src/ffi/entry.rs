@@ -1,4 +1,4 @@
-//! Entry points on an object.
+//! Runs the entry points that take an object: checks the handle and keeps the message of an error.
 
 use super::guard::{catch, guard};
 use super::handle::{self, Handle, Owned};
@@ -6,7 +6,8 @@ use super::status::luxfer_status;
 use crate::error::Result;
 use std::sync::Arc;
 
-/// Runs an entry point on an object. The context of the object keeps the message of an error for the calling thread.
+/// Runs `work` on the object behind a handle. If it fails, the context of the object keeps the message for the calling
+/// thread.
 pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Object>) -> Result<()>) -> luxfer_status {
     guard(|| {
         let object = handle::borrow(handle, "the handle")?;

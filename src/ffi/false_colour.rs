@@ -1,6 +1,7 @@
 //! False colour
 //!
-//! Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
+//! Shows a luminance or illuminance image in false colours, which become brighter as the value rises, with a scale
+//! bar.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -11,11 +12,11 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::photometry::false_colour::{self, Params, Scale, Unit};
 
-/// The scale from values to colours: a LUXFER_SCALE_ value.
+/// The scale that maps values to colours: a LUXFER_SCALE_ value.
 pub type luxfer_scale = i32;
-/// Linear: equal differences of the value have equal width.
+/// Linear: equal differences of the value take equal lengths of the scale bar.
 pub const LUXFER_SCALE_LINEAR: luxfer_scale = 0;
-/// Logarithmic: decades have equal width.
+/// Logarithmic: each factor of ten takes an equal length of the scale bar.
 pub const LUXFER_SCALE_LOGARITHMIC: luxfer_scale = 1;
 
 /// The quantity of an image's values: a LUXFER_UNIT_ value.
@@ -33,14 +34,15 @@ pub struct luxfer_false_colour_params {
     pub struct_size: u32,
     /// LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR.
     pub scale: luxfer_scale,
-    /// LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE.
+    /// Quantity of the values, whose unit is written above the bar: a LUXFER_UNIT_ value; default
+    /// LUXFER_UNIT_LUMINANCE.
     pub unit: luxfer_unit,
     /// 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar.
     pub bar: u32,
-    /// Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
-    /// colour; default 0.
+    /// Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of the
+    /// value that gets the lightest colour.
     pub minimum: f64,
-    /// Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the image.
+    /// Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the image.
     pub maximum: f64,
 }
 
@@ -75,11 +77,11 @@ impl luxfer_false_colour_params {
     }
 }
 
-/// Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a
-/// value is NaN. params may be NULL for the defaults. Takes a few milliseconds per megapixel. The caller releases
-/// *shown. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is black;
-/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: an image in linear RGB,
+/// grey where a value is NaN. params may be NULL for the defaults. The call takes a few milliseconds per megapixel.
+/// The caller releases *shown. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is
+/// black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_false_colour(
     image: *mut luxfer_image,

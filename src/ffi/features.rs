@@ -2,8 +2,9 @@
 //!
 //! Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
 //! position x, y, z and normal x, y, z. The depth comes from one of four sources: a depth map that the caller
-//! supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found by
-//! a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the photo.
+//! supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found
+//! by a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the
+//! photo.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -48,15 +49,16 @@ pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 /// An image of the features: a LUXFER_FEATURES_ value.
 pub type luxfer_features_image = i32;
-/// The ten channels; luxfer_image_read reads up to four of them at a time.
+/// The ten channels of the features; luxfer_image_read reads up to four of them at a time.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
-/// The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the depth map of
-/// later jobs, or of a luxfer_transfer, to avoid running the network again.
+/// The depth along z that a network has estimated, in the unit of near_plane and from near_plane to far_plane; 1
+/// channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// How the photo's colours are normalised for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
+/// How the photo's colours are normalised for a network, which an ONNX file does not state: a LUXFER_NORMALISATION_
+/// value.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.
@@ -68,13 +70,13 @@ pub const LUXFER_NORMALISATION_HALF: luxfer_normalisation = 2;
 /// No normalisation: sRGB in [0, 1].
 pub const LUXFER_NORMALISATION_NONE: luxfer_normalisation = 3;
 
-/// Source of the depth: a LUXFER_DEPTH_FROM_ value.
+/// The source of the depth: a LUXFER_DEPTH_FROM_ value.
 pub type luxfer_depth_source = i32;
 /// The caller's depth map.
 pub const LUXFER_DEPTH_FROM_CALLER: luxfer_depth_source = 0;
 /// A box-shaped room fitted to the lines of the photo and to strokes.
 pub const LUXFER_DEPTH_FROM_LAYOUT: luxfer_depth_source = 1;
-/// A neutral guess that does not depend on the photo.
+/// No source: a fixed depth that does not depend on the photo.
 pub const LUXFER_DEPTH_FROM_NOTHING: luxfer_depth_source = 2;
 /// The caller's network.
 pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
@@ -85,9 +87,11 @@ pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
 pub struct luxfer_features_params {
     /// sizeof(luxfer_features_params), set by luxfer_features_params_init.
     pub struct_size: u32,
-    /// Near plane of the paper's Eq. 1, in its own units, in [1e-3, 1e3]; default 1.
+    /// Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
+    /// unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane.
     pub near_plane: f32,
-    /// Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10.
+    /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
+    /// near_plane; default 10.
     pub far_plane: f32,
     /// Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
     /// size.
@@ -111,7 +115,7 @@ impl luxfer_features_params {
 pub struct luxfer_features_report {
     /// sizeof(luxfer_features_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// LUXFER_DEPTH_FROM_ value.
+    /// Source of the depth: a LUXFER_DEPTH_FROM_ value.
     pub depth_source: luxfer_depth_source,
     /// Mean confidence of the depth, in [0, 1].
     pub depth_confidence: f64,
@@ -133,7 +137,7 @@ pub(super) struct Inputs {
     strokes: Painted<Vec<Stroke>>,
 }
 
-/// The result, and the depth that a network has estimated.
+/// The features of a photo, and the depth map if a network has estimated one.
 pub(super) struct Outcome {
     pub(super) features: Arc<Features>,
     network_depth: Option<Image>,
@@ -153,7 +157,7 @@ pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
     }
 }
 
-/// Creates the stage. The caller releases *features. Any thread.
+/// Creates an object that computes features, without inputs. The caller releases *features. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_create(
     context: *mut luxfer_context,
@@ -181,8 +185,9 @@ pub unsafe extern "C" fn luxfer_features_set_photo(
     })
 }
 
-/// Sets a depth map of the photo's size, 1 channel, in any unit; values that are not positive and finite are holes.
-/// kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
+/// Sets a depth map of the photo's size, 1 channel, in any unit. Pixels whose value is not positive and finite are
+/// holes, which are filled from their surroundings. kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map.
+/// Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_depth(
     features: *mut luxfer_features,
@@ -200,9 +205,9 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
 }
 
 /// Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
-/// input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of
-/// relative inverse depth, as of MiDaS and DPT. The map is normalised by its extremes: the nearest pixel lies on
-/// near_plane, the farthest on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+/// input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096. Its first output is a map of
+/// relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on near_plane
+/// and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
 /// The call reads the file, which is not needed afterwards. Any thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
 /// that the library does not support, or if the library was built without the Cargo feature onnx.
@@ -244,7 +249,7 @@ fn network(path: &str, _: luxfer_normalisation) -> Result<DepthNetwork> {
     ))
 }
 
-/// The features, with depth from the network if there is one and no depth map.
+/// Computes the features. A network, if there is one, estimates the depth unless the caller has set a depth map.
 #[cfg(feature = "onnx")]
 fn compute(
     input: &features::Input,
@@ -269,8 +274,8 @@ fn compute(
     Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None })
 }
 
-/// Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
-/// lines. Any thread.
+/// Sets the lines and the camera that a luxfer_rectify has found in this photo; the call copies its latest result.
+/// rectify may be NULL: no lines. Any thread.
 /// LUXFER_NOT_READY if rectify has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_view(
@@ -290,12 +295,11 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); they have no effect if the depth
-/// comes from another source. The fit prefers boxes that have a face, such as the ceiling with the lights, with these
-/// two properties: it contains all positive strokes, those for LUXFER_PHASE_PLANE as well as those on lights; and it
-/// contains no negative stroke for LUXFER_PHASE_PLANE. The stage copies the strokes, which replace earlier strokes;
-/// NULL removes them. Any thread.
-/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
+/// Sets strokes that guide the fit of a box-shaped room to the lines of luxfer_features_set_view; they have no effect
+/// if the depth comes from another source. The fit prefers a box with a face, such as the ceiling, that contains all
+/// positive strokes, on the plane and on lights, and no negative stroke for LUXFER_PHASE_PLANE. The call copies the
+/// strokes, which replace earlier strokes; NULL removes them. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(
     features: *mut luxfer_features,
@@ -312,8 +316,9 @@ pub unsafe extern "C" fn luxfer_features_set_strokes(
 }
 
 /// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
-/// if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
+/// LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all
+/// holes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_start(
     features: *mut luxfer_features,
@@ -344,7 +349,8 @@ pub unsafe extern "C" fn luxfer_features_start(
 }
 
 /// Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a network.
+/// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a
+/// network.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_image(
     features: *mut luxfer_features,

@@ -1,7 +1,7 @@
-//! The host's floating-point mode: rounding, flush-to-zero, traps. Some hosts change it (audio and game engines flush
-//! denormals to zero), which would change our results. So every call sets the mode for which Rust defines its
-//! arithmetic, and restores the mode of the host on return. A thread inherits the mode of the thread that starts it, so
-//! the worker threads have the standard mode too.
+//! Keeps the host's floating-point mode (rounding, flush-to-zero, traps) away from the library. Some hosts change it:
+//! audio and game engines flush denormals to zero, which would change the library's results. So every call sets the
+//! mode for which Rust defines its arithmetic, and restores the mode of the host on return. A thread inherits the mode
+//! of the thread that starts it, so the worker threads have the standard mode too.
 
 /// Stores the mode of the host during a call, and restores it when dropped.
 pub(super) struct FloatMode {
@@ -42,14 +42,14 @@ mod register {
     #[inline]
     pub fn read() -> Mode {
         let mut mode = 0u32;
-        // SAFETY: stores the control register into a word of ours.
+        // SAFETY: stores the control register into the local variable `mode`.
         unsafe { asm!("stmxcsr [{}]", in(reg) &mut mode, options(nostack, preserves_flags)) };
         mode
     }
 
     #[inline]
     pub fn write(mode: Mode) {
-        // SAFETY: the mode is the one that Rust assumes, or the one that was found and is handed back.
+        // SAFETY: `mode` is the default that Rust assumes, or the mode of the host that `read` returned.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &mode, options(nostack, preserves_flags)) };
     }
 }
@@ -72,12 +72,12 @@ mod register {
 
     #[inline]
     pub fn write(mode: Mode) {
-        // SAFETY: the mode is the one that Rust assumes, or the one that was found and is handed back.
+        // SAFETY: `mode` is the default that Rust assumes, or the mode of the host that `read` returned.
         unsafe { asm!("msr fpcr, {}", in(reg) mode, options(nomem, nostack, preserves_flags)) };
     }
 }
 
-/// On other processors the mode is not changed. Miri does not support the registers.
+/// On other processors, and under Miri, which does not support the registers, the mode stays as it is.
 #[cfg(any(miri, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 mod register {
     pub type Mode = u32;

@@ -1,8 +1,8 @@
 //! Plane geometry
 //!
-//! Homographies: maps between two views of a plane, as 3 x 3 matrices of homogeneous points in row-major order. Points
-//! are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These calls return when their
-//! work is done.
+//! Homographies map points between two views of a plane. They are 3 x 3 matrices of homogeneous coordinates, stored
+//! row by row. Points are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These
+//! calls are synchronous: they do their work before they return.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -16,8 +16,8 @@ use crate::image::MAX_SIDE;
 use crate::rectify;
 use glam::{DMat3, DVec2};
 
-/// Computes the homography that maps four points to four points: from and to hold x and y of each point, homography
-/// receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+/// Computes the homography that maps four points to four other points. from and to hold x and y of each point, 8
+/// doubles; homography receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
 /// LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_homography_from_corners(
@@ -36,10 +36,10 @@ pub unsafe extern "C" fn luxfer_homography_from_corners(
     })
 }
 
-/// Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]: the pixel at p takes
-/// the value of the source at to_source(p), where to_source holds the nine entries of the matrix. Pixels outside the
-/// source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it
-/// is minified. Takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+/// Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. The pixel at p takes
+/// the value of the source at to_source(p); to_source holds the nine entries of the matrix. Pixels that lie outside
+/// the source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint
+/// where it is minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
 /// LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
@@ -76,13 +76,13 @@ fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
     }
 }
 
-/// Reads `N` numbers of the caller, at any alignment.
+/// Reads `N` doubles from the caller's memory, at any alignment.
 pub(super) fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
     let list = list(place, N, name)?;
     Ok(std::array::from_fn(|i| list[i]))
 }
 
-/// Reads `count` numbers of the caller, at any alignment.
+/// Reads `count` doubles from the caller's memory, at any alignment.
 pub(super) fn list(place: *const f64, count: usize, name: &str) -> Result<Vec<f64>> {
     let bytes = bytes(place.cast(), count.saturating_mul(size_of::<f64>()), name)?;
     let number = |raw: &[u8]| {

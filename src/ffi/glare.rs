@@ -1,6 +1,6 @@
 //! Glare of observers
 //!
-//! Computes the unified glare rating (CIE 117) of observers in a scene. The glare sources are its luminaires. The
+//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
 //! luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
 //! the eye.
 
@@ -15,7 +15,7 @@ use crate::image::try_vec;
 use crate::render::glare::{self, Eye, Rating};
 use glam::Vec3;
 
-/// An eye that looks in a direction. An element of arrays, so this struct never changes.
+/// An observer: an eye that looks in a direction. An element of arrays, so this struct never changes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer {
@@ -25,33 +25,34 @@ pub struct luxfer_observer {
     pub direction: [f32; 3],
 }
 
-/// The glare of an observer. An element of arrays, so this struct never changes.
+/// The glare that an observer experiences. An element of arrays, so this struct never changes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer_glare {
-    /// Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a luminaire in
-    /// view, infinity if the background is black.
+    /// Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire is in
+    /// view; infinity if a luminaire is in view and the background is black.
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
     pub background: f64,
-    /// Standard error of background.
+    /// Standard error of background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no dimensions,
-    /// or that are seen edge-on, points, spots, directional lights, emissive surfaces and the environment.
+    /// Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-on or
+    /// whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the environment.
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
     pub solid_angle: f64,
     /// Number of rated luminaires in view.
     pub sources: u32,
-    /// Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
+    /// Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
     pub outside_range: u32,
 }
 
-/// Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
-/// [16, 16777216]; 4096 suit most rooms. Returns when the work is done; the time is proportional to count * samples.
-/// The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
+/// Rates the glare of count observers in a scene; ratings receives count elements. samples is the number of paths per
+/// observer for the background, in [16, 16777216], rounded up to a multiple of 16; 4096 suit most rooms. seed is the
+/// seed of the paths. The call is synchronous; its time is proportional to count * samples. The first call after a
+/// scene is loaded or changed also prepares the scene for tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
-/// straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
+/// straight up or down, or is inside a luminaire: the message names the observer. In these cases no rating is written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_glare(
     scene: *mut luxfer_scene,
@@ -87,7 +88,7 @@ fn eye(raw: &[u8]) -> Eye {
     Eye { position: Vec3::new(px, py, pz), direction: Vec3::new(dx, dy, dz) }
 }
 
-/// The fields of a rating, as words in the order of `luxfer_observer_glare`.
+/// Returns the fields of a rating as words, in the order of `luxfer_observer_glare`.
 fn words(rating: &Rating) -> [u32; 12] {
     let solid_angle = rating.sources.iter().map(|s| s.solid_angle).sum();
     let numbers = [rating.ugr, rating.background, rating.background_error, rating.unrated_lux, solid_angle];

@@ -10,7 +10,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard};
 
-/// Runs an entry point without an object.
+/// Runs an entry point that takes no object, and returns the status of its result.
 pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
     let (_mode, _quiet) = (FloatMode::enter(), Quiet::enter());
     match catch(work) {
@@ -49,7 +49,7 @@ mod tests {
     use crate::ffi::status::{LUXFER_FORMAT, LUXFER_INTERNAL};
     use crate::job::Monitor;
 
-    /// A panic on the calling thread, on a worker and on a job's thread, each caught by the guard.
+    /// Panics on the calling thread, on a worker and on a job's thread, which the guard catches.
     #[test]
     #[ignore = "a program of its own: a_defect_is_silent runs it and looks at its stderr"]
     fn has_defects() {
@@ -64,7 +64,7 @@ mod tests {
             Ok(())
         });
         assert_eq!(of_thread, LUXFER_OK);
-        // The host's own panics are as loud as before, also in a function that the library calls.
+        // Panics of the host's own code still print their message, also in a callback that the library calls.
         assert_eq!(guard(|| crate::quiet::outside(|| panic!("of the host, within"))), LUXFER_INTERNAL);
         assert!(catch_unwind(|| panic!("of the host, after")).is_err());
     }

@@ -1,8 +1,8 @@
 //! Guides
 //!
-//! Renders the guide images of a stylisation, which show different kinds of light in a scene: once for the exemplar
-//! scene and once for the target scene. Guides from another renderer do not need this object: see
-//! luxfer_stylize_add_guide.
+//! Renders the guide images of a stylisation: images of one scene that show different kinds of light in it. A
+//! stylisation needs the guides of the exemplar scene and of the target scene. Guides from another renderer do not
+//! need this object: see luxfer_stylize_add_guide.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -24,7 +24,7 @@ pub struct luxfer_guides {
     _opaque: [u8; 0],
 }
 
-/// An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m².
+/// A guide image: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m².
 pub type luxfer_guides_image = i32;
 /// All light, reflected any number of times.
 pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
@@ -45,7 +45,7 @@ pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
 /// Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE).
 pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
-/// Settings of guides. Fill them with luxfer_guides_params_init.
+/// Settings of the guides. Fill them with luxfer_guides_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_guides_params {
@@ -57,7 +57,7 @@ pub struct luxfer_guides_params {
     pub height: u32,
     /// Paths per pixel, in [1, 1048576]; default 64.
     pub samples: u32,
-    /// Index of the scene's camera; default 0.
+    /// Index of the camera in the scene; default 0.
     pub camera: u32,
     /// 1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep the
     /// noise.
@@ -90,7 +90,7 @@ impl Handle for luxfer_guides {
     const NAME: &'static str = "luxfer_guides";
 }
 
-/// Creates the stage. The caller releases *guides. Any thread.
+/// Creates an object that renders guides, without inputs. The caller releases *guides. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_create(
     context: *mut luxfer_context,
@@ -118,8 +118,8 @@ pub unsafe extern "C" fn luxfer_guides_set_scene(
 }
 
 /// Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_start(
     guides: *mut luxfer_guides,
@@ -176,10 +176,10 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
     })
 }
 
-/// Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
-/// pixel of this frame, the offset to the position of the same point in the frame before, x and y in pixels; NaN where
-/// the frame before does not show the point. The caller releases *motion. Any thread.
-/// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
+/// Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
+/// For each pixel of this frame, motion holds the offset to the position of its surface point in the frame before, x
+/// and y in pixels; NaN where the frame before does not show the point. The caller releases *motion. Any thread.
+/// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(
     guides: *mut luxfer_guides,

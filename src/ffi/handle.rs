@@ -1,8 +1,8 @@
-//! Handles: pointers to a tagged shell that holds one reference to the object.
+//! Handles: a handle points to a `Shell`, which holds a tag for the kind of the object and a reference to the object.
 //!
-//! The shell counts the references of the host; the object inside counts those of the library (a job keeps its stage,
-//! an image its context). So a host that releases once too often only damages its own count: its handle becomes
-//! invalid, and the object may live on.
+//! The shell counts the references of the host. The object inside counts the references of the library: a job keeps
+//! its stage, an image its context. So a host that releases an object once too often damages only its own count: its
+//! handle becomes invalid, and the object may live on.
 
 use super::context::Context;
 use crate::error::{Error, Result};
@@ -10,25 +10,25 @@ use std::ffi::c_void;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Anything behind a handle.
+/// An object behind a handle. It belongs to a context.
 pub(super) trait Owned {
-    /// The context the object belongs to.
+    /// Returns the context that the object belongs to.
     fn context(&self) -> &Arc<Context>;
 }
 
-/// An opaque C type and the object behind it.
+/// The opaque C type of a handle, and the type of the object behind it.
 pub(super) trait Handle {
     type Object: Owned;
-    /// First word of the shell, different for every kind.
+    /// First word of the shell, different for every kind of handle.
     const TAG: u64;
     /// Name of the C type.
     const NAME: &'static str;
 }
 
-/// Written over the tag when the last reference of the host is gone.
+/// Value that overwrites the tag when the last reference of the host is gone.
 const RELEASED: u64 = tag(b"released");
 
-/// A tag that shows as text in a memory dump.
+/// Makes a tag of eight letters, which a memory dump shows as text.
 pub(super) const fn tag(name: &[u8; 8]) -> u64 {
     u64::from_ne_bytes(*name)
 }
@@ -41,26 +41,27 @@ struct Shell<T> {
 
 impl<T> Drop for Shell<T> {
     fn drop(&mut self) {
-        // Atomic, so that it is not removed as a store to memory about to be freed.
+        // The store is atomic, so that the compiler does not remove it as a store to memory about to be freed.
         self.tag.store(RELEASED, Ordering::Release);
     }
 }
 
-/// A new handle with one reference, for the host.
+/// Creates a handle with one reference, which the host owns.
 pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
     let shell = Shell { tag: AtomicU64::new(H::TAG), object };
     Arc::into_raw(Arc::new(shell)).cast_mut().cast()
 }
 
-/// The first word behind a pointer that claims to be a handle, which tells its kind.
+/// Reads the first word behind a pointer that should be a handle: its tag. `None` if the pointer is null or
+/// misaligned.
 pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     let tag: *const AtomicU64 = handle.cast();
-    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
+    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is not a handle is the host's mistake;
     // reading one aligned word is the least harmful way to detect it.
     (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
 }
 
-/// The shell behind a pointer, after a check of its tag.
+/// Returns the shell behind a handle; an error if its tag is not `H::TAG`.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));
@@ -72,8 +73,8 @@ fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Obje
     }
 }
 
-/// The object behind a handle, kept alive for the length of the call. Returns an error in a forked child of the process
-/// that created it.
+/// Returns the object behind a handle and keeps it alive for the length of the call. Returns an error in a forked
+/// child of the process that created the object.
 pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let shell = shell(handle, name)?;
     // SAFETY: the tag is right, so the shell is alive and holds an object.
@@ -88,7 +89,8 @@ pub(super) fn is_inherited<H: Handle>(handle: *const H) -> bool {
     shell(handle, "the handle").is_ok_and(|shell| unsafe { (*shell).object.context().check_process().is_err() })
 }
 
-/// The object behind a handle given as an argument to another object of the same context.
+/// Returns the object behind a handle that is an argument of a call on another object; an error unless both belong to
+/// one context.
 pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let object = borrow(handle, name)?;
     if Arc::ptr_eq(object.context(), context) {

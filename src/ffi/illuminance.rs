@@ -1,7 +1,7 @@
 //! Illuminance
 //!
-//! Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates, with the standard
-//! error of every point, and with mean and extremes for reports.
+//! Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates. Each point has its
+//! standard error, and a report has the mean, the minimum and the maximum.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -24,22 +24,22 @@ pub struct luxfer_illuminance {
     _opaque: [u8; 0],
 }
 
-/// An image of the calculation: a LUXFER_ILLUMINANCE_ value.
+/// An image of an illuminance calculation: a LUXFER_ILLUMINANCE_ value.
 pub type luxfer_illuminance_image = i32;
 /// Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover.
 pub const LUXFER_ILLUMINANCE_LUX: luxfer_illuminance_image = 0;
 /// Standard error of each value, in lux; 1 channel.
 pub const LUXFER_ILLUMINANCE_ERROR: luxfer_illuminance_image = 1;
 
-/// Settings of the calculation. Fill them with luxfer_illuminance_params_init.
+/// Settings of an illuminance calculation. Fill them with luxfer_illuminance_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_illuminance_params {
     /// sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init.
     pub struct_size: u32,
-    /// Points along the first edge or texture coordinate, in [1, 65536]; default 32.
+    /// Number of points along the first edge of a grid, or along u of a mesh, in [1, 65536]; default 32.
     pub columns: u32,
-    /// Points along the second edge or texture coordinate, in [1, 65536]; default 32.
+    /// Number of points along the second edge of a grid, or along v of a mesh, in [1, 65536]; default 32.
     pub rows: u32,
     /// Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024.
     pub samples: u32,
@@ -52,8 +52,8 @@ versioned!(luxfer_illuminance_params, [24], {
     Self { struct_size: 24, columns: d.columns as u32, rows: d.rows as u32, samples: d.samples, seed: d.seed }
 });
 
-/// A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
-/// faces up.
+/// A calculation grid: a parallelogram of columns x rows cells, with a point at the centre of each cell. Fill it with
+/// luxfer_illuminance_grid_init. The default is a square metre at the origin that faces up.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_illuminance_grid {
@@ -61,10 +61,9 @@ pub struct luxfer_illuminance_grid {
     pub struct_size: u32,
     /// Corner of the grid, in metres; default (0, 0, 0).
     pub origin: [f32; 3],
-    /// Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the centres
-    /// of the cells.
+    /// Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0).
     pub across: [f32; 3],
-    /// Edge of the grid along which the rows are counted, in metres; default (0, 0, 1).
+    /// Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1).
     pub down: [f32; 3],
     /// Normal of the side that receives the light; any length but 0; default (0, 1, 0).
     pub normal: [f32; 3],
@@ -84,7 +83,7 @@ versioned!(luxfer_illuminance_grid, [56], {
 });
 
 impl luxfer_illuminance_grid {
-    /// Origin, across, down and normal.
+    /// Returns origin, across, down and normal as vectors; an error if reserved is not 0.
     pub(super) fn vectors(&self) -> Result<[Vec3; 4]> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("grid.reserved is {}; it must be 0", self.reserved)));
@@ -101,7 +100,7 @@ pub struct luxfer_illuminance_report {
     pub struct_size: u32,
     /// Number of points; on a mesh, the texels that the surface covers.
     pub points: u32,
-    /// Smallest illuminance; minimum / mean is the uniformity U0.
+    /// Smallest illuminance. The uniformity U0 is minimum / mean.
     pub minimum: f64,
     /// Mean illuminance.
     pub mean: f64,
@@ -126,7 +125,7 @@ pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
 }
 
-/// Creates the stage. The caller releases *illuminance. Any thread.
+/// Creates an object that computes illuminance, without inputs. The caller releases *illuminance. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_create(
     context: *mut luxfer_context,
@@ -156,8 +155,8 @@ pub unsafe extern "C" fn luxfer_illuminance_set_scene(
 
 /// Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
 /// releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
-/// if the scene is not valid, the grid has no normal, or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the grid has no normal, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     illuminance: *mut luxfer_illuminance,
@@ -174,9 +173,9 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
 /// Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
 /// along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
 /// for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
-/// if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if a setting is out of
-/// range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
+/// if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_start_mesh(
     illuminance: *mut luxfer_illuminance,
@@ -210,7 +209,8 @@ fn start(
     })
 }
 
-/// Gets an image of the calculation; which is a LUXFER_ILLUMINANCE_ value. The caller releases *image. Any thread.
+/// Gets the image of the illuminances or of their errors; which is a LUXFER_ILLUMINANCE_ value. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_image(

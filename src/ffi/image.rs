@@ -1,8 +1,8 @@
 //! Image
 //!
-//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
-//! bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
-//! the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
+//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top
+//! to bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels
+//! in the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::enter;
@@ -18,7 +18,7 @@ use std::ffi::{c_char, c_void};
 use std::path::Path;
 use std::sync::Arc;
 
-/// An image. See luxfer_image_create.
+/// An image in the library's memory. See luxfer_image_create.
 pub struct luxfer_image {
     _opaque: [u8; 0],
 }
@@ -44,7 +44,8 @@ pub const LUXFER_COLOUR_SRGB: luxfer_colour_space = 1;
 /// Flag of a view: the first row in memory is the bottom one.
 pub const LUXFER_VIEW_BOTTOM_UP: u32 = 1;
 
-/// An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data.
+/// An image in the caller's memory. Fill it with luxfer_image_view_init, then set width, height, sample, byte_size and
+/// data.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_image_view {
@@ -56,21 +57,23 @@ pub struct luxfer_image_view {
     pub sample: luxfer_sample,
     /// LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR.
     pub colour_space: luxfer_colour_space,
-    /// Pixels in a row, in [1, 65536]; default 0, to be set.
+    /// Width in pixels, in [1, 65536]; default 0: the caller must set it.
     pub width: u32,
-    /// Rows, in [1, 65536]; default 0, to be set.
+    /// Height in pixels, in [1, 65536]; default 0: the caller must set it.
     pub height: u32,
     /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error.
     pub flags: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed.
+    /// Bytes from one pixel to the next, at least the size of a pixel; 0, the default: pixels are packed.
     pub pixel_stride: usize,
-    /// Bytes from one row to the next; at least the size of a row, or 0, the default: packed.
+    /// Bytes from one row to the next, at least the size of a row; 0, the default: rows are packed.
     pub row_stride: usize,
-    /// Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set.
+    /// Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the layout
+    /// needs more.
     pub byte_size: usize,
-    /// The pixels; any alignment. Bytes between pixels and rows are never touched. To be set.
+    /// The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
+    /// touched.
     pub data: *mut c_void,
 }
 
@@ -135,17 +138,18 @@ pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,
     metadata: PhotoMetadata,
-    /// Number of lights of a rendered scene that shine from points and are not in the image.
+    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
+    /// invisible in the image. 0 if the image is not a rendering.
     unseen_lights: usize,
 }
 
-/// Who owns the pixels.
+/// Owner of the pixels: this object, or the result of a stage.
 enum Source {
     Own(Arc<Image>, #[expect(dead_code, reason = "held until the image goes")] Charge),
     Result(Arc<dyn Holder>),
 }
 
-/// A result of a stage, of which an image is a part.
+/// The result of a stage that contains an image.
 trait Holder: Send + Sync {
     fn image(&self) -> &Image;
 }
@@ -174,7 +178,7 @@ impl Pixels {
         (self.image().width, self.image().height)
     }
 
-    /// The image, independent of the result of a stage; an image that is part of such a result is copied.
+    /// Returns the image alone. An image inside a stage's result is copied, because the result cannot be split.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),
@@ -187,12 +191,12 @@ impl Pixels {
         }
     }
 
-    /// Metadata of the file of a loaded photo.
+    /// Metadata of the file that the image was loaded from.
     pub(super) fn metadata(&self) -> &PhotoMetadata {
         &self.metadata
     }
 
-    /// An image that the caller owns, counted in the budget.
+    /// Creates the object of an image that the caller owns; `charge` counts it in the memory budget.
     fn own(context: &Arc<Context>, image: Image, charge: Charge, metadata: PhotoMetadata) -> Arc<Self> {
         Arc::new(Self {
             context: context.clone(),
@@ -202,7 +206,7 @@ impl Pixels {
         })
     }
 
-    /// An image that the library makes at the caller's request, counted in the budget before it is made.
+    /// Creates an image at the caller's request. The image is charged to the memory budget before `make` makes it.
     pub(super) fn counted(
         context: &Arc<Context>,
         width: usize,
@@ -214,7 +218,7 @@ impl Pixels {
         Ok(Self::own(context, make()?, charge, PhotoMetadata::default()))
     }
 
-    /// An image inside a result, shared with it.
+    /// Creates the object of an image that is part of a stage's result; the object and the result share the pixels.
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,
@@ -223,7 +227,8 @@ impl Pixels {
         Self::rendered(context, output, pick, 0)
     }
 
-    /// An image inside a rendering, in which a number of lights cannot be seen.
+    /// Creates the object of an image that is part of a rendering. `unseen_lights` is the number of lights of the
+    /// scene that are invisible in renderings.
     pub(super) fn rendered<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,
@@ -235,12 +240,13 @@ impl Pixels {
         Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default(), unseen_lights })
     }
 
-    /// Number of lights of a rendered scene that shine from points and are not in the image.
+    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
+    /// invisible in the image.
     pub(super) fn unseen_lights(&self) -> usize {
         self.unseen_lights
     }
 
-    /// An input that may be left out.
+    /// Returns the image behind a handle that the caller may leave out; `None` for NULL.
     pub(super) fn optional(context: &Arc<Context>, image: *mut luxfer_image, name: &str) -> Result<Option<Arc<Self>>> {
         if image.is_null() { Ok(None) } else { handle::borrow_in(context, image, name).map(Some) }
     }
@@ -258,13 +264,13 @@ impl Handle for luxfer_image {
     const NAME: &'static str = "luxfer_image";
 }
 
-/// Bytes that an image takes in memory.
+/// Memory of an image's samples, in bytes.
 fn cost(width: usize, height: usize, channels: usize) -> u64 {
     (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
 }
 
-/// Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
-/// caller releases *image. Any thread.
+/// Creates an image from a copy of the caller's pixels. Integers and sRGB are decoded; NaN and infinities are kept.
+/// The caller releases *image. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_create(
@@ -284,19 +290,19 @@ pub unsafe extern "C" fn luxfer_image_create(
     })
 }
 
-/// Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, and rotates it upright by
-/// its EXIF orientation. path is UTF-8. With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709
-/// from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of
-/// OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). Without such a statement, integer samples are sRGB and
-/// floating-point samples linear. See luxfer_photo_metadata.colour. With LUXFER_COLOUR_LINEAR, for data such as masks
-/// and depth, samples are not converted. An OpenEXR picture has the size of its display window. Grey with alpha
-/// becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
-/// thread.
+/// Loads an image file and rotates it upright by its EXIF orientation; path is UTF-8. The formats are JPEG, PNG, WebP,
+/// TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR. With LUXFER_COLOUR_SRGB, for pictures, colours are
+/// converted to linear Rec.709 from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of
+/// PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). If the file states none,
+/// integer samples are taken as sRGB and floating-point samples as linear; luxfer_photo_metadata.colour tells which
+/// case applied. With LUXFER_COLOUR_LINEAR, for data such as masks and depth, samples are not converted. An OpenEXR
+/// picture has the size of its display window. Grey with alpha becomes RGBA, palettes and CMYK become RGB; colours are
+/// not multiplied by alpha. The caller releases *image. Any thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
-/// the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL, raw
-/// data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G,
-/// B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY
-/// beyond the memory budget.
+/// the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
+/// raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
+/// R, G, B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side,
+/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load(
     context: *mut luxfer_context,
@@ -315,7 +321,8 @@ pub unsafe extern "C" fn luxfer_image_load(
     })
 }
 
-/// Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load.
+/// Loads an image from a file in memory of size bytes at data. Formats, colours, ownership, threads and errors are as
+/// for luxfer_image_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load_memory(
     context: *mut luxfer_context,
@@ -339,7 +346,7 @@ fn encoding(value: luxfer_colour_space) -> Result<io::Encoding> {
     })
 }
 
-/// Decodes a file after checking that the picture and the working memory of the decoder fit the budget.
+/// Decodes a file, after a check that the picture and the decoder's working memory fit into the memory budget.
 fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Result<Arc<Pixels>> {
     let monitor = context.monitor();
     let _working = context.charge(io::working_bytes(bytes)?)?;
@@ -351,13 +358,14 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
     Ok(Pixels::own(context, photo.image, charge, photo.metadata))
 }
 
-/// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
-/// exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
-/// states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
-/// is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner. Symbolic
-/// links are followed; devices, FIFOs and files with several names are written in place. All functions of this library
-/// save files in this way. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
+/// Saves an image to a file; path is UTF-8, and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied
+/// by exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the
+/// file states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709;
+/// exposure is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner.
+/// Symbolic links are followed; devices, FIFOs and files with several names are written in place. All functions of
+/// this library save files in this way. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
+/// file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(
     image: *mut luxfer_image,
@@ -391,7 +399,8 @@ fn encode_exr(image: &Image) -> Result<Vec<u8>> {
     io::encode_exr(&[io::Layer { name: "", image, channels: &names }], &[])
 }
 
-/// Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
+/// Gets the width and height of an image in pixels and its number of channels; any of the three pointers may be NULL.
+/// Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_size(
     image: *mut luxfer_image,
@@ -409,8 +418,8 @@ pub unsafe extern "C" fn luxfer_image_get_size(
 }
 
 /// Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
-/// of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
-/// Any thread.
+/// of the image, starting at first_channel. Integer samples are clamped to their range and rounded; NaN becomes 0 in
+/// them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_read(

@@ -1,8 +1,8 @@
 //! Importance
 //!
-//! A map of the light that each point of an emitting surface would send to a target. It is traced once; then it gives
-//! the light of any emissive texture on that surface, at any scale, rotation and offset, within milliseconds and with a
-//! confidence interval.
+//! An importance map: for each point of an emitting surface, the light that it would send to a target. The map is
+//! traced once. From the map, the light that the target receives from any emissive texture on that surface, at any
+//! scale, rotation and offset, is computed within milliseconds and with a confidence interval.
 
 use super::context::luxfer_context;
 use super::geometry::numbers;
@@ -22,27 +22,27 @@ use crate::scene::Texture;
 use glam::{DMat3, Mat3, Vec3};
 use std::sync::Arc;
 
-/// A map of importance. See luxfer_importance_create.
+/// An importance map of an emitting surface. See luxfer_importance_create.
 pub struct luxfer_importance {
     _opaque: [u8; 0],
 }
 
-/// Settings of the map. Fill them with luxfer_importance_params_init.
+/// Settings of an importance map. Fill them with luxfer_importance_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_importance_params {
     /// sizeof(luxfer_importance_params), set by luxfer_importance_params_init.
     pub struct_size: u32,
-    /// Cells along u of the surface, in [1, 512]; default 64.
+    /// Number of cells along u of the surface, in [1, 512]; default 64.
     pub width: u32,
-    /// Cells along v, in [1, 512]; default 64.
+    /// Number of cells along v of the surface, in [1, 512]; default 64.
     pub height: u32,
-    /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
+    /// Quantity of the target that the map predicts: a LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the relative error of the response to a uniform emission is below this value, in [0, 1]; default 0.01;
-    /// 0: no target.
+    /// Stop when the relative half-width of the 95 % confidence interval of the response to a uniform emission is at
+    /// most this value, in [0, 1]; default 0.01; 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -67,20 +67,20 @@ versioned!(luxfer_importance_params, [40], {
     }
 });
 
-/// The light that the target receives from a texture.
+/// The light that the target receives from a texture: the result of luxfer_importance_respond.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_importance_report {
     /// sizeof(luxfer_importance_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of paths of the map.
+    /// Number of paths that were traced for the map.
     pub paths: u32,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
-    /// size of the cells is about a third of this change.
+    /// Change of response, noise included, that cells of twice the width and height would cause. The error that comes
+    /// from the size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 
@@ -93,7 +93,7 @@ pub(super) struct Inputs {
     emitter: Option<Emitter>,
 }
 
-/// The map, and the best placement of a texture after a search for it.
+/// The importance map, and the best placement of a texture if a job has searched for one.
 pub(super) struct Traced {
     pub map: Arc<Importance>,
     pub placement: Option<Placement>,
@@ -105,7 +105,7 @@ impl Handle for luxfer_importance {
     const NAME: &'static str = "luxfer_importance";
 }
 
-/// Creates the stage. The caller releases *importance. Any thread.
+/// Creates an importance map, without inputs. The caller releases *importance. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_create(
     context: *mut luxfer_context,
@@ -139,8 +139,9 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
 
 /// Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
 /// releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
-/// if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start(
     importance: *mut luxfer_importance,
@@ -180,8 +181,8 @@ pub unsafe extern "C" fn luxfer_importance_start(
     })
 }
 
-/// Gets the map: for each cell, the mean radiance of the target, per channel, if only this cell emitted, with 1 cd/m².
-/// The caller releases *image. Any thread.
+/// Gets the map as an image of 3 channels. Each cell holds the mean radiance of the target, per channel, if only this
+/// cell emitted, with 1 cd/m². The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_image(
@@ -197,9 +198,10 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps texture
-/// coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for
-/// the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+/// Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
+/// is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
+/// row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
+/// thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(
@@ -223,10 +225,10 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     })
 }
 
-/// Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each
-/// finite and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond.
-/// size is sizeof *report. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+/// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
+/// blue) in cd/m², each in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and
+/// placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
     importance: *mut luxfer_importance,

@@ -1,8 +1,8 @@
 //! Settings
 //!
-//! A struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call the
-//! inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose argument
-//! the compiler checks; programs in other languages call luxfer_init.
+//! Every struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call
+//! the inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose
+//! argument the compiler checks; programs in other languages call luxfer_init.
 
 use super::context::luxfer_context_params;
 use super::demo_photo::luxfer_demo_photo_params;
@@ -36,68 +36,69 @@ use super::transfer::luxfer_transfer_params;
 use crate::error::Error;
 use std::ffi::c_void;
 
-/// A struct of settings: a LUXFER_STRUCT_ value.
+/// The type of a struct of settings: a LUXFER_STRUCT_ value.
 pub type luxfer_struct_type = i32;
-/// luxfer_context_params.
+/// The struct luxfer_context_params.
 pub const LUXFER_STRUCT_CONTEXT_PARAMS: luxfer_struct_type = 0;
-/// luxfer_image_view.
+/// The struct luxfer_image_view.
 pub const LUXFER_STRUCT_IMAGE_VIEW: luxfer_struct_type = 1;
-/// luxfer_scene_load_params.
+/// The struct luxfer_scene_load_params.
 pub const LUXFER_STRUCT_SCENE_LOAD_PARAMS: luxfer_struct_type = 2;
-/// luxfer_material_params.
+/// The struct luxfer_material_params.
 pub const LUXFER_STRUCT_MATERIAL_PARAMS: luxfer_struct_type = 3;
-/// luxfer_mesh_params.
+/// The struct luxfer_mesh_params.
 pub const LUXFER_STRUCT_MESH_PARAMS: luxfer_struct_type = 4;
-/// luxfer_camera_params.
+/// The struct luxfer_camera_params.
 pub const LUXFER_STRUCT_CAMERA_PARAMS: luxfer_struct_type = 5;
-/// luxfer_light_params.
+/// The struct luxfer_light_params.
 pub const LUXFER_STRUCT_LIGHT_PARAMS: luxfer_struct_type = 6;
-/// luxfer_luminaire_params.
+/// The struct luxfer_luminaire_params.
 pub const LUXFER_STRUCT_LUMINAIRE_PARAMS: luxfer_struct_type = 7;
-/// luxfer_render_params.
+/// The struct luxfer_render_params.
 pub const LUXFER_STRUCT_RENDER_PARAMS: luxfer_struct_type = 8;
-/// luxfer_rectify_params.
+/// The struct luxfer_rectify_params.
 pub const LUXFER_STRUCT_RECTIFY_PARAMS: luxfer_struct_type = 9;
-/// luxfer_features_params.
+/// The struct luxfer_features_params.
 pub const LUXFER_STRUCT_FEATURES_PARAMS: luxfer_struct_type = 10;
-/// luxfer_segment_params.
+/// The struct luxfer_segment_params.
 pub const LUXFER_STRUCT_SEGMENT_PARAMS: luxfer_struct_type = 11;
-/// luxfer_emission_params.
+/// The struct luxfer_emission_params.
 pub const LUXFER_STRUCT_EMISSION_PARAMS: luxfer_struct_type = 12;
-/// luxfer_relight_params.
+/// The struct luxfer_relight_params.
 pub const LUXFER_STRUCT_RELIGHT_PARAMS: luxfer_struct_type = 13;
-/// luxfer_pattern_params.
+/// The struct luxfer_pattern_params.
 pub const LUXFER_STRUCT_PATTERN_PARAMS: luxfer_struct_type = 14;
-/// luxfer_transfer_params.
+/// The struct luxfer_transfer_params.
 pub const LUXFER_STRUCT_TRANSFER_PARAMS: luxfer_struct_type = 15;
-/// luxfer_illuminance_params.
+/// The struct luxfer_illuminance_params.
 pub const LUXFER_STRUCT_ILLUMINANCE_PARAMS: luxfer_struct_type = 16;
-/// luxfer_illuminance_grid.
+/// The struct luxfer_illuminance_grid.
 pub const LUXFER_STRUCT_ILLUMINANCE_GRID: luxfer_struct_type = 17;
-/// luxfer_lamps_params.
+/// The struct luxfer_lamps_params.
 pub const LUXFER_STRUCT_LAMPS_PARAMS: luxfer_struct_type = 18;
-/// luxfer_importance_params.
+/// The struct luxfer_importance_params.
 pub const LUXFER_STRUCT_IMPORTANCE_PARAMS: luxfer_struct_type = 19;
-/// luxfer_placement_params.
+/// The struct luxfer_placement_params.
 pub const LUXFER_STRUCT_PLACEMENT_PARAMS: luxfer_struct_type = 20;
-/// luxfer_false_colour_params.
+/// The struct luxfer_false_colour_params.
 pub const LUXFER_STRUCT_FALSE_COLOUR_PARAMS: luxfer_struct_type = 21;
-/// luxfer_guides_params.
+/// The struct luxfer_guides_params.
 pub const LUXFER_STRUCT_GUIDES_PARAMS: luxfer_struct_type = 22;
-/// luxfer_stylize_params.
+/// The struct luxfer_stylize_params.
 pub const LUXFER_STRUCT_STYLIZE_PARAMS: luxfer_struct_type = 23;
-/// luxfer_sheet_params.
+/// The struct luxfer_sheet_params.
 pub const LUXFER_STRUCT_SHEET_PARAMS: luxfer_struct_type = 24;
-/// luxfer_plan_params.
+/// The struct luxfer_plan_params.
 pub const LUXFER_STRUCT_PLAN_PARAMS: luxfer_struct_type = 25;
-/// luxfer_render_part.
+/// The struct luxfer_render_part.
 pub const LUXFER_STRUCT_RENDER_PART: luxfer_struct_type = 26;
-/// luxfer_demo_photo_params.
+/// The struct luxfer_demo_photo_params.
 pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 
-/// Fills the struct at place with the defaults of its type; size is its sizeof. A smaller size, from an older header,
-/// fills the fields of that version. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the type is unknown, if place is NULL, or if no version of the struct has this size;
+/// Fills the struct at place with the defaults of its type; which is a LUXFER_STRUCT_ value, and size is the sizeof of
+/// the struct. If size is smaller because the program was built with an older header, the fields of that version are
+/// filled. Any thread.
+/// LUXFER_INVALID_ARGUMENT if which is another value, if place is NULL, or if no version of the struct has this size;
 /// LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_init(which: luxfer_struct_type, place: *mut c_void, size: usize) -> luxfer_status {

@@ -1,9 +1,10 @@
 //! Job
 //!
-//! X_start starts long work and returns a job at once; the job runs on threads of the library. It works on the inputs
-//! as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
-//! refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
-//! succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+//! Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
+//! runs on threads of the library. It works on the inputs as they are at the start: changing or releasing them later
+//! does not affect the job. While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION).
+//! Read the results from the object after the job has succeeded. Releasing the last reference to a running job cancels
+//! the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
 //! waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
@@ -22,7 +23,7 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Work in progress. See luxfer_job_wait.
+/// A job: work in progress. See luxfer_job_wait.
 pub struct luxfer_job {
     _opaque: [u8; 0],
 }
@@ -33,18 +34,18 @@ pub struct luxfer_job {
 /// It must not throw an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
-/// How often a waiting thread reports.
+/// Interval between two calls of the progress function by a waiting thread.
 const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
-/// The object of a `luxfer_job`. It holds the context until its thread has ended. So neither that thread nor a worker
-/// of the pool drops the last reference to the pool, which would make it wait for itself.
+/// The object behind a `luxfer_job` handle. It holds the context until the job's thread has ended. So neither that
+/// thread nor a worker of the pool drops the last reference to the pool, which would make it wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,
     thread: Mutex<Option<JoinHandle<()>>>,
 }
 
-/// State shared by the working and the waiting threads.
+/// State that the job's thread and the waiting threads share.
 struct Shared {
     monitor: Arc<Monitor>,
     result: Mutex<Option<Result<()>>>,
@@ -64,8 +65,8 @@ impl Handle for luxfer_job {
 }
 
 impl Job {
-    /// Starts a thread that runs `work` in the context's pool. If the job is cancelled before the pool begins it, it
-    /// ends at once.
+    /// Starts a thread that runs `work` in the context's pool. If the job is cancelled before the pool begins `work`,
+    /// the job ends at once.
     pub(super) fn start(
         context: &Arc<Context>,
         work: impl FnOnce(crate::job::Job) -> Result<()> + Send + 'static,
@@ -78,7 +79,7 @@ impl Job {
         })
     }
 
-    /// Runs `work` on a thread of its own. `work` must not panic.
+    /// Starts a thread that runs `work` outside the pool. `work` must not panic.
     pub(super) fn on_thread(
         context: &Arc<Context>,
         work: impl FnOnce(&Arc<Context>, &Arc<Monitor>) -> Result<()> + Send + 'static,
@@ -97,7 +98,7 @@ impl Job {
         Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
     }
 
-    /// The result, or `None` if the job has not ended within `time`.
+    /// Waits up to `time` and returns the result; `None` if the job has not ended by then.
     fn wait(&self, time: Duration) -> Option<Result<()>> {
         let result = lock(&self.shared.result);
         let waited = self.shared.finished.wait_timeout_while(result, time, |r| r.is_none());
@@ -112,7 +113,7 @@ impl Job {
 impl Drop for Job {
     fn drop(&mut self) {
         self.shared.monitor.cancel();
-        // A function that runs as a job may release that job: its thread cannot wait for itself.
+        // A function that runs as a job may release that job: the job's thread cannot wait for itself.
         let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
         if let Some(thread) = lock(&self.thread).take().filter(is_other) {
             // The thread catches all panics, so it always ends well.
@@ -121,13 +122,15 @@ impl Drop for Job {
     }
 }
 
-/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
-/// progress may be NULL; it receives user. Any thread; several threads may wait for one job.
+/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
+/// call reports to progress, which may be NULL, and passes user to it. Any thread; several threads may wait for one
+/// job.
 ///
-/// Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
-/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if
-/// the function of the job waits for its own job. If the function of another job (luxfer_job_start) waits for this job,
-/// a cancel request to the other job also cancels this job.
+/// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
+/// message of this call.
+/// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
+/// LUXFER_INVALID_OPERATION if the function of the job waits for its own job. If the function of another job
+/// (luxfer_job_start) waits for this job, a cancel request to the other job also cancels this job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,
@@ -150,7 +153,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report the progress, also to the job whose function waits; 1 is reserved for the end.
+            // Report the progress, also to the job whose function waits here; the fraction 1 is reserved for the end.
             if let Some(caller) = &caller {
                 caller.job().report(job.shared.monitor.progress());
             }
@@ -166,7 +169,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
                     progress = None;
                 }
             }
-            // If the function has forked and this is the child, there is no job to wait for.
+            // The progress function may have forked the process: in the child there is no job to wait for.
             job.context.check_process()?;
             match result {
                 Some(result) => return result,
@@ -177,9 +180,10 @@ pub unsafe extern "C" fn luxfer_job_wait(
     })
 }
 
-/// Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1]; *outcome
-/// receives the status with which the job has ended, as luxfer_job_wait returns it, or LUXFER_NOT_READY while the job
-/// runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any thread.
+/// Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1], which is 1
+/// only after success. *outcome receives the status with which the job has ended, as luxfer_job_wait returns it, or
+/// LUXFER_NOT_READY while the job runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_get_progress(
     job: *mut luxfer_job,

@@ -1,7 +1,7 @@
 //! Functions of the caller as jobs
 //!
-//! Calls that return when their work is done (files, warps, pictures of results) may take long for large inputs.
-//! luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress and cancel it.
+//! Synchronous calls (files, warps, pictures of results) may take long for large inputs. luxfer_job_start runs any
+//! sequence of calls as a job, so that a user interface can show its progress and cancel it.
 
 use super::context::luxfer_context;
 use super::guard::{catch, enter};
@@ -19,15 +19,15 @@ use std::sync::Arc;
 /// status with which the job ends. It must not throw an exception or leave by longjmp.
 pub type luxfer_work_fn = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
-/// A pointer of the caller, which its function receives on another thread.
+/// A pointer of the caller that is handed to the caller's function on another thread.
 struct User(*mut c_void);
 
 // SAFETY: luxfer_job_start says that the function runs on another thread; what it does there is the caller's concern.
 unsafe impl Send for User {}
 
 /// Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. work receives
-/// user, and may call any function of the library. A cancel request to this job ends the calls that work makes in this
-/// context with LUXFER_CANCELLED; a call that loads a file ends between two meshes or pictures. The request also
+/// user, and may call any function of the library. A cancel request to this job makes the calls of work in this
+/// context end with LUXFER_CANCELLED; a call that loads a file ends between two meshes or pictures. The request also
 /// cancels the jobs that work waits for. The progress of this job is the progress of these calls and jobs, and never
 /// falls. If work returns an error, the job gets the message of the last call that failed on its thread. The caller
 /// releases *job. Any thread.
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn luxfer_job_start(
     })
 }
 
-/// The error with which a function of the caller has ended.
+/// Makes the error of a job from the status that the caller's function has returned.
 fn error(context: &Context, status: luxfer_status) -> Error {
     let kind = ErrorKind::from_value(status).unwrap_or(ErrorKind::Unknown);
     // SAFETY: a static string.

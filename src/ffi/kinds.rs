@@ -28,7 +28,7 @@ use super::warning::{self, Doubtful, luxfer_warnings};
 use crate::error::{Error, Result};
 use std::ffi::c_void;
 
-/// Creates the list of an object's warnings.
+/// Creates the list of warnings of an object of one kind.
 type CreateWarnings = fn(*mut c_void, *mut *mut luxfer_warnings) -> luxfer_status;
 
 /// One kind of handle, with the functions that serve it.
@@ -54,7 +54,7 @@ impl Kind {
         Self { create_warnings: Some(warning::create::<H>), ..Self::of::<H>() }
     }
 
-    /// The kind whose tag the handle shows.
+    /// Finds the kind of a handle by its tag; an error if no kind has this tag.
     pub fn find(handle: *mut c_void) -> Result<&'static Self> {
         let tag = handle::read_tag(handle);
         KINDS
@@ -95,7 +95,7 @@ const KINDS: &[Kind] = &[
 mod tests {
     use super::*;
 
-    /// A kind that is missing here could never be released.
+    /// Compares `KINDS` with the sources: a handle of a kind that is missing could never be released.
     #[test]
     #[cfg(feature = "stylize")]
     #[cfg_attr(miri, ignore = "reads files")]

@@ -1,4 +1,4 @@
-//! A goal of lamps as the host has set it.
+//! A goal for the powers of lamps, as the host has set it.
 
 use crate::error::Result;
 use crate::image::try_collect;
@@ -6,7 +6,7 @@ use crate::relight::{Aspect, Constraint, Goal, Place, Quantity};
 use crate::scene::Scene;
 use glam::Vec3;
 
-/// A goal as the host has set it.
+/// A surface or a grid, and the light that it should receive.
 #[derive(Clone)]
 pub(super) struct StoredGoal {
     pub place: Where,
@@ -24,7 +24,7 @@ pub(super) enum Where {
 }
 
 impl StoredGoal {
-    /// Mesh and triangle of each triangle of the surface; empty for a grid.
+    /// Returns (mesh, triangle) for each triangle of the goal's surface; empty for a grid.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         match self.place {
             Where::Mesh(mesh) => {
@@ -35,7 +35,7 @@ impl StoredGoal {
         }
     }
 
-    /// The goal for the solver; `triangles` come from [`Self::triangles`].
+    /// Returns the goal in the form that the solver takes; `triangles` come from [`Self::triangles`].
     pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
         let place = match self.place {
             Where::Mesh(_) => Place::Surface(triangles),

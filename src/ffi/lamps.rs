@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds powers of the lamps of an emission, within bounds, that come nearest to several goals. A goal is a surface or
-//! a calculation grid that should receive a given light. For each goal, one set of paths measures its response to all
-//! lamps at once, even to thousands.
+//! Finds powers for the lamps of an emission, within bounds, with which the scene comes nearest to several goals. A
+//! goal is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures
+//! the goal's response to all lamps at once, even to thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -28,51 +28,53 @@ pub struct luxfer_lamps {
     _opaque: [u8; 0],
 }
 
-/// Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture, or a
-/// connected piece of the meshes if the emission has no texture.
+/// Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture,
+/// or a connected piece of the meshes if the emission has no texture.
 pub type luxfer_group = i32;
 /// All lamps form one group.
 pub const LUXFER_GROUP_ALL: luxfer_group = 0;
 /// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
-/// Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes.
+/// Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of the
+/// meshes.
 pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
-/// Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes.
+/// Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of the
+/// meshes.
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
-/// Lamps whose centres agree in their third coordinate form a group: z of meshes.
+/// Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots, and all
-/// luminaires with one distribution.
+/// Lamps of one type form a group: lamps of about equal area. Among punctual lights, all point lights are one type,
+/// all spot lights are one type, and luminaires with the same distribution are one type.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
-/// Settings of the calculation. Fill them with luxfer_lamps_params_init.
+/// Settings of the solver for lamps. Fill them with luxfer_lamps_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_params {
     /// sizeof(luxfer_lamps_params), set by luxfer_lamps_params_init.
     pub struct_size: u32,
-    /// LUXFER_GROUP_ value; default LUXFER_GROUP_EACH.
+    /// Lamps that share one power: a LUXFER_GROUP_ value; default LUXFER_GROUP_EACH.
     pub group: luxfer_group,
-    /// Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a new
-    /// row; default 0.01.
+    /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
+    /// coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
-    /// for the power only.
+    /// 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
+    /// luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
     pub free_colour: u32,
     /// Largest factor for the emission of a group, >= 0; default infinity.
     pub max_scale: f64,
-    /// Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
-    /// powers equal; default 1e-6.
+    /// Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
+    /// met, with large values the powers are nearly equal.
     pub regularisation: f64,
-    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its noise;
-    /// default 0.01.
+    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
+    /// the goal's light is added to this tolerance.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop tracing a goal when the relative error of its response to all lamps together is below this value, in [0,
-    /// 1]; default 0.01; 0: no target.
+    /// Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of its response to
+    /// all lamps together is at most this value, in [0, 1]; default 0.01; 0: no target.
     pub target_error: f32,
-    /// Stop after this number of milliseconds; default 0: no limit.
+    /// Stop tracing after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -124,7 +126,7 @@ impl Handle for luxfer_lamps {
     const NAME: &'static str = "luxfer_lamps";
 }
 
-/// Creates the stage. The caller releases *lamps. Any thread.
+/// Creates a solver for lamps, without inputs. The caller releases *lamps. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_create(
     context: *mut luxfer_context,
@@ -136,9 +138,9 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission of
-/// each lamp in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
-/// luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
+/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
+/// each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by the
+/// indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_scene(
@@ -164,9 +166,9 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
 /// Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
 /// with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
 /// Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job is already running. The job may end with
 /// LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
-/// emission has no lamp, or a setting is out of range.
+/// emission has no lamp, there are more than 64 goals, goals times lamps exceed 2^20, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_start(
     lamps: *mut luxfer_lamps,

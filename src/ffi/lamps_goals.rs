@@ -1,6 +1,6 @@
 //! Goals of lamps
 //!
-//! Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit, and
+//! Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit. Also
 //! the dimming levels of the lamps' drivers.
 
 use super::geometry::list;
@@ -16,8 +16,9 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::relight::{Aspect, Constraint, MAX_LEVELS, Quantity};
 
-/// Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
-/// LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
+/// Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
+/// 1e15]. quantity is a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other
+/// goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_mesh(
@@ -39,9 +40,9 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
     })
 }
 
-/// Adds a goal: the mean illuminance in lux that a calculation grid should have, for light of any colour; weight, >= 0,
-/// is relative to the other goals. grid may be NULL for its default. Any thread.
-/// LUXFER_INVALID_ARGUMENT if lux is negative or not finite, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+/// Adds a goal: the mean illuminance in lux that a calculation grid should have, from light of any colour. grid may be
+/// NULL for its default. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
+/// LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15], LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_grid(
     lamps: *mut luxfer_lamps,
@@ -76,8 +77,8 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
 }
 
 /// Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
-/// The three values of a goal in lux must be equal. Goals are numbered from 0 in the order in which they were added; a
-/// new goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
+/// For a goal in lux, the three values must be equal. goal is its number: goals are numbered from 0 in the order in
+/// which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_constraint(
@@ -103,11 +104,11 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     })
 }
 
-/// Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
-/// count is at most 4096, or 0 for drivers without steps. The solution then gives each group one of these levels,
-/// chosen for all groups together so that the goals are met best. Half-widths are computed for powers without steps.
-/// Any thread.
-/// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
+/// Sets the dimming levels of the lamps' drivers: count factors for the emission, each finite and >= 0, in any order.
+/// count is at most 4096; 0 stands for drivers without steps. The solution then gives each group one of these levels,
+/// chosen for all groups together so that the goals are met best. The half-widths of the powers then include the
+/// distance from the level to the power without steps. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(
     lamps: *mut luxfer_lamps,

@@ -1,6 +1,7 @@
 //! Results of lamps
 //!
-//! The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
+//! The powers that the solver has found, the light that each goal receives, and the contribution of each lamp to each
+//! goal.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -18,7 +19,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::ffi::c_char;
 
-/// Summary of the result.
+/// Summary of the solution for lamps.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_report {
@@ -40,7 +41,7 @@ versioned!(luxfer_lamps_report, [24], {
     Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, all_goals_met: 0 }
 });
 
-/// One lamp.
+/// The solution for one lamp.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamp {
@@ -48,9 +49,10 @@ pub struct luxfer_lamp {
     pub struct_size: u32,
     /// Index of the group that the lamp belongs to.
     pub group: u32,
-    /// Centre: texture coordinates and 0, or, without a texture, the position in metres.
+    /// Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
+    /// metres.
     pub centre: [f64; 3],
-    /// Factor for its emission, per channel, >= 0.
+    /// Factor for the lamp's emission, per channel, >= 0.
     pub scale: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of scale.
     pub half_width: [f64; 3],
@@ -60,7 +62,7 @@ versioned!(luxfer_lamp, [80], {
     Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
 });
 
-/// The light that a goal receives.
+/// The light that the surface or grid of one goal receives with the powers found.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_goal {
@@ -68,23 +70,24 @@ pub struct luxfer_lamps_goal {
     pub struct_size: u32,
     /// LUXFER_OUTCOME_ value of each channel.
     pub outcome: [luxfer_outcome; 3],
-    /// Mean radiance of the goal, in cd/m²; illuminance / pi for a grid.
+    /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid, illuminance /
+    /// pi.
     pub target: [f64; 3],
-    /// Mean radiance with the powers found, in cd/m².
+    /// Mean radiance of the goal's surface with the powers found, in cd/m² per channel.
     pub achieved: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of achieved.
     pub half_width: [f64; 3],
-    /// Mean radiance from all other light, in cd/m².
+    /// Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel.
     pub background: [f64; 3],
-    /// Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
-    /// LUXFER_QUANTITY_INCIDENT. This field and the fields below are 0 for other goals.
+    /// Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
+    /// of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,
-    /// Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had one
-    /// sign.
+    /// Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the errors of
+    /// all channels had one sign.
     pub half_width_lux: f64,
-    /// Illuminance from all other light, in lux.
+    /// Illuminance from all light but the lamps, in lux.
     pub background_lux: f64,
 }
 
@@ -104,15 +107,15 @@ versioned!(luxfer_lamps_goal, [144], {
     }
 });
 
-/// The light that one goal receives from one lamp.
+/// The light that the surface or grid of one goal receives from one lamp.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_response {
     /// sizeof(luxfer_lamps_response), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
-    /// Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel.
+    /// Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of mean.
     pub half_width: [f64; 3],
@@ -145,7 +148,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_report(
     })
 }
 
-/// Gets the power of a lamp. size is sizeof *lamp. Any thread.
+/// Gets the solution for one lamp; index starts at 0. size is sizeof *lamp. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_lamp(
@@ -169,7 +172,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_lamp(
     })
 }
 
-/// Gets the light that a goal receives. size is sizeof *goal. Any thread.
+/// Gets the light that the surface or grid of one goal receives; index starts at 0. size is sizeof *goal. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_goal(
@@ -202,8 +205,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
     })
 }
 
-/// Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. size is sizeof *response.
-/// Any thread.
+/// Gets the light that the surface or grid of a goal receives from one lamp, for hosts that mix the light of the lamps
+/// themselves; goal and lamp start at 0. size is sizeof *response. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_response(
@@ -232,8 +235,9 @@ pub unsafe extern "C" fn luxfer_lamps_get_response(
     })
 }
 
-/// Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
-/// is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
+/// Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
+/// the zero. The text is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text
+/// needs. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_reason(
@@ -248,8 +252,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_reason(
     })
 }
 
-/// Gets the emission texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
-/// thread.
+/// Gets the emission texture in which every lamp is multiplied by its scale; linear RGB. The caller releases *texture.
+/// Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_texture(

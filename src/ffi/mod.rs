@@ -1,15 +1,16 @@
 //! The C boundary: the only place with `extern "C"` and raw pointers. One file per handle; nothing here computes.
 //!
-//! How an entry point is built, always the same way:
+//! The parts of every entry point:
 //! - [`guard`] turns panics and errors into a status and keeps the message for the calling thread;
-//! - [`handle`] checks the tag behind every pointer that claims to be one of ours, and counts references;
-//! - [`params`] copies the caller's versioned structs, old or new, and never trusts their size;
-//! - [`stage`] holds what all stages share: inputs, one job at a time, a result that appears only on success.
+//! - [`handle`] checks the tag behind every pointer that should be a handle, and counts references;
+//! - [`params`] copies the caller's versioned structs, old or new, after a check of their size;
+//! - [`stage`] is the base of all stages: it holds the inputs, allows one job at a time, and stores the result of a
+//!   job that has succeeded.
 //!
-//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer/*.h`; the test
-//! `abi_header` generates it. Nothing exported may be made by a macro: cbindgen would not see it.
+//! The comments of the exported items, and the module comments of their files, become `include/luxfer/*.h`; the test
+//! `abi_header` generates these headers. No macro may make an exported item: cbindgen would not see it.
 
-// C names; the contract of each unsafe function is its text in the header.
+// Exported types have C names. The safety contract of an exported function is its comment, which becomes the header's.
 #![allow(non_camel_case_types, clippy::missing_safety_doc)]
 
 #[cfg(panic = "abort")]

@@ -1,23 +1,23 @@
-//! Versioned structs, distinguished by the size that the caller's compiler gave them.
+//! Structs of the caller in several versions, which differ in the size that the caller's compiler gave them.
 //!
 //! A struct starts with `uint32_t struct_size` and grows only at its end, never into padding. The struct of an older
-//! caller is shorter: its missing fields keep their defaults. The struct of a newer caller is longer: it is accepted if
-//! all unknown fields are zero.
+//! caller is shorter: its missing fields keep their defaults. The struct of a newer caller is longer: it is accepted
+//! if all unknown fields are zero.
 
 use crate::error::{Error, Result};
 
-/// Largest size that a struct has in this or any later version; a larger `struct_size` shows that the struct was not
+/// Largest size that a struct has in this or any later version. A larger `struct_size` shows that the struct was not
 /// initialised.
 const LARGEST: usize = 4096;
 
 /// A versioned C struct.
 ///
 /// # Safety
-/// `repr(C)`, any bits are valid, and the first field is `struct_size: u32`.
+/// `repr(C)`, every bit pattern is valid, and the first field is `struct_size: u32`.
 pub(super) unsafe trait Versioned: Copy {
     /// Name of the C type.
     const NAME: &'static str;
-    /// Its sizes in past versions and this one, rising; the last is `size_of::<Self>()`.
+    /// Sizes of the struct in all versions up to this one, rising; the last is `size_of::<Self>()`.
     const SIZES: &'static [usize];
     /// A struct with every field at its default.
     fn defaults() -> Self;
@@ -28,7 +28,7 @@ macro_rules! versioned {
     ($type:ident, $sizes:expr, { $($defaults:tt)* }) => {
         const _: () = assert!(std::mem::offset_of!($type, struct_size) == 0);
 
-        // SAFETY: `struct_size` is the first field, and any bits are valid in numbers and pointers.
+        // SAFETY: `struct_size` is the first field, and every bit pattern is valid in numbers and pointers.
         unsafe impl $crate::ffi::params::Versioned for $type {
             const NAME: &'static str = stringify!($type);
             const SIZES: &'static [usize] = &$sizes;
@@ -40,13 +40,13 @@ macro_rules! versioned {
 }
 pub(super) use versioned;
 
-/// Whether some version of this library has a struct of `size` bytes, or will have.
+/// Whether a version of the library, past, present or future, can have a struct `P` of `size` bytes.
 fn is_known<P: Versioned>(size: usize) -> bool {
     debug_assert_eq!(P::SIZES.last(), Some(&size_of::<P>()));
     P::SIZES.contains(&size) || (size_of::<P>()..=LARGEST).contains(&size)
 }
 
-/// Checks the `size` with which a function that fills the caller's struct is called.
+/// Checks the `size` that a caller passes to a function that fills a struct `P`.
 fn check_size<P: Versioned>(size: usize) -> Result<()> {
     if is_known::<P>(size) {
         return Ok(());
@@ -72,7 +72,7 @@ pub(super) fn read<P: Versioned>(place: *const P) -> Result<P> {
     if place.is_null() { Ok(P::defaults()) } else { read_required(place) }
 }
 
-/// Reads the caller's struct, which must be there.
+/// Reads the caller's struct; NULL is an error.
 pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     let size = size_at(place)?;
     let known = size.min(size_of::<P>());
@@ -92,7 +92,7 @@ pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     Ok(params)
 }
 
-/// A boolean of the caller: 0 or 1.
+/// Converts a boolean of the caller, which must be 0 or 1.
 pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
     match value {
         0 | 1 => Ok(value == 1),
@@ -100,7 +100,7 @@ pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
     }
 }
 
-/// A place for a report, with the size that the caller's compiler gave it.
+/// The caller's place for a report, with the size that the caller's compiler gave the report.
 pub(super) struct Report<P> {
     place: *mut P,
     size: usize,
@@ -113,7 +113,8 @@ impl<P: Versioned> Report<P> {
         Ok(Self { place, size })
     }
 
-    /// Writes the fields of the report that the caller's version has; fields unknown to this version become zero.
+    /// Writes the fields of the report that the caller's version has. Fields that this version does not know become
+    /// zero.
     pub(super) fn set(self, report: P) {
         write(self.place, report, self.size);
     }
@@ -164,7 +165,7 @@ mod tests {
         }
     }
 
-    /// A caller's memory, larger than any struct, with a known pattern.
+    /// Memory of a caller, larger than any struct: `size` as the first word, then bytes 0xaa.
     fn memory(size: u32) -> Vec<u8> {
         let mut bytes = vec![0xaa; 2 * LARGEST];
         bytes[..4].copy_from_slice(&size.to_ne_bytes());

@@ -1,48 +1,48 @@
 //! Pattern
 //!
-//! Size, rotation and offset of the light pattern of a transfer on the surface, and the areas without lamps.
+//! Places the light pattern of a transfer on the surface: its size, rotation and offset, and the areas without lamps.
 
 use super::params::versioned;
 use crate::error::{Error, Result};
 use crate::transfer::{Pattern, Scale};
 use glam::DVec2;
 
-/// The length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
+/// Choice of the length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
 pub type luxfer_pattern_scale = i32;
-/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or if
-/// that is 0, the estimate from the size of the lamps.
+/// The distance of the photo's camera from the plane with the lights. It is plane_distance of luxfer_transfer_params,
+/// or if that is 0, an estimate from the size of the lamps.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
-/// The length of a lamp: the median of the longer sides of the photo's lamps.
+/// The length of a lamp: luxfer_pattern_params.length is the median of the longer sides of the photo's lamps.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
-/// The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to its nearest
-/// neighbour.
+/// The spacing of the lamps: luxfer_pattern_params.length is the shorter period of their lattice or, without a
+/// lattice, the median distance from a lamp to its nearest neighbour.
 pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
-/// The width of the surface: it shows as many lamps across as the plane in the photo.
+/// The width of the surface: the surface is as many lamps wide as the plane in the photo.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
 
-/// Layout of the pattern on the surface. luxfer_surface has the corner and the axes u and v of the surface.
-/// Fill it with luxfer_pattern_params_init.
+/// Layout of the light pattern on a surface; luxfer_surface gives the corner and the axes u and v of the surface. Fill
+/// it with luxfer_pattern_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_pattern_params {
     /// sizeof(luxfer_pattern_params), set by luxfer_pattern_params_init.
     pub struct_size: u32,
-    /// LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE.
+    /// The length that sets the size of the pattern: a LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE.
     pub scale: luxfer_pattern_scale,
-    /// Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only LUXFER_PATTERN_LAMP and
-    /// LUXFER_PATTERN_SPACING use it.
+    /// Length of a lamp for LUXFER_PATTERN_LAMP, or spacing of the lamps for LUXFER_PATTERN_SPACING, in metres, in
+    /// [1e-6, 1e6]; default 1. Other values of scale do not use it.
     pub length: f64,
-    /// Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as max_texels of
-    /// luxfer_transfer_params allows.
+    /// Side of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, but not so fine that the
+    /// texture exceeds max_texels of luxfer_transfer_params.
     pub texel_size: f64,
     /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only: lamps
-    /// without a lattice have no fixed places and are not shifted.
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only:
+    /// lamps without a lattice have no fixed places and are not shifted.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
     /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the
-    /// default -1, lamps at the edge of the surface stay, cut by the edge.
+    /// default -1, lamps at the edge of the surface are kept, and the edge cuts them.
     pub margin: f64,
 }
 

@@ -1,9 +1,9 @@
 //! Photo metadata
 //!
 //! The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
-//! colours were understood. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
-//! focal length as a prior unless the caller sets one; the lines of the photo outweigh it where they determine it
-//! better. The library does not use white_luminance by itself: to apply it, copy it to
+//! colours were interpreted. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
+//! focal length as a prior, unless the caller sets a focal length; the lines of the photo outweigh the prior where
+//! they determine the focal length better. The library does not use white_luminance by itself: to apply it, copy it to
 //! luxfer_transfer_params.white_luminance.
 
 use super::guard::enter;
@@ -12,7 +12,7 @@ use super::params::{Report, versioned};
 use super::status::luxfer_status;
 use crate::image::photo::PhotoMetadata;
 
-/// How the colours of an image were understood: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
+/// How the colours of an image were interpreted: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
 /// ones may be added.
 pub type luxfer_file_colour = i32;
 /// The image was not loaded from a file.
@@ -24,8 +24,8 @@ pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
 /// The file states another colour space. The colours were converted to linear Rec.709.
 pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
 /// A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
-/// inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
-/// Export the photo as sRGB.
+/// inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be
+/// wrong. Export the photo as sRGB.
 pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
 pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;
@@ -55,15 +55,15 @@ pub struct luxfer_photo_metadata {
     /// speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
     /// brightness keep these tags.
     pub white_luminance: f64,
-    /// Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard output
-    /// sensitivity instead.
+    /// Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
+    /// standard output sensitivity instead.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is a
-    /// recommended exposure index.
+    /// Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case that the
+    /// ISO speed is a recommended exposure index.
     pub white_luminance_high: f64,
-    /// How the colours of the file were understood.
+    /// How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value.
     pub colour: luxfer_file_colour,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
 }
 

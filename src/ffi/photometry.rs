@@ -1,7 +1,7 @@
 //! Photometry
 //!
 //! Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
-//! These calls return when their work is done.
+//! These calls are synchronous: they do their work before they return.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -14,7 +14,7 @@ use crate::photometry::glare;
 use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN, Temperature};
 use glam::DVec3;
 
-/// The glare of a view.
+/// The glare of a view: the result of luxfer_image_get_glare.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_glare_report {
@@ -27,16 +27,16 @@ pub struct luxfer_glare_report {
     pub ugr: f64,
     /// Luminance of the background in cd/m².
     pub background: f64,
-    /// Luminance in cd/m² above which a pixel counted as a glare source.
+    /// The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources.
     pub threshold: f64,
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
-    /// Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
-    /// out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
-    /// luxfer_render_get_layer; 0 for other images. The scene of such an image has LUXFER_WARNING_NOT_IN_PICTURE if it
-    /// has luminaires.
+    /// Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the image, and
+    /// ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image
+    /// and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
+    /// LUXFER_WARNING_NOT_IN_PICTURE.
     pub unseen_lights: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
 }
 
@@ -53,9 +53,9 @@ versioned!(luxfer_glare_report, [40, 48], {
     }
 });
 
-/// Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
-/// blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
-/// colours. Any thread.
+/// Gets the correlated colour temperature of a linear RGB colour. *kelvin receives the temperature of the nearest
+/// blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
+/// greenish colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_colour_to_temperature(
@@ -78,9 +78,9 @@ pub unsafe extern "C" fn luxfer_colour_to_temperature(
     })
 }
 
-/// Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
-/// 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
-/// Any thread.
+/// Computes the linear RGB colour, with luminance 1, of a colour temperature; rgb receives three numbers. kelvin is in
+/// [1000, 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is
+/// negative if the colour is out of gamut. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_temperature_to_colour(
@@ -98,10 +98,10 @@ pub unsafe extern "C" fn luxfer_temperature_to_colour(
     })
 }
 
-/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with
-/// the vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
-/// threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
-/// luminance. size is sizeof *report. Any thread.
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). A level camera with the
+/// vertical angle of view fov_y, in radians, sees the image. Glare sources are the connected patches with a luminance
+/// of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better estimate of
+/// the background luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_glare(

@@ -16,34 +16,35 @@ use glam::{DVec2, Vec3};
 
 /// Objective of a placement: a LUXFER_AIM_ value.
 pub type luxfer_aim = i32;
-/// The largest luminance of the target.
+/// Make the luminance of the target as large as possible.
 pub const LUXFER_AIM_MAX_LUMINANCE: luxfer_aim = 0;
-/// The smallest luminance of the target.
+/// Make the luminance of the target as small as possible.
 pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
-/// The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included.
+/// Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
-/// Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated about their
-/// centre (0.5, 0.5), and then shifted. Fill it with luxfer_placement_params_init.
+/// Objective and bounds of a placement. A placement scales the texture coordinates of the surface about their centre
+/// (0.5, 0.5), then rotates them about this centre, and then shifts them. Fill it with luxfer_placement_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement_params {
     /// sizeof(luxfer_placement_params), set by luxfer_placement_params_init.
     pub struct_size: u32,
-    /// LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE.
+    /// Objective: a LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE.
     pub aim: luxfer_aim,
-    /// Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0.
+    /// Wanted mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default
+    /// 0.
     pub radiance: [f32; 3],
     /// Number of placements at which the search starts, in [1, 4096]; default 64.
     pub starts: u32,
-    /// Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5.
+    /// Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5.
     pub min_offset: [f64; 2],
-    /// Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
-    /// fixed.
+    /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value are
+    /// equal, here and in the fields below, the value is fixed.
     pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub min_scale: [f64; 2],
-    /// Largest number of repetitions, in [1/64, 64]; default 1.
+    /// Largest number of repetitions along u and v, in [1/64, 64]; default 1.
     pub max_scale: [f64; 2],
     /// Smallest rotation in radians, in [-2 pi, 2 pi]; default 0.
     pub min_rotation: f64,
@@ -98,22 +99,22 @@ impl luxfer_placement_params {
 pub struct luxfer_placement {
     /// sizeof(luxfer_placement), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
-    /// The placement of the texture on the surface, as for luxfer_importance_respond.
+    /// The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond takes it.
     pub placement: [f64; 9],
-    /// Offset along u and v.
+    /// Offset of the placement along u and v of the texture, in periods.
     pub offset: [f64; 2],
-    /// Scale along u and v.
+    /// Number of repetitions of the texture along u and v of the surface.
     pub scale: [f64; 2],
-    /// Rotation in radians.
+    /// Rotation of the placement in radians.
     pub rotation: f64,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
-    /// size of the cells is about a third of this change.
+    /// Change of response, noise included, that cells of twice the width and height would cause. The error that comes
+    /// from the size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 
@@ -131,10 +132,10 @@ versioned!(luxfer_placement, [192], {
     }
 });
 
-/// Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
-/// NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
-/// LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// Starts a job that finds the best placement of a texture for the target. The texture is linear, in cd/m², and
+/// repeats. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job is already running. The job may
+/// end with LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start_placement(
     importance: *mut luxfer_importance,

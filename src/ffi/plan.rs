@@ -1,13 +1,14 @@
 //! Planning
 //!
 //! Chooses the settings of relighting and rendering, or of a stylisation, for a given error or a given time, before
-//! anything is rendered. A plan also predicts the time and the error of each. The cost of a path and the noise depend
-//! on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second,
-//! besides the preparation of the scene. A plan assumes that the load of the machine by other programs does not change.
+//! anything is rendered. A plan also predicts the time and the error of each stage. The cost of a path and the noise
+//! depend on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a
+//! second, besides the preparation of the scene. A plan assumes that other programs keep the machine as busy as they
+//! do now.
 //!
-//! The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
-//! the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
-//! a stylisation.
+//! The error of a picture is the root mean square error over its pixels, divided by its mean. It includes the noise
+//! and the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the
+//! error of a stylisation.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -27,7 +28,7 @@ use crate::render;
 #[cfg(feature = "stylize")]
 use crate::stylize;
 
-/// A plan. See luxfer_plan_create.
+/// A plan: settings for a goal. See luxfer_plan_create.
 pub struct luxfer_plan {
     _opaque: [u8; 0],
 }
@@ -38,10 +39,9 @@ pub struct luxfer_plan {
 pub struct luxfer_plan_params {
     /// sizeof(luxfer_plan_params), set by luxfer_plan_params_init.
     pub struct_size: u32,
-    /// Time for all planned work in milliseconds; default 0: the goal is target_error.
+    /// Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error.
     pub time_budget_ms: u32,
-    /// Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the goal is
-    /// time_budget_ms.
+    /// Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms.
     pub target_error: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -74,18 +74,19 @@ impl luxfer_plan_params {
 pub struct luxfer_plan_report {
     /// sizeof(luxfer_plan_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation.
+    /// 1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
+    /// stylisation.
     pub relights: u32,
-    /// Seconds for all planned work.
+    /// Predicted seconds for all planned work.
     pub seconds: f64,
-    /// Error of the picture.
+    /// Predicted error of the picture or of the stylisation.
     pub error: f64,
-    /// Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer.
+    /// Predicted seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer.
     pub relight_seconds: f64,
     /// Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer.
     pub relight_error: f64,
-    /// Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
-    /// stylisation.
+    /// Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in a plan
+    /// of a stylisation.
     pub render_seconds: f64,
     /// Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation.
     pub render_error: f64,
@@ -104,7 +105,7 @@ versioned!(luxfer_plan_report, [56], {
     }
 });
 
-/// The result of a plan: settings, and the predicted time and error of each stage.
+/// The result of a plan: the settings, and the predicted time and error, of each planned stage.
 #[derive(Default)]
 pub(super) struct Made {
     whole: Expected,
@@ -127,7 +128,7 @@ impl From<plan::Lighting> for Made {
     }
 }
 
-/// Settings of a stylisation, and the caller's choice to keep the data for updates.
+/// Settings of a planned stylisation, and whether to keep the data for updates.
 #[cfg(feature = "stylize")]
 pub(super) struct Stylisation {
     pub params: stylize::Params,
@@ -146,7 +147,7 @@ impl Made {
     }
 }
 
-/// The part of a plan for a stage; an error if the plan does not cover the stage.
+/// Returns the part of a plan for one stage; an error if the plan does not cover the stage.
 fn planned<'a, T>(part: &'a Option<T>, does: &str) -> Result<&'a T> {
     part.as_ref().ok_or_else(|| Error::new(ErrorKind::NotFound, format!("the plan is of nothing that {does}")))
 }
@@ -157,7 +158,7 @@ impl Handle for luxfer_plan {
     const NAME: &'static str = "luxfer_plan";
 }
 
-/// Creates a plan. The caller releases *plan. Any thread.
+/// Creates a plan without a result. The caller releases *plan. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_create(
     context: *mut luxfer_context,
@@ -170,11 +171,11 @@ pub unsafe extern "C" fn luxfer_plan_create(
 }
 
 /// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
-/// and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
-/// *job. Any thread.
+/// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,
@@ -196,13 +197,12 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 }
 
 /// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
-/// made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
-/// the fields relight and render of settings by the results of luxfer_plan_get_relight_params and
-/// luxfer_plan_get_render_params, which differ in the settings that affect quality. params gives the goal. The caller
-/// releases *job. Any thread.
+/// made. settings are the settings with which the transfer will be started; NULL stands for the defaults. After the
+/// job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and point the
+/// fields relight and render of settings at them. params gives the goal. The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
+/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
+/// with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_transfer(
     plan: *mut luxfer_plan,
@@ -247,10 +247,10 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
     })
 }
 
-/// Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
-/// rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths, and sets
-/// time_budget_ms to a quarter more than the time that these paths should take. So every run gives an equal picture
-/// unless the machine becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
+/// Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
+/// has chosen. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan
+/// sets the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So
+/// every run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(
@@ -266,8 +266,8 @@ pub unsafe extern "C" fn luxfer_plan_get_render_params(
     })
 }
 
-/// Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
-/// the call. size is sizeof *params. Any thread.
+/// Gets the settings to relight with: the settings given at the start, except those that affect quality, which the
+/// plan has chosen. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_relight_params(

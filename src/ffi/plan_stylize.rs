@@ -1,7 +1,7 @@
 //! Planning of stylisations
 //!
 //! Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
-//! actual input at reduced resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
+//! actual input at reduced resolution. This takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
 //! target, the smaller the part.
 
 use super::guard::enter;
@@ -14,15 +14,15 @@ use super::stylize::luxfer_stylize;
 use super::stylize_params::luxfer_stylize_params;
 use crate::plan;
 
-/// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
-/// plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings (NULL:
-/// the defaults). params gives the goal, a time or an error. The error is the square root of
-/// luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and guides, whose values
-/// are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to it. The caller
-/// releases *job. Any thread.
+/// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
+/// The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings,
+/// where NULL stands for the defaults. params gives the goal, a time or an error. The error is the square root of
+/// luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and guides, whose
+/// values are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to it. The
+/// caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or sets no goal or two, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
-/// of luxfer_stylize_start's job.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with the
+/// statuses of luxfer_stylize_start's job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_stylize(
     plan: *mut luxfer_plan,
@@ -45,8 +45,8 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
     })
 }
 
-/// Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
-/// the call. size is sizeof *params. Any thread.
+/// Gets the settings to stylise with: the settings given at the start, except the numbers of rounds and sweeps, which
+/// the plan has chosen. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_stylize_params(

@@ -1,9 +1,10 @@
-//! The caller's other pointers: results, strings and arrays, at any alignment.
+//! Pointers of the caller other than handles and structs of settings: places for results, strings and arrays, at any
+//! alignment.
 
 use crate::error::{Error, Result};
 use std::ffi::{CStr, CString, c_char};
 
-/// A pointer for a result: checked not to be null before the work, written once on success.
+/// A pointer to a place for a result. It is checked not to be null before the work, and written once on success.
 #[derive(Clone, Copy)]
 pub(super) struct Out<T>(*mut T);
 
@@ -22,7 +23,7 @@ impl<T> Out<T> {
     }
 }
 
-/// Writes a result unless the caller passed null.
+/// Writes a result to a place of the caller, unless the pointer is null.
 pub(super) fn set_optional<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: not null, and the caller guarantees that it is writable during the call.
@@ -30,7 +31,7 @@ pub(super) fn set_optional<T>(place: *mut T, value: T) {
     }
 }
 
-/// The first `N` floats of bytes of the caller, at any alignment; 0 for those that the bytes lack.
+/// Reads the first `N` floats from bytes of the caller, at any alignment. Floats beyond the end of the bytes are 0.
 pub(super) fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
     let mut values = [0.0; N];
     for (value, raw) in values.iter_mut().zip(bytes.chunks_exact(4)) {
@@ -39,7 +40,7 @@ pub(super) fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
     values
 }
 
-/// A zero-terminated string in UTF-8.
+/// Reads a zero-terminated string in UTF-8 from the caller's memory.
 pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     if text.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a string in UTF-8")));
@@ -51,8 +52,8 @@ pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     })
 }
 
-/// Copies a text into the caller's buffer, zero-terminated and truncated to `capacity` bytes; writes the capacity that
-/// the whole text needs, unless `needed` is null.
+/// Copies a text into the caller's buffer, zero-terminated and truncated to `capacity` bytes. Unless `needed` is null,
+/// it receives the capacity that the whole text needs.
 pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed: *mut usize) -> Result<()> {
     if buffer.is_null() && capacity > 0 {
         return Err(Error::argument(format!("buffer is NULL; it must have capacity = {capacity} bytes")));
@@ -73,13 +74,13 @@ pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed
     Ok(())
 }
 
-/// A text of an object as a C string; zeros in it are left out.
+/// Converts a text of an object to a C string; zero bytes in the text are left out.
 pub(super) fn c_string(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().filter(|&byte| byte != 0).collect();
     CString::new(bytes).unwrap_or_default()
 }
 
-/// `len` bytes in the caller's memory.
+/// Returns `len` bytes in the caller's memory, to be read.
 pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [u8]> {
     check_region(data, len, name)?;
     // SAFETY: not null, no longer than an object can be, and the caller guarantees that it is readable during the
@@ -87,7 +88,7 @@ pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [
     Ok(unsafe { std::slice::from_raw_parts(data, len) })
 }
 
-/// `len` bytes in the caller's memory, to be written.
+/// Returns `len` bytes in the caller's memory, to be written.
 pub(super) fn bytes_mut<'a>(data: *mut u8, len: usize, name: &str) -> Result<&'a mut [u8]> {
     check_region(data, len, name)?;
     // SAFETY: as above, and writable.

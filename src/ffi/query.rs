@@ -1,7 +1,7 @@
 //! Scene queries
 //!
-//! Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls return
-//! when their work is done.
+//! Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls are
+//! synchronous: they do their work before they return.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -14,7 +14,7 @@ use crate::render::World;
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// No index: no mesh, no triangle, no texture.
+/// No index: stands for no mesh, no triangle, no texture or no material.
 pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
 
 /// A ray. An element of arrays, so this struct never changes.
@@ -23,9 +23,9 @@ pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
 pub struct luxfer_ray {
     /// Start of the ray, in metres.
     pub origin: [f32; 3],
-    /// Direction; any length but 0.
+    /// Direction of the ray; any length but 0. Its length is the unit of distances along the ray.
     pub direction: [f32; 3],
-    /// Hits lie at distances in (0, t_max), in units of direction; may be infinite.
+    /// Only hits at distances in (0, t_max) count, in units of the length of direction; may be infinite.
     pub t_max: f32,
 }
 
@@ -33,25 +33,26 @@ pub struct luxfer_ray {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_hit {
-    /// Distance in units of the ray's direction; infinite for a miss.
+    /// Distance of the hit in units of the length of the ray's direction; infinite for a miss.
     pub t: f32,
     /// Index of the mesh; LUXFER_NONE for a miss.
     pub mesh: u32,
     /// Index of the triangle in its mesh; LUXFER_NONE for a miss.
     pub triangle: u32,
-    /// Barycentric coordinate of the triangle's second corner.
+    /// Barycentric coordinate of the hit for the triangle's second corner; 0 for a miss.
     pub u: f32,
-    /// Barycentric coordinate of the triangle's third corner.
+    /// Barycentric coordinate of the hit for the triangle's third corner; 0 for a miss.
     pub v: f32,
 }
 
 /// Rays per parallel task.
 const BLOCK: usize = 4096;
 
-/// Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
-/// with the lower index of mesh, then of triangle, is returned. Rays that are not finite or whose direction is 0 hit
-/// nothing. The first call after a scene is loaded or changed prepares it for tracing, which takes longer. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the place.
+/// Finds the nearest hits of count rays; hits receives count elements. All surfaces count as opaque and two-sided. Of
+/// hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays that are not
+/// finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares the scene
+/// for tracing, which takes longer. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_intersect(
     scene: *mut luxfer_scene,
@@ -70,7 +71,7 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
             let block = rays.chunks(BLOCK * size_of::<luxfer_ray>()).nth(i).unwrap_or_default();
             block.chunks_exact(size_of::<luxfer_ray>()).map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
         };
-        // Few rays take less time than it takes to wake another thread.
+        // For few rays, waking another thread would take longer than tracing them.
         let blocks = if count <= BLOCK {
             vec![block(0)]
         } else {
@@ -84,7 +85,7 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
     })
 }
 
-/// The fields of the hit of a ray, as words in the order of `luxfer_hit`.
+/// Traces a ray and returns the fields of its nearest hit as words, in the order of `luxfer_hit`.
 fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     let [ox, oy, oz, dx, dy, dz, t_max] = floats(ray);
     // Scale the direction by a power of two near its length, so that any length works.

@@ -1,8 +1,9 @@
 //! Rectification
 //!
-//! Finds vanishing points and the camera from the straight lines of a photo and, if a mask marks a plane, unwarps that
-//! plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel is
-//! (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
+//! Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
+//! that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
+//! is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1
+//! is vertical. Camera space is x to the right, y down, z forward.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -25,28 +26,28 @@ pub struct luxfer_rectify {
     _opaque: [u8; 0],
 }
 
-/// Detector of lines: a LUXFER_LINES_ value.
+/// The detector of lines: a LUXFER_LINES_ value.
 pub type luxfer_lines = i32;
-/// Segments from regions of similar gradient direction, with sub-pixel end points.
+/// Fits segments with sub-pixel end points to regions of similar gradient direction.
 pub const LUXFER_LINES_REGIONS: luxfer_lines = 0;
 /// The paper's method: gradient-restricted Hough transform of Canny edges.
 pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 
-/// Search for vanishing points: a LUXFER_SEARCH_ value.
+/// The search for vanishing points: a LUXFER_SEARCH_ value.
 pub type luxfer_search = i32;
-/// Searches three orthogonal directions and the focal length together, then refines each direction freely.
+/// Finds three orthogonal directions and the focal length together, then refines each direction by itself.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
-/// The paper's method: one group of lines after the other.
+/// The paper's method: finds one vanishing point after the other, each from the lines that are left.
 pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
 
-/// Distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
+/// The distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
 pub type luxfer_metric = i32;
 /// The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
 /// The measure as printed in the paper (Eq. 2), evaluated on the whole visible line.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
-/// Where a focal length came from: a LUXFER_FOCAL_ value.
+/// The source of a focal length: a LUXFER_FOCAL_ value.
 pub type luxfer_focal_source = i32;
 /// Set by the caller.
 pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
@@ -72,29 +73,29 @@ pub const LUXFER_RECTIFY_VALID: luxfer_rectify_image = 1;
 pub struct luxfer_rectify_params {
     /// sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init.
     pub struct_size: u32,
-    /// LUXFER_LINES_ value; default LUXFER_LINES_REGIONS.
+    /// Detector of lines: a LUXFER_LINES_ value; default LUXFER_LINES_REGIONS.
     pub detector: luxfer_lines,
-    /// LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN.
+    /// Search for vanishing points: a LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN.
     pub search: luxfer_search,
-    /// LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
+    /// Distance of a vanishing point from a line: a LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
     pub metric: luxfer_metric,
-    /// Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
-    /// LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
+    /// Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for lines,
+    /// in [1e-4, pi/2], for LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
     pub hough_band: f64,
-    /// Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if it has
-    /// any.
+    /// Focal length in pixels, in [1e-3, 1e9]; 0, the default: estimated from the lines, and from the photo's metadata
+    /// if it has any.
     pub focal: f64,
-    /// Principal point in pixels; NaN, the default: the image's centre.
+    /// Principal point in pixels, x and y in [-1e9, 1e9]; NaN, the default: the image's centre.
     pub principal: [f64; 2],
     /// The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the plane.
     pub plane_axes: [i32; 2],
-    /// Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
-    /// resolution of the photo does not support this size.
+    /// Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is
+    /// smaller if the resolution of the photo does not support this size.
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they would be
-    /// magnified more are cut off.
+    /// Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane with a
+    /// larger magnification, which lie far from the camera, are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -168,14 +169,14 @@ pub struct luxfer_rectify_report {
     pub struct_size: u32,
     /// Number of line segments found.
     pub segments: u32,
-    /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
-    /// infinity.
+    /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0
+    /// at infinity.
     pub vanishing_points: [[f64; 3]; 3],
     /// Standard deviations of the directions of the vanishing points in camera space, in radians.
     pub vanishing_errors: [f64; 3],
-    /// Number of segments that agree with each vanishing point; 0: derived from the other two.
+    /// Number of segments that agree with each vanishing point; 0: the point is derived from the other two.
     pub vanishing_support: [u32; 3],
-    /// LUXFER_FOCAL_ value.
+    /// Source of the focal length: a LUXFER_FOCAL_ value.
     pub focal_source: luxfer_focal_source,
     /// Focal length in pixels.
     pub focal: f64,
@@ -185,21 +186,21 @@ pub struct luxfer_rectify_report {
     pub axes: [[f64; 3]; 3],
     /// 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0.
     pub is_unwarped: u32,
-    /// Must be 0.
+    /// Reserved; always 0.
     pub reserved: u32,
-    /// Homography from unwarped pixels to photo pixels, row by row.
+    /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row.
     pub to_photo: [f64; 9],
-    /// Corners of the unwarped rectangle in the photo, x and y in pixels.
+    /// Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise.
     pub corners: [[f64; 2]; 4],
     /// Expected error of each corner, in unwarped pixels.
     pub corner_errors: [f64; 4],
-    /// Size of an unwarped pixel, divided by the camera's distance from the plane.
+    /// Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane.
     pub pixel_size: f64,
     /// Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed.
     pub aspect_confidence: f64,
     /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
-    /// below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
-    /// and not corrected. NaN if the photo has too few lines.
+    /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
+    /// edges, and not corrected. NaN if the photo has too few lines.
     pub distortion: f64,
     /// Standard deviation of distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
@@ -285,7 +286,8 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// The inputs of the view, which is reused as long as they do not change.
+    /// The photo in which the view was found, and the settings. The view is used again as long as the photo and the
+    /// settings are unchanged.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }
@@ -302,7 +304,7 @@ fn unwarped(output: &Output) -> Result<&Arc<Unwarped>> {
     })
 }
 
-/// Creates the stage. The caller releases *rectify. Any thread.
+/// Creates a rectification without inputs. The caller releases *rectify. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_create(
     context: *mut luxfer_context,
@@ -329,8 +331,8 @@ pub unsafe extern "C" fn luxfer_rectify_set_photo(
     })
 }
 
-/// Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then the
-/// job finds only lines and vanishing points. Any thread.
+/// Sets the mask of the plane to unwarp: 1 on the plane, 0 elsewhere; 1 channel, the photo's size. mask may be NULL:
+/// the job then finds only lines, vanishing points and the camera. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_set_mask(
     rectify: *mut luxfer_rectify,
@@ -345,12 +347,12 @@ pub unsafe extern "C" fn luxfer_rectify_set_mask(
     })
 }
 
-/// Starts a job that finds lines, vanishing points and the camera, unless they are known for this photo from an earlier
-/// job, and unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any
-/// thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
-/// range.
+/// Starts a job that finds lines, vanishing points and the camera, and unwarps the plane if its mask is set. If an
+/// earlier job with equal settings has found the camera of this photo, the job uses that camera. params may be NULL
+/// for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_start(
     rectify: *mut luxfer_rectify,
@@ -383,7 +385,7 @@ pub unsafe extern "C" fn luxfer_rectify_start(
     })
 }
 
-/// Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+/// Gets the unwarped plane or its mask; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_image(
@@ -405,7 +407,7 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
 }
 
 /// Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
-/// pixels outside the photo become 0. Returns when its work is done, after a few milliseconds per megapixel. The caller
+/// pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
 /// releases *warped. Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
 #[unsafe(no_mangle)]
@@ -429,7 +431,7 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
     })
 }
 
-/// Gets the results and their errors. size is sizeof *report. Any thread.
+/// Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_report(

@@ -1,7 +1,7 @@
 //! Relighting
 //!
-//! Solves for the colour and intensity of an emission so that a surface of the scene has the same colour as in the
-//! photo. The solution is a factor for the emission, per channel, with a confidence interval.
+//! Solves for the colour and intensity of an emission with which a surface of the scene, the target, has the same
+//! colour as in the photo. The solution is a factor for the emission, per channel, with a confidence interval.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
@@ -19,25 +19,25 @@ use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// A relighting of a scene. See luxfer_relight_create.
+/// A relighting: a solver for the emission of one material. See luxfer_relight_create.
 pub struct luxfer_relight {
     _opaque: [u8; 0],
 }
 
-/// Quantity that should match the photo: a LUXFER_QUANTITY_ value.
+/// The quantity of the target surface that should match the photo: a LUXFER_QUANTITY_ value.
 pub type luxfer_quantity = i32;
 /// Light that the target surface reflects, its albedo included: the radiance that a photo shows.
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
 /// Light that arrives at the target surface, as if the surface were white.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
 
-/// How the target surface is compared: a LUXFER_FIT_ value.
+/// How the light of the target surface is compared with its target value: a LUXFER_FIT_ value.
 pub type luxfer_fit = i32;
-/// The mean over the target surface.
+/// By the mean over the target surface.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
-/// Every point of the target surface, by least squares, as gradient descent on texels does. Bright points count more,
-/// so the emission is dimmer than with LUXFER_FIT_MEAN: by the factor 1 / (1 + CV²) without other light, where CV is
-/// the coefficient of variation of the response over the target.
+/// At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
+/// more, so the emission is dimmer than with LUXFER_FIT_MEAN: without other light by the factor 1 / (1 + CV²), where
+/// CV is the coefficient of variation of the response over the target.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
@@ -66,12 +66,12 @@ pub const LUXFER_OUTCOME_TOO_DIM: luxfer_outcome = 3;
 pub struct luxfer_relight_params {
     /// sizeof(luxfer_relight_params), set by luxfer_relight_params_init.
     pub struct_size: u32,
-    /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
+    /// Quantity to match: a LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in [0, 1];
-    /// default 0.01; 0: no target.
+    /// Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the scale,
+    /// in [0, 1]; default 0.01; 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -119,7 +119,7 @@ impl luxfer_relight_params {
     }
 }
 
-/// The solution and its confidence.
+/// The solution of a relighting and its confidence.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_relight_report {
@@ -131,15 +131,16 @@ pub struct luxfer_relight_report {
     pub scale: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of scale.
     pub half_width: [f64; 3],
-    /// Mean radiance of the target from the emission at scale 1, in cd/m².
+    /// Mean radiance of the target from the emission at scale 1, in cd/m² per channel.
     pub response: [f64; 3],
-    /// Mean radiance of the target from all other light, in cd/m².
+    /// Mean radiance of the target from all other light, in cd/m² per channel.
     pub background: [f64; 3],
     /// LUXFER_OUTCOME_ value of each channel.
     pub outcome: [luxfer_outcome; 3],
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
-    /// The largest relative half-width among the channels that meet their target.
+    /// The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
+    /// channels.
     pub error: f64,
     /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this value, at
     /// the exposure that shows the target as middle grey.
@@ -210,7 +211,7 @@ pub(super) struct Inputs {
     constraint: [Constraint; 3],
 }
 
-/// The scene, the emitting material and the target mesh, as the host has named them.
+/// The scene, the emitting material and the target mesh, as the host has set them.
 #[derive(Clone)]
 pub(super) struct Emitter {
     pub scene: Arc<SceneObject>,
@@ -224,7 +225,7 @@ impl Handle for luxfer_relight {
     const NAME: &'static str = "luxfer_relight";
 }
 
-/// Creates the stage. The caller releases *relight. Any thread.
+/// Creates a relighting without inputs. The caller releases *relight. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_create(
     context: *mut luxfer_context,
@@ -236,9 +237,9 @@ pub unsafe extern "C" fn luxfer_relight_create(
     })
 }
 
-/// Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
-/// luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
-/// the scene. Any thread.
+/// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
+/// luxfer_scene_place_emission returns the indices of this material and of a new mesh that has it. The solution is a
+/// factor for the emission that the material has in the scene. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
@@ -256,8 +257,8 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
     })
 }
 
-/// Sets the mean radiance that the mesh should have, in cd/m² per channel, each finite and >= 0; for
-/// LUXFER_QUANTITY_INCIDENT the radiance of a white surface in the same light, illuminance / pi. Any thread.
+/// Sets the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
+/// LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_target(
     relight: *mut luxfer_relight,
@@ -275,9 +276,9 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
 }
 
 /// Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
-/// channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale
-/// of the channels that should equal their target if this scale respects the limit, else the scale that just reaches
-/// the limit. Any thread.
+/// channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+/// scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the
+/// limit. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_constraint(
@@ -303,7 +304,7 @@ impl Emitter {
         Ok(emitter)
     }
 
-    /// The target's triangles.
+    /// Returns (mesh, triangle) for each triangle of the target mesh.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         if self.material as usize >= scene.materials.len() {
             return Err(missing("material", self.material, scene.materials.len()));
@@ -314,10 +315,11 @@ impl Emitter {
     }
 }
 
-/// Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
-/// valid or a setting is out of range.
+/// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
+/// caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
+/// LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,

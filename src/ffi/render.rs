@@ -1,6 +1,6 @@
 //! Rendering
 //!
-//! A path tracer that renders a scene in cd/m². The image improves pass by pass: while the job runs, and after a
+//! A path tracer that renders a scene in cd/m². The image improves pass by pass. While the job runs, and after a
 //! cancel, the current image can be read with an estimate of its error.
 
 use super::context::luxfer_context;
@@ -30,8 +30,9 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of their paths, so
-/// their errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
+/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the results of
+/// their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is up to eight times
+/// the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
@@ -53,29 +54,30 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error this is the maximum of the mean number of
+    /// paths over all pixels.
     pub samples: u32,
-    /// Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
-    /// error most. Default 0: no target.
+    /// Stop when the field error of luxfer_render_report falls to this value, >= 0; paths then go to the pixels where
+    /// they reduce the error most. Default 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Seed of the paths; default 1.
     pub seed: u64,
-    /// Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the root
-    /// mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by that
-    /// luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19 times
-    /// out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target. Default
-    /// 0: no target.
+    /// Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the
+    /// root mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by
+    /// that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19
+    /// times out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target.
+    /// Default 0: no target.
     pub pixel_error: f32,
     /// Must be 0.
     pub reserved: u32,
-    /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
-    /// 0: no preview, as for final images. It does not change the other images.
+    /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
+    /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
-    /// Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
-    /// reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default 0: no
-    /// target. With several targets, rendering stops when all are reached.
+    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0; paths then go to the
+    /// pixels where they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright
+    /// ones. Default 0: no target. With several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 
@@ -123,17 +125,17 @@ pub struct luxfer_render_report {
     pub struct_size: u32,
     /// Mean number of paths per pixel so far.
     pub samples: u32,
-    /// Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a pixel has
+    /// Root mean square of the standard errors of all pixels, divided by the image's mean; infinite while a pixel has
     /// fewer than two paths.
     pub error: f64,
     /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// Estimated bias of the preview: the difference between its expected value and the true image, as root mean square
-    /// over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
+    /// Estimated bias of the preview: the difference between its expected value and the true image, as root mean
+    /// square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
     pub preview_bias: f64,
-    /// Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its channels,
-    /// but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths. With few paths
-    /// it overestimates: with 8 by about a quarter.
+    /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
+    /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
+    /// paths. With few paths this estimate is too high: with 8 paths by about a quarter.
     pub relative_error: f64,
 }
 
@@ -144,15 +146,15 @@ versioned!(luxfer_render_report, [40], {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
-    /// The first camera of the scene unless the caller gives one.
+    /// Camera that the caller has set; `None`: the first camera of the scene.
     camera: Option<Camera>,
     pub(super) outputs: Outputs,
-    /// Files to be merged.
+    /// Files of parts that the caller has added, to be merged.
     pub(super) parts: Vec<parts::File>,
 }
 
 impl Inputs {
-    /// The current scene and the camera.
+    /// Returns the scene object, a snapshot of the scene as it is now, and the camera.
     pub(super) fn view(&self) -> Result<(Arc<SceneObject>, Arc<Scene>, Camera)> {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
@@ -163,7 +165,7 @@ impl Inputs {
         Ok((object, scene, camera))
     }
 
-    /// The current scene, the camera and the settings, as one rendering; params may be NULL for the defaults.
+    /// Returns a snapshot of a rendering's inputs: scene, camera and settings. `params` may be NULL for the defaults.
     pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
         let (object, scene, camera) = self.view()?;
         let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params()? };
@@ -171,7 +173,7 @@ impl Inputs {
     }
 }
 
-/// The inputs of a rendering at the start of its job; later changes do not affect them.
+/// The inputs of a rendering as they are at the start of its job; later changes do not affect them.
 pub(super) struct Shot {
     object: Arc<SceneObject>,
     scene: Arc<Scene>,
@@ -180,7 +182,7 @@ pub(super) struct Shot {
 }
 
 impl Shot {
-    /// The scene prepared for tracing.
+    /// Returns the scene prepared for tracing.
     pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
         self.object.world(&self.scene, job)
     }
@@ -192,7 +194,7 @@ impl Handle for luxfer_render {
     const NAME: &'static str = "luxfer_render";
 }
 
-/// Creates the stage. The caller releases *render. Any thread.
+/// Creates a rendering without inputs. The caller releases *render. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_create(
     context: *mut luxfer_context,
@@ -219,7 +221,7 @@ pub unsafe extern "C" fn luxfer_render_set_scene(
     })
 }
 
-/// Sets the camera, such as one that luxfer_scene_get_camera has written. camera may be NULL, the default: the first
+/// Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
 /// camera of the scene. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_camera(
@@ -235,9 +237,9 @@ pub unsafe extern "C" fn luxfer_render_set_camera(
     })
 }
 
-/// Starts a job that renders. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start(
     render: *mut luxfer_render,
@@ -249,7 +251,7 @@ pub unsafe extern "C" fn luxfer_render_start(
         stage.start(job, move |_, stage, job| {
             let world = shot.world(job.part(0.0, 0.05))?;
             render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
-                // If memory is short, skip publishing this intermediate state.
+                // If memory is short, do not publish this intermediate state.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);
                 }
@@ -258,7 +260,7 @@ pub unsafe extern "C" fn luxfer_render_start(
     })
 }
 
-/// The function that gets the preview of a rendering; an error if the rendering has no preview.
+/// Returns the function that picks the preview from a film; an error if the rendering has no preview.
 pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     if film.preview.is_none() {
         let message = "the rendering has no preview: start it with luxfer_render_params.preview above 0";

@@ -1,20 +1,20 @@
 //! Outputs of a rendering
 //!
-//! Additional images from the same paths as the main image: light selected by light path expressions, and properties of
-//! the visible surfaces (AOVs). Request them before luxfer_render_start, and read them as layers while the job runs or
-//! afterwards: first the layers of the expressions in the order in which they were added, then the AOVs in the order of
-//! their flags. The main image is equal to the bit with and without them.
+//! Additional images (layers) from the same paths as the main image: light that light path expressions select, and
+//! properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
+//! runs or afterwards. First come the layers of the expressions, in the order in which they were added, then the AOVs
+//! in the order of their flags. The main image is equal to the bit with and without layers.
 //!
-//! An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
-//! as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
-//! camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R (reflection), T
-//! (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy), S (mirror or
-//! clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..] [^..] * + ?
-//! {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or of its
-//! material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
-//! light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment. Arnold's
-//! built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
-//! with _direct or _indirect.
+//! An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye
+//! (E), as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at
+//! the camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R
+//! (reflection), T (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy),
+//! S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..]
+//! [^..] * + ? {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or
+//! of its material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers
+//! them; light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment.
+//! Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
+//! alone or with _direct or _indirect.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -45,19 +45,20 @@ pub const LUXFER_AOV_ALBEDO: u32 = 32;
 /// Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit. Layer
 /// IndexOB, channel X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
-/// Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit. Layer
-/// IndexMA, channel X.
+/// Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit.
+/// Layer IndexMA, channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
 /// Share of the pixel that surfaces cover. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;
 /// Luminance of the main image, in cd/m². Layer Luminance, channel Y.
 pub const LUXFER_AOV_LUMINANCE: u32 = 512;
 
-/// Letters that match emissive surfaces and the environment in camera-first expressions: a LUXFER_EMITTER_AS_ value.
+/// Letters that match emissive surfaces and the environment in expressions that start at the camera: a
+/// LUXFER_EMITTER_AS_ value.
 pub type luxfer_emitter_as = i32;
-/// Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default.
+/// Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default.
 pub const LUXFER_EMITTER_AS_BOTH: luxfer_emitter_as = 0;
-/// Every light matches L only.
+/// Emissive surfaces and the environment match L only.
 pub const LUXFER_EMITTER_AS_LIGHT: luxfer_emitter_as = 1;
 /// As in Open Shading Language: surfaces match O, the environment matches B.
 pub const LUXFER_EMITTER_AS_OBJECT: luxfer_emitter_as = 2;
@@ -65,8 +66,8 @@ pub const LUXFER_EMITTER_AS_OBJECT: luxfer_emitter_as = 2;
 /// Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
 /// without dots, quotes or control characters, and different from the names of the other layers. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
-/// LUXFER_INVALID_OPERATION while a job runs. The job ends with LUXFER_NOT_FOUND if no object in the scene has a label
-/// of the expression, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
+/// LUXFER_INVALID_OPERATION while a job runs. The rendering's job ends with LUXFER_NOT_FOUND if no object of the scene
+/// has a label that the expression names, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_add_expression(
     render: *mut luxfer_render,
@@ -91,7 +92,8 @@ pub unsafe extern "C" fn luxfer_render_clear_expressions(render: *mut luxfer_ren
     })
 }
 
-/// Sets the letters that match emissive surfaces and the environment; a LUXFER_EMITTER_AS_ value. Any thread.
+/// Sets the letters that match emissive surfaces and the environment; emitter_as is a LUXFER_EMITTER_AS_ value. Any
+/// thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_emitter_as(
@@ -143,8 +145,8 @@ pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_rende
     })
 }
 
-/// Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
-/// receives the capacity that the whole name needs. Any thread.
+/// Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
+/// starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer_name(
@@ -160,7 +162,7 @@ pub unsafe extern "C" fn luxfer_render_get_layer_name(
     })
 }
 
-/// Finds a layer by its name. Any thread.
+/// Finds a layer by its name; *index receives its index. Any thread.
 /// LUXFER_NOT_FOUND if no layer has that name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_find_layer(
@@ -180,7 +182,7 @@ pub unsafe extern "C" fn luxfer_render_find_layer(
     })
 }
 
-/// Gets a layer in its current state: 3 channels of light in cd/m², or the channels of an AOV. The caller releases
+/// Gets a layer in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The caller releases
 /// *image. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
@@ -203,8 +205,8 @@ pub unsafe extern "C" fn luxfer_render_get_layer(
 
 /// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
 /// LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
-/// The header holds the expression of each layer of light in the attribute luxfer.lpe.NAME. path is UTF-8; an existing
-/// file is replaced only once the new one is complete. Any thread.
+/// For each layer of light, the attribute luxfer.lpe.NAME of the header holds its expression. path is UTF-8; an
+/// existing file is replaced only once the new one is complete. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_write_exr(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {

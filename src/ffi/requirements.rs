@@ -49,9 +49,9 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter: light that is scattered more often is at most a share of all light that surfaces
-    /// scatter; the argument error gives this share. 0 if the albedos give no bound. For information only: no rendering
-    /// ends paths at this number.
+    /// Number of bounces that matter. Light with more bounces than this makes up at most the share error of all light
+    /// that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
+    /// bound. For information only: no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,
@@ -75,9 +75,9 @@ versioned!(luxfer_requirements, [40], {
     }
 });
 
-/// Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
-/// bounces. The first call after a change of the scene prepares it for tracing. size is sizeof *requirements. Any
-/// thread.
+/// Gets the features that a scene requires of the renderer. error, in [0, 1), is the share of light that the field
+/// bounces neglects. The first call after a change of the scene prepares the scene for tracing. size is sizeof
+/// *requirements. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_requirements(
@@ -115,10 +115,10 @@ pub unsafe extern "C" fn luxfer_scene_get_requirements(
     })
 }
 
-/// Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
-/// rendered, with the objects that have it: one sentence per line, as zero-terminated UTF-8, truncated to capacity
-/// bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
-/// capacity is 0. Any thread.
+/// Describes in words what the renderer skips in a scene. It also names each extension and feature of the scene's file
+/// that is not rendered, with the objects that have it. The text has one sentence per line and is zero-terminated
+/// UTF-8, truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole
+/// text needs. buffer may be NULL if capacity is 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_requirements_text(

@@ -2,8 +2,8 @@
 //!
 //! A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
 //! world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
-//! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
-//! unchanged.
+//! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the
+//! scene unchanged.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -29,12 +29,12 @@ pub struct luxfer_scene {
     _opaque: [u8; 0],
 }
 
-/// Receives the next size bytes of a file. The export calls it one or more times, in order, on the calling thread and
-/// with no lock held. Return 0 to continue, any other value to stop: the export then returns LUXFER_IO. It must not
-/// throw an exception or leave by longjmp.
+/// Receives the next size bytes of a file at data, and the pointer user of the caller. The export calls it one or more
+/// times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to continue, any other
+/// value to stop: the export then returns LUXFER_IO. It must not throw an exception or leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
-/// Numbers of the objects in a scene.
+/// Number of objects of each kind in a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_counts {
@@ -58,28 +58,28 @@ versioned!(luxfer_scene_counts, [32], {
     Self { struct_size: 32, meshes: 0, materials: 0, textures: 0, lights: 0, cameras: 0, triangles: 0 }
 });
 
-/// A planar surface of a scene.
+/// A planar surface of a scene: triangles in one plane, and their bounding rectangle.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_surface {
     /// sizeof(luxfer_surface), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of triangles.
+    /// Number of triangles in the plane.
     pub triangles: u32,
     /// Corner of the bounding rectangle where u = v = 0, in metres.
     pub origin: [f32; 3],
     /// Unit vector of u, along the first side of the rectangle.
     pub u_axis: [f32; 3],
-    /// Unit vector of v, along the second side.
+    /// Unit vector of v, along the second side of the rectangle.
     pub v_axis: [f32; 3],
     /// Unit normal on the side that will emit; it points into the room.
     pub normal: [f32; 3],
-    /// Lengths of the sides along u and v, in metres.
+    /// Lengths of the rectangle's sides along u and v, in metres.
     pub size: [f32; 2],
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, such
-    /// as the sides of a vault; they receive no emission.
+    /// Area in m² of the other triangles of the object or material whose planes are inclined to this plane by 5 to 75
+    /// degrees, such as the sides of a vault; they receive no emission.
     pub sloped_area: f32,
 }
 
@@ -123,13 +123,13 @@ impl Handle for luxfer_scene {
 }
 
 impl SceneObject {
-    /// A scene whose size is counted in the budget.
+    /// Creates the object of a scene whose size is counted in the memory budget.
     pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
         let charges = vec![context.charge(cost(&scene))?];
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
     }
 
-    /// A scene from a file, each part of which is counted in the budget before it is made.
+    /// Reads a scene from a file. Each part of the scene is counted in the memory budget before it is made.
     pub(super) fn read(
         context: &Arc<Context>,
         read: impl FnOnce(&dyn gltf::Budget) -> Result<Scene>,
@@ -140,18 +140,19 @@ impl SceneObject {
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
-    /// A scene that a stage has made; its size is not counted in the budget.
+    /// Creates the object of a scene that a stage has made; its size is not counted in the memory budget.
     pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
         let state = State { scene, world: None, charges: Vec::new() };
         Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
     }
 
-    /// The current scene, shared.
+    /// Returns the scene as it is now; later changes work on a copy.
     pub(super) fn snapshot(&self) -> Arc<Scene> {
         lock(&self.state).scene.clone()
     }
 
-    /// Changes the scene and charges `bytes` to the memory budget; after an error the scene must be unchanged.
+    /// Changes the scene and charges `bytes` to the memory budget. If `change` fails, it must leave the scene
+    /// unchanged.
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
@@ -164,12 +165,12 @@ impl SceneObject {
         Ok(result)
     }
 
-    /// The scene `scene` prepared for tracing, if an earlier call has prepared it.
+    /// Returns the prepared form of `scene` if an earlier call has prepared it for tracing.
     fn kept_world(&self, scene: &Arc<Scene>) -> Option<Arc<World>> {
         lock(&self.state).world.clone().filter(|world| Arc::ptr_eq(world.scene(), scene))
     }
 
-    /// The current scene prepared for tracing, for calls that trace before they return.
+    /// Returns the current scene prepared for tracing, for calls that trace before they return.
     pub(super) fn ready_world(&self) -> Result<Arc<World>> {
         let scene = self.snapshot();
         match self.kept_world(&scene) {
@@ -181,13 +182,13 @@ impl SceneObject {
         }
     }
 
-    /// Prepares the scene `scene` for tracing; the result is kept until the scene changes.
+    /// Prepares `scene` for tracing. The result is kept until the scene changes.
     pub(super) fn world(&self, scene: &Arc<Scene>, job: Job) -> Result<Arc<World>> {
         if let Some(world) = self.kept_world(scene) {
             job.report(1.0);
             return Ok(world);
         }
-        // Build without the lock, as it takes long and other calls should not wait.
+        // Build without the lock: building takes long, and other calls should not wait for it.
         let world = Arc::new(World::build(scene.clone(), job)?);
         let state = &mut *lock(&self.state);
         if Arc::ptr_eq(&state.scene, scene) {
@@ -197,7 +198,7 @@ impl SceneObject {
     }
 }
 
-/// The budget of a context for a scene that is read.
+/// Charges the parts of a scene to the memory budget of a context while the scene is read from a file.
 struct Charges<'a> {
     context: &'a Arc<Context>,
     monitor: Arc<Monitor>,
@@ -218,7 +219,7 @@ impl gltf::Budget for Charges<'_> {
     }
 }
 
-/// Bytes of a scene's meshes and textures.
+/// Memory of a scene's meshes and textures in bytes.
 fn cost(scene: &Scene) -> u64 {
     let meshes = scene.meshes.iter().map(|m| {
         let uvs = m.uvs.iter().map(Vec::len).sum::<usize>();
@@ -241,8 +242,8 @@ pub unsafe extern "C" fn luxfer_scene_create(
     })
 }
 
-/// Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
-/// only once the new one is complete. Any thread.
+/// Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is
+/// replaced only once the new one is complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
@@ -255,7 +256,7 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through the caller's function, which receives user. Any thread.
+/// Writes a scene as GLB through a function of the caller, write, which receives user. Any thread.
 /// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(
@@ -276,7 +277,7 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
     })
 }
 
-/// Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread.
+/// Gets the number of objects of each kind in a scene. size is sizeof *counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_counts(
     scene: *mut luxfer_scene,
@@ -300,10 +301,11 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each in [0, 1e15];
-/// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
-/// image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
-/// right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
+/// Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, the
+/// radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the
+/// radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is
+/// towards -z, its top towards +y, the centre of its right half towards +x. The renderer samples the image in
+/// proportion to its brightness. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
@@ -340,8 +342,8 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     })
 }
 
-/// Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. An emission texture of the
-/// material is multiplied by it. Any thread.
+/// Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. The material's emission texture,
+/// if any, is multiplied by them. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_emission(
@@ -362,8 +364,8 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
     })
 }
 
-/// Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. size is
-/// sizeof *found. Any thread.
+/// Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
+/// object or material, in UTF-8. size is sizeof *found. Any thread.
 /// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
 /// there is no planar surface.
 #[unsafe(no_mangle)]
@@ -392,9 +394,9 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 }
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
-/// luxfer_scene_find_surface finds for this name. The surface becomes a separate mesh with a copy of its material,
-/// which emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the
-/// new mesh and material; mesh and material may be NULL. Any thread.
+/// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material, which
+/// emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the new
+/// mesh and material; each pointer may be NULL. Any thread.
 /// Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
@@ -423,14 +425,14 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
     })
 }
 
-/// A colour of light, after a check of its range.
+/// Makes a colour of light from three channels; an error if a channel is out of range.
 pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
     let colour = Vec3::new(red, green, blue);
     check_light(name, colour)?;
     Ok(colour)
 }
 
-/// The error for an index beyond the end of a list.
+/// The error for an index that is beyond the end of a list of `count` items.
 pub(super) fn missing(what: &str, index: u32, count: usize) -> Error {
     Error::new(ErrorKind::NotFound, format!("there is no {what} {index}; there are {count}"))
 }

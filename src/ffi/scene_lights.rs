@@ -1,7 +1,7 @@
 //! Lights of a scene
 //!
-//! Punctual lights: points, spots, directional lights (parallel light from far away) and luminaires with a measured
-//! intensity distribution. Area lights are surfaces whose material emits.
+//! Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
+//! luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
 
 use super::distribution::luxfer_distribution;
 use super::guard::enter;
@@ -17,13 +17,13 @@ use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// A kind of light: a LUXFER_LIGHT_ value.
+/// A kind of punctual light: a LUXFER_LIGHT_ value.
 pub type luxfer_light_kind = i32;
 /// A point light: equal intensity in every direction.
 pub const LUXFER_LIGHT_POINT: luxfer_light_kind = 0;
-/// A spot light: shines into a cone.
+/// A spot light: it shines into a cone.
 pub const LUXFER_LIGHT_SPOT: luxfer_light_kind = 1;
-/// A directional light: shines from infinitely far away.
+/// A directional light: it shines from infinitely far away, with parallel rays.
 pub const LUXFER_LIGHT_DIRECTIONAL: luxfer_light_kind = 2;
 
 /// A punctual light. Fill it with luxfer_light_params_init.
@@ -32,18 +32,20 @@ pub const LUXFER_LIGHT_DIRECTIONAL: luxfer_light_kind = 2;
 pub struct luxfer_light_params {
     /// sizeof(luxfer_light_params), set by luxfer_light_params_init.
     pub struct_size: u32,
-    /// LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT.
+    /// Kind of the light: a LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT.
     pub kind: luxfer_light_kind,
-    /// Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position of a point or spot light, in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0).
+    /// Direction in which a spot or directional light shines; any length but 0; default (0, -1, 0).
     pub direction: [f32; 3],
-    /// Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in lux on
-    /// a surface that faces it. Each channel >= 0; default (1, 1, 1).
+    /// Per channel, each in [0, 1e15]; default (1, 1, 1). For a point light the luminous intensity in cd; for a spot
+    /// light the luminous intensity in cd on its axis; for a directional light the illuminance in lux on a surface
+    /// that faces it.
     pub intensity: [f32; 3],
-    /// Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default 0.
+    /// Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle]; default
+    /// 0.
     pub inner_angle: f32,
-    /// Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4.
+    /// Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4.
     pub outer_angle: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -85,7 +87,8 @@ impl luxfer_light_params {
     }
 }
 
-/// Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+/// Adds a punctual light to a scene; *index, unless NULL, receives its index among the punctual lights. params may be
+/// NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_light(
@@ -112,17 +115,17 @@ pub struct luxfer_luminaire_params {
     pub struct_size: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution.
+    /// Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution.
     pub flux: f64,
-    /// Position in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down.
+    /// Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down.
     pub axis: [f32; 3],
-    /// Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0; default (1,
-    /// 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise.
+    /// Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
+    /// default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
     pub c0: [f32; 3],
-    /// Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts; default (1,
-    /// 1, 1).
+    /// Linear RGB colour of the light, each channel in [0, 1e15] and not all 0; only the ratio of the channels counts;
+    /// default (1, 1, 1).
     pub colour: [f32; 3],
 }
 
@@ -139,8 +142,8 @@ versioned!(luxfer_luminaire_params, [64], {
 });
 
 impl luxfer_luminaire_params {
-    /// The luminaire as a punctual light. `rated` is the flux of its distribution, `distribution` the distribution's
-    /// index.
+    /// Returns the luminaire as a punctual light. `rated` is the flux of its distribution in lumens, `distribution`
+    /// the index of its distribution in the scene.
     fn light(&self, rated: f64, distribution: usize) -> Result<PunctualLight> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
@@ -152,7 +155,7 @@ impl luxfer_luminaire_params {
             Error::argument(format!("luminaire.axis is {:?}; it must be finite and not zero", self.axis))
         })?;
         let c0 = Vec3::from_array(self.c0).try_normalize().and_then(|c0| {
-            // Refuse a direction that is nearly along the axis, as one exactly along it.
+            // Refuse a direction that is nearly parallel to the axis, as well as one that is exactly parallel.
             let across = c0 - axis * c0.dot(axis);
             across.try_normalize().filter(|_| across.length() > 1e-4)
         });
@@ -174,10 +177,11 @@ impl luxfer_luminaire_params {
     }
 }
 
-/// Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
-/// index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
-/// the surfaces that it lights. No picture shows it: rate its glare with luxfer_scene_get_glare. params may be NULL for
-/// the defaults. Any thread.
+/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by distribution.
+/// *index, unless NULL, receives its index among the punctual lights. A point is a good model of a luminaire only if
+/// the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The luminaire itself is
+/// invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the defaults. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(
@@ -191,7 +195,7 @@ pub unsafe extern "C" fn luxfer_scene_add_luminaire(
         let distribution = handle::borrow_in(object.context(), distribution, "distribution")?;
         let luminaire = distribution.luminaire();
         let added = object.change(0, |scene| {
-            // Luminaires with one distribution share its entry in the scene.
+            // Luminaires with one distribution share one entry in the scene's list of distributions.
             let known = scene.distributions.iter().position(|d| Arc::ptr_eq(d, luminaire));
             let light = params.light(luminaire.flux(), known.unwrap_or(scene.distributions.len()))?;
             if known.is_none() {

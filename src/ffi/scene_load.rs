@@ -16,22 +16,22 @@ use std::ffi::{c_char, c_void};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Settings of reading a scene's file. Fill it with luxfer_scene_load_params_init.
+/// Settings of loading a scene file. Fill them with luxfer_scene_load_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_load_params {
     /// sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init.
     pub struct_size: u32,
-    /// 1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the default:
-    /// such a name gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices
-    /// or addresses on a network.
+    /// 1: also read files outside the folder of the scene file if the scene file names them by .. or by an absolute
+    /// path; 0, the default: such a name gives LUXFER_UNSUPPORTED. Set it only for scene files that you trust. Only
+    /// files are read, never devices or addresses on a network.
     pub allow_external_files: u32,
-    /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
-    /// leaves intensities and luminances as they are. 0.001: the file is in millimetres.
+    /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF defines; 0.001 for a file in
+    /// millimetres. It scales positions, but not intensities and luminances.
     pub unit: f64,
-    /// 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
-    /// relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the origin
-    /// of the file, and are rounded to floats there.
+    /// 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
+    /// relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
+    /// origin of the file, and rounding to floats moves them.
     pub keep_origin: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -60,8 +60,8 @@ impl luxfer_scene_load_params {
     }
 }
 
-/// Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
-/// params may be NULL for the defaults. The caller releases *scene. Any thread.
+/// Loads a scene from a glTF 2.0 file: .glb, or .gltf with the files that it names, which must lie in its folder or
+/// below. path is UTF-8. params may be NULL for the defaults. The caller releases *scene. Any thread.
 /// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
 /// LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
 /// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
@@ -83,8 +83,9 @@ pub unsafe extern "C" fn luxfer_scene_load(
     })
 }
 
-/// Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
-/// base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
+/// Loads a scene from a GLB or glTF file in memory of size bytes at data. Other files that it names are read from the
+/// folder base_path (UTF-8); if base_path is NULL, it must not name any. Settings, ownership, threads and errors are
+/// as for luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
     context: *mut luxfer_context,
@@ -105,11 +106,11 @@ pub unsafe extern "C" fn luxfer_scene_load_memory(
     })
 }
 
-/// Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres: 0 for scenes near the
-/// origin, for scenes that were created, and with keep_origin. The library takes and gives all positions relative to
-/// this origin: vertices, cameras, lights, rays and measuring grids. Subtract it, in doubles, from positions in the
-/// coordinates of the file. An exported file has the coordinates of the loaded file. Any
-/// thread.
+/// Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres. It is 0 for scenes
+/// near the origin, for scenes that were created by luxfer_scene_create, and with keep_origin = 1. The library takes
+/// and gives all positions relative to this origin: vertices, cameras, lights, rays and calculation grids. To convert
+/// a position in the coordinates of the file, subtract the origin from it in doubles. An exported file has the
+/// coordinates of the loaded file. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_origin(
     scene: *mut luxfer_scene,

@@ -1,8 +1,8 @@
 //! Materials
 //!
 //! Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
-//! textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
-//! values change.
+//! textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when
+//! its values change.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -20,16 +20,16 @@ use glam::{Mat3, Vec3};
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// Meaning of a surface's alpha: a LUXFER_ALPHA_ value.
+/// How a surface uses its alpha: a LUXFER_ALPHA_ value.
 pub type luxfer_alpha_mode = i32;
 /// The alpha is ignored: the surface is opaque.
 pub const LUXFER_ALPHA_OPAQUE: luxfer_alpha_mode = 0;
-/// The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere.
+/// The surface is opaque where its alpha is at least alpha_cutoff, and absent elsewhere.
 pub const LUXFER_ALPHA_MASK: luxfer_alpha_mode = 1;
-/// The surface stops the share alpha of the light; the rest passes straight through.
+/// The surface stops a share of the light that is equal to its alpha; the rest of the light passes straight through.
 pub const LUXFER_ALPHA_BLEND: luxfer_alpha_mode = 2;
 
-/// A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init.
+/// A metallic-roughness material, as in glTF 2.0. Fill it with luxfer_material_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_material_params {
@@ -39,13 +39,13 @@ pub struct luxfer_material_params {
     pub double_sided: u32,
     /// Name in UTF-8, copied; NULL, the default: no name.
     pub name: *const c_char,
-    /// Linear colour of the surface, each channel in [0, 1]; default 0.8.
+    /// Linear RGB base colour, each channel in [0, 1]; default 0.8.
     pub base_color: [f32; 3],
     /// Share of the surface that is metal, in [0, 1]; default 0.
     pub metallic: f32,
-    /// Perceptual roughness in [0, 1]; default 1.
+    /// Perceptual roughness in [0, 1], as in glTF; default 1.
     pub roughness: f32,
-    /// Emitted luminance per channel in cd/m², >= 0; default 0.
+    /// Emission per channel in cd/m², each in [0, 1e15]; default 0.
     pub emission: [f32; 3],
     /// Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
     pub transmission: f32,
@@ -53,11 +53,11 @@ pub struct luxfer_material_params {
     pub ior: f32,
     /// Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1.
     pub alpha: f32,
-    /// LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE.
+    /// Use of alpha: a LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE.
     pub alpha_mode: luxfer_alpha_mode,
     /// Threshold of alpha for LUXFER_ALPHA_MASK, >= 0; default 0.5.
     pub alpha_cutoff: f32,
-    /// Strength of the normal texture: multiplies its x and y; finite; default 1.
+    /// Strength of the normal texture: a factor for the x and y of its normals, finite; default 1.
     pub normal_scale: f32,
 }
 
@@ -81,18 +81,18 @@ versioned!(luxfer_material_params, [MATERIAL_SIZE], {
     }
 });
 
-/// Purpose of a material's texture: a LUXFER_TEXTURE_ value.
+/// Purpose of a texture in a material: a LUXFER_TEXTURE_ value.
 pub type luxfer_texture_role = i32;
-/// Multiplies the base colour; its alpha multiplies the material's.
+/// Base colour: the texture multiplies the material's base colour, and its alpha multiplies the material's alpha.
 pub const LUXFER_TEXTURE_BASE_COLOR: luxfer_texture_role = 0;
-/// The green channel multiplies the roughness, the blue channel the metallic value.
+/// Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic value.
 pub const LUXFER_TEXTURE_METALLIC_ROUGHNESS: luxfer_texture_role = 1;
 /// Normals in tangent space.
 pub const LUXFER_TEXTURE_NORMAL: luxfer_texture_role = 2;
-/// Multiplies the emission; looked up without interpolation.
+/// Emission: the texture multiplies the emission; it is looked up without interpolation.
 pub const LUXFER_TEXTURE_EMISSION: luxfer_texture_role = 3;
 
-/// Continuation of a texture beyond its edges: a LUXFER_WRAP_ value.
+/// How a texture continues beyond its edges: a LUXFER_WRAP_ value.
 pub type luxfer_wrap = i32;
 /// The texture repeats.
 pub const LUXFER_WRAP_REPEAT: luxfer_wrap = 0;
@@ -107,15 +107,15 @@ pub const LUXFER_WRAP_MIRROR: luxfer_wrap = 2;
 pub struct luxfer_texture_use {
     /// sizeof(luxfer_texture_use), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0.
+    /// Index of the texture; LUXFER_NONE if the material has no texture for this purpose: the fields below are then 0.
     pub texture: u32,
-    /// The mesh's set of texture coordinates that the material uses for this texture, 0 or 1.
+    /// Set of the mesh's texture coordinates that the material uses for this texture: 0 or 1.
     pub uv_set: u32,
-    /// LUXFER_WRAP_ value along u.
+    /// Continuation of the texture along u: a LUXFER_WRAP_ value.
     pub wrap_u: luxfer_wrap,
-    /// LUXFER_WRAP_ value along v.
+    /// Continuation of the texture along v: a LUXFER_WRAP_ value.
     pub wrap_v: luxfer_wrap,
-    /// Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up.
+    /// Affine map that is applied to the texture coordinates (u, v, 1) before the look-up: two rows of three numbers.
     pub transform: [f32; 6],
 }
 
@@ -123,7 +123,8 @@ versioned!(luxfer_texture_use, [44], {
     Self { struct_size: 44, texture: LUXFER_NONE, uv_set: 0, wrap_u: 0, wrap_v: 0, transform: [0.0; 6] }
 });
 
-/// Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+/// Adds a material to a scene; *index, unless NULL, receives its index. params may be NULL for the defaults. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_material(
@@ -139,8 +140,8 @@ pub unsafe extern "C" fn luxfer_scene_add_material(
     })
 }
 
-/// Replaces the values of a material. It keeps its textures, and its name if params->name is NULL. params may be NULL
-/// for the defaults. To change single values, read the material first. Any thread.
+/// Replaces the values of a material by params, or by the defaults if params is NULL. The material keeps its textures,
+/// and also its name if params->name is NULL. To change single values, read the material first. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_material(
@@ -166,8 +167,7 @@ pub unsafe extern "C" fn luxfer_scene_set_material(
     })
 }
 
-/// Reads a material; set params->struct_size before the call. params->name becomes NULL. size is sizeof *params. Any
-/// thread.
+/// Reads the values of a material; params->name becomes NULL. size is sizeof *params. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material(
@@ -204,8 +204,9 @@ pub unsafe extern "C" fn luxfer_scene_get_material(
     })
 }
 
-/// Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
-/// LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any thread.
+/// Adds a texture to a scene: an image in linear values with 1, 3 or 4 channels, of which the fourth is alpha. wrap_u
+/// and wrap_v are LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
 /// memory budget.
 #[unsafe(no_mangle)]
@@ -239,9 +240,10 @@ pub unsafe extern "C" fn luxfer_scene_add_texture(
     })
 }
 
-/// Sets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or
-/// LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the mesh's set of texture coordinates. transform is two rows of
-/// three, finite, applied to (u, v, 1) before the look-up; NULL is the identity. Any thread.
+/// Sets the texture that a material uses for a purpose. role is a LUXFER_TEXTURE_ value; texture is the index of a
+/// texture, or LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the set of the mesh's texture coordinates.
+/// transform, two rows of three finite numbers, is applied to (u, v, 1) before the look-up; NULL is the identity. Any
+/// thread.
 /// LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if an
 /// emission texture has negative values.
 #[unsafe(no_mangle)]
@@ -318,7 +320,7 @@ pub unsafe extern "C" fn luxfer_scene_get_texture(
     })
 }
 
-/// The material that the caller's numbers describe.
+/// Converts the caller's numbers to a material, after checks of their ranges.
 fn described(params: &luxfer_material_params) -> Result<Material> {
     for channel in params.base_color {
         check_range("material.base_color", channel, 0.0, 1.0)?;
@@ -358,7 +360,7 @@ fn material_mut(scene: &mut Scene, index: u32) -> Result<&mut Material> {
     scene.materials.get_mut(index as usize).ok_or_else(|| missing("material", index, count))
 }
 
-/// The field of a material that holds its texture for a purpose.
+/// Returns the field of a material that holds the texture of a role, which is a LUXFER_TEXTURE_ value.
 fn slot(material: &mut Material, role: luxfer_texture_role) -> Result<&mut Option<TextureRef>> {
     match role {
         LUXFER_TEXTURE_BASE_COLOR => Ok(&mut material.base_color_texture),
@@ -378,7 +380,7 @@ fn wrapping(wrap: luxfer_wrap, name: &str) -> Result<Wrap> {
     }
 }
 
-/// The two rows of three numbers at a pointer; `None` for NULL.
+/// Reads two rows of three floats from the caller's memory; `None` for NULL.
 fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     if pointer.is_null() {
         return Ok(None);
@@ -386,7 +388,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     Ok(Some(floats(bytes(pointer.cast(), size_of::<[f32; 6]>(), "transform")?)))
 }
 
-/// The C struct that describes a material's use of a texture.
+/// Returns the `luxfer_texture_use` that describes how a material uses a texture.
 fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,

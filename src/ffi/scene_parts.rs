@@ -1,6 +1,6 @@
 //! Scene description
 //!
-//! Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
+//! Builds a scene from arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
 //! copy the arrays, which may have any alignment and stride.
 
 use super::guard::enter;
@@ -20,17 +20,17 @@ use std::ffi::{c_char, c_void};
 pub struct luxfer_mesh_params {
     /// sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init.
     pub struct_size: u32,
-    /// Index of the mesh's material, from luxfer_scene_add_material; default 0.
+    /// Index of the mesh's material, as luxfer_scene_add_material returns it; default 0.
     pub material: u32,
     /// Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. NULL, the default: no name.
     pub name: *const c_char,
-    /// Number of vertices in [3, 2^32 - 1]; to be set.
+    /// Number of vertices in [3, 2^32 - 1]; default 0: the caller must set it.
     pub vertex_count: usize,
-    /// Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set.
+    /// Positions: three floats per vertex, in metres, each in [-1e15, 1e15]; default NULL: the caller must set them.
     pub positions: *const c_void,
     /// Bytes from one position to the next; at least 12, or 0, the default: packed.
     pub position_stride: usize,
-    /// Three floats per vertex, finite; NULL, the default: flat faces.
+    /// Normals: three floats per vertex, finite; NULL, the default: faces are flat.
     pub normals: *const c_void,
     /// Bytes from one normal to the next; at least 12, or 0, the default: packed.
     pub normal_stride: usize,
@@ -39,9 +39,10 @@ pub struct luxfer_mesh_params {
     pub uvs: *const c_void,
     /// Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed.
     pub uv_stride: usize,
-    /// Number of triangles, at least 1; to be set.
+    /// Number of triangles, at least 1; default 0: the caller must set it.
     pub triangle_count: usize,
-    /// Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be set.
+    /// Vertex indices: three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the
+    /// front; default NULL: the caller must set them.
     pub indices: *const c_void,
     /// Bytes from one triangle to the next; at least 12, or 0, the default: packed.
     pub index_stride: usize,
@@ -82,11 +83,12 @@ pub struct luxfer_camera_params {
     pub struct_size: u32,
     /// Full vertical angle of view in radians, in [0.001, 3.1]; default 1.
     pub fov_y: f32,
-    /// Position in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position of the eye in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1).
+    /// Point that the camera looks at, in metres, each coordinate in [-1e15, 1e15], different from position; default
+    /// (0, 0, -1).
     pub target: [f32; 3],
-    /// Up direction of the image, not parallel to the viewing direction; default (0, 1, 0).
+    /// Up direction of the image, finite and not parallel to the viewing direction; default (0, 1, 0).
     pub up: [f32; 3],
     /// Must be 0.
     pub reserved: u32,
@@ -116,7 +118,7 @@ impl luxfer_camera_params {
     }
 }
 
-/// Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
+/// Adds a mesh to a scene and copies its arrays; *index, unless NULL, receives its index. Any thread.
 /// LUXFER_INVALID_ARGUMENT if an array is missing, a stride is too small, a number is not finite or an index is out of
 /// range; LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
@@ -184,7 +186,7 @@ fn mesh(params: &luxfer_mesh_params) -> Result<Mesh> {
     })
 }
 
-/// `count` rows of `N` numbers of four bytes each, `stride` bytes apart.
+/// Reads `count` rows of `N` four-byte numbers that lie `stride` bytes apart.
 fn array<const N: usize, T: Copy + Default>(
     data: *const c_void,
     count: usize,
@@ -212,7 +214,7 @@ fn array<const N: usize, T: Copy + Default>(
     Ok(rows)
 }
 
-/// Turns rows of numbers into vectors; an error if a number is not finite.
+/// Converts rows of numbers to vectors; an error if a number is not finite.
 fn check_finite<const N: usize, V: From<[f32; N]>>(rows: Vec<[f32; N]>, name: &str) -> Result<Vec<V>> {
     match rows.iter().position(|row| row.iter().any(|v| !v.is_finite())) {
         Some(i) => Err(Error::argument(format!("element {i} of {name} is {:?}; it must be finite", rows[i]))),
@@ -220,7 +222,7 @@ fn check_finite<const N: usize, V: From<[f32; N]>>(rows: Vec<[f32; N]>, name: &s
     }
 }
 
-/// Adds a camera; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+/// Adds a camera to a scene; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_camera(
@@ -236,7 +238,7 @@ pub unsafe extern "C" fn luxfer_scene_add_camera(
     })
 }
 
-/// Replaces a camera. params may be NULL for the defaults. Any thread.
+/// Replaces a camera of a scene; the camera keeps its name. params may be NULL for the defaults. Any thread.
 /// LUXFER_NOT_FOUND if there is no such camera; LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_camera(
@@ -255,7 +257,7 @@ pub unsafe extern "C" fn luxfer_scene_set_camera(
     })
 }
 
-/// Reads a camera; set params->struct_size before the call. size is sizeof *params. Any thread.
+/// Reads a camera of a scene; target becomes a point 1 m in front of the camera. size is sizeof *params. Any thread.
 /// LUXFER_NOT_FOUND if there is no such camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_camera(

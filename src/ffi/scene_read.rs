@@ -1,6 +1,6 @@
 //! Scene read-back
 //!
-//! Reads the meshes of a scene. With luxfer_scene_get_counts and the functions that read materials, textures and
+//! Reads the meshes of a scene back. With luxfer_scene_get_counts and the functions that read materials, textures and
 //! cameras, a host can copy a whole scene.
 
 use super::guard::enter;
@@ -26,7 +26,7 @@ pub const LUXFER_VERTEX_UV_1: luxfer_vertex_attribute = 3;
 /// Colours, four floats per vertex.
 pub const LUXFER_VERTEX_COLOUR: luxfer_vertex_attribute = 4;
 
-/// A mesh of a scene.
+/// Sizes and attributes of a mesh.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_mesh_info {
@@ -44,7 +44,7 @@ pub struct luxfer_mesh_info {
     pub uv_sets: u32,
     /// 1 if each vertex has a colour, else 0.
     pub has_colours: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
 }
 
@@ -90,7 +90,8 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
     })
 }
 
-/// Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
+/// Copies the name of a mesh into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
+/// *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
@@ -103,8 +104,8 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
     enter(scene, |object| copy_text(&mesh(&object.snapshot(), index)?.name, buffer, capacity, needed))
 }
 
-/// Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
-/// thread.
+/// Copies an attribute of a mesh's vertices into values, a packed array of the caller with room for capacity vertices.
+/// attribute is a LUXFER_VERTEX_ value. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
 /// unknown, the capacity is too small, or values is NULL though the mesh has vertices.
 #[unsafe(no_mangle)]
@@ -136,8 +137,8 @@ pub unsafe extern "C" fn luxfer_scene_read_vertices(
     })
 }
 
-/// Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
-/// number of triangles. Any thread.
+/// Copies the triangles of a mesh into indices, a packed array of the caller with room for capacity triangles: three
+/// vertex indices per triangle. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if the capacity is too small, or indices is
 /// NULL though the mesh has triangles.
 #[unsafe(no_mangle)]
@@ -158,7 +159,7 @@ fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
     scene.meshes.get(index as usize).ok_or_else(|| missing("mesh", index, scene.meshes.len()))
 }
 
-/// Copies elements of `numbers` values each to the caller's array, which has room for `capacity` elements.
+/// Copies elements of `numbers` values each into the caller's array, which has room for `capacity` elements.
 fn copy<T: bytemuck::NoUninit>(data: &[T], numbers: usize, place: *mut T, capacity: usize, name: &str) -> Result<()> {
     let needed = data.len() / numbers;
     if needed == 0 {

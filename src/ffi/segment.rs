@@ -1,7 +1,8 @@
 //! Segmentation
 //!
-//! Computes a mask, with a confidence for each pixel, from a few strokes on a photo. The lighting transfer needs two
-//! masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
+//! Computes a mask, with a confidence for each pixel, from a few strokes on a photo. A lighting transfer needs two
+//! masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start
+//! again.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -25,23 +26,26 @@ pub struct luxfer_segment {
 
 /// An image of a segmentation: a LUXFER_SEGMENT_ value.
 pub type luxfer_segment_image = i32;
-/// 1 where the confidence is above one half, else 0; 1 channel.
+/// The mask: 1 where the confidence is above one half, else 0; 1 channel.
 pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
-/// Probability that a pixel is of the positive class, in [0, 1]; 1 channel.
+/// The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
-/// Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
+/// The difference of a pixel from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another stroke
+/// helps.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
 /// The subject of a segmentation: a LUXFER_SUBJECT_ value.
 pub type luxfer_subject = i32;
-/// Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features makes them;
-/// else a surface.
+/// Chooses the subject: lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as
+/// luxfer_features makes them; else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
-/// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
+/// A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
+/// restricted to the face of the room that the strokes lie on, or else to the connected parts of the mask that strokes
+/// touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
-/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or
-/// more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as
-/// well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
+/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
+/// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
+/// count as lamps too. Negative strokes are not needed. The first three channels of the features must be CIELAB.
 pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 
 /// Settings of a segmentation. Fill them with luxfer_segment_params_init.
@@ -52,23 +56,25 @@ pub struct luxfer_segment_params {
     pub struct_size: u32,
     /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
     pub samples_per_class: u32,
-    /// Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of luxfer_features,
-    /// the best of colour, colour and position, colour and normal, or all, as measured on held-out strokes; for another
-    /// number of channels, all of them. For lights use 7, colour only, since lights and plane have one geometry.
+    /// Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
+    /// tries colour, colour and position, colour and normal, and all channels, and uses the set with the smallest
+    /// error on held-out strokes. With another number of channels, 0 uses all of them. For lights use 7, colour only,
+    /// since lights and plane have one geometry.
     pub channels: u32,
-    /// Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the
-    /// edges of the photo: a guided filter with the first three channels of the features as guide. 0, the default: no
-    /// refinement.
+    /// Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
+    /// The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three
+    /// channels of the features as guide.
     pub refine_radius: u32,
-    /// Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3.
+    /// Strength of the prior that keeps the weights of the classifier small (ridge regression), in [1e-9, 1e3];
+    /// default 1e-3.
     pub ridge: f64,
-    /// Seed of the samples; default 1.
+    /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// Difference of the first three channels, in their units (CIELAB units for colour), below which the refinement
-    /// treats neighbours as one surface, in [1e-3, 1e6]; default 8.
+    /// The refinement treats neighbouring pixels as one surface if their first three channels differ by less than
+    /// this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
-    /// The subject of the positive strokes: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. For lamps the
-    /// settings above have no effect.
+    /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
+    /// lamps, the settings above have no effect.
     pub subject: luxfer_subject,
     /// Must be 0.
     pub reserved: u32,
@@ -121,7 +127,7 @@ fn subject(value: luxfer_subject) -> Result<Subject> {
 pub struct luxfer_segment_report {
     /// sizeof(luxfer_segment_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Channels of the features that were used, bit i for channel i.
+    /// Channels of the features that the segmentation has used, bit i for channel i.
     pub channels: u32,
     /// Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training.
     pub error: f64,
@@ -150,7 +156,7 @@ impl Handle for luxfer_segment {
     const NAME: &'static str = "luxfer_segment";
 }
 
-/// Creates the stage. The caller releases *segment. Any thread.
+/// Creates a segmentation without inputs. The caller releases *segment. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_create(
     context: *mut luxfer_context,
@@ -162,8 +168,8 @@ pub unsafe extern "C" fn luxfer_segment_create(
     })
 }
 
-/// Sets the features of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for another
-/// size are removed. Any thread.
+/// Sets the features of each pixel: the image LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for
+/// images of another size are removed. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_features(
     segment: *mut luxfer_segment,
@@ -179,8 +185,9 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     })
 }
 
-/// Restricts the segmentation to the pixels where region is 1, such as the mask of the plane when you segment lights; 0
-/// elsewhere; 1 channel, the size of the features. region may be NULL: no restriction. Any thread.
+/// Restricts the segmentation to the pixels where region is 1. region is a mask of the features' size, 1 channel, with
+/// 1 and 0, such as the mask of the plane for a segmentation of lights. region may be NULL: no restriction. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_region(
     segment: *mut luxfer_segment,
@@ -195,9 +202,9 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Sets the strokes from which this mask is made. The stage copies those strokes that are for phase, a LUXFER_PHASE_
-/// value; they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
-/// LUXFER_INVALID_ARGUMENT if strokes is for images of another size than the features.
+/// Sets the strokes from which the mask is made. The call copies the strokes for phase, a LUXFER_PHASE_ value; they
+/// replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the features.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_strokes(
     segment: *mut luxfer_segment,
@@ -214,13 +221,13 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
     })
 }
 
-/// Starts a job that segments. If strokes are missing and the features come from luxfer_features, the job proposes a
-/// mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive strokes, or
-/// else the ceiling; for lamps it proposes lamps among the brightest things of the region. params may be NULL for the
-/// defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
-/// if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
-/// finite or a setting is out of range.
+/// Starts a job that computes the mask. If strokes are missing and the features come from luxfer_features, the job
+/// proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive
+/// strokes, or else the ceiling; for lamps it proposes lamps among the brightest regions of the mask of
+/// luxfer_segment_set_region. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ,
+/// a feature is not finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,
@@ -241,7 +248,8 @@ pub unsafe extern "C" fn luxfer_segment_start(
     })
 }
 
-/// Gets an image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any thread.
+/// Gets the mask or another image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any
+/// thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_image(

@@ -1,4 +1,4 @@
-//! The object behind the handle of a context: threads, error messages and memory budget.
+//! The object behind a `luxfer_context` handle: the threads, error messages and memory budget.
 
 use super::guard::lock;
 use crate::error::{Error, ErrorKind, Result};
@@ -9,30 +9,30 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// Number of threads whose messages are kept: the threads that failed last.
+/// The context keeps the last messages of at most this many threads: of those that failed last.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.
 pub(super) struct Context {
     /// Threads that run the jobs.
     pub(super) pool: Pool,
-    /// Threads of the calls that finish their work before they return, so that these never wait for a job.
+    /// Threads of synchronous calls, so that these calls never wait for a job.
     pub(super) quick: QuickPools,
     budget: u64,
     used: AtomicU64,
     messages: Mutex<Messages>,
-    /// The threads that run functions of the caller as jobs, and the monitors of these jobs.
+    /// The threads that run functions of the caller as jobs, each with the monitor of its job.
     callers: Mutex<Vec<(ThreadId, Arc<Monitor>)>>,
-    /// The process that created the context; a forked child has another id.
+    /// Id of the process that created the context; a forked child has another id.
     process: u32,
 }
 
-/// The error message in a forked child.
+/// The message of calls in a forked child on objects of its parent.
 pub(super) const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
                          create a context and its objects in the child process";
 
-/// The last error message of each thread. A map rather than thread-local storage, which would outlive the context and
-/// the library.
+/// The last error message of each thread, with a count that tells which thread failed last. A map is used because
+/// thread-local storage would outlive the context and the library.
 #[derive(Default)]
 struct Messages {
     count: u64,
@@ -40,7 +40,7 @@ struct Messages {
 }
 
 impl Context {
-    /// Starts the threads of the jobs. A budget of 0 bytes has no limit.
+    /// Starts the threads that run jobs. A budget of 0 bytes stands for no limit.
     pub(super) fn new(num_threads: usize, budget: u64) -> Result<Self> {
         Ok(Self {
             pool: Pool::new(num_threads)?,
@@ -53,8 +53,8 @@ impl Context {
         })
     }
 
-    /// Returns an error in a forked child of the process that created the context. Takes no lock: a thread that held it
-    /// during the fork does not exist in the child and would never release it.
+    /// Returns an error in a forked child of the process that created the context. Takes no lock: if another thread
+    /// held the lock during the fork, that thread does not exist in the child and would never release the lock.
     pub(super) fn check_process(&self) -> Result<()> {
         if self.process == std::process::id() {
             Ok(())
@@ -75,31 +75,30 @@ impl Context {
         }
     }
 
-    /// Calls `read` with the last message of the calling thread, or with an empty text.
+    /// Calls `read` with the last message of the calling thread, or with an empty text if there is none.
     pub(super) fn last_message<T>(&self, read: impl FnOnce(&str) -> T) -> T {
         let messages = lock(&self.messages);
         read(messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str()))
     }
 
-    /// Makes `monitor` the monitor of all calls of this thread until the returned guard is dropped.
+    /// Makes `monitor` the monitor of all calls of the current thread until the returned guard is dropped.
     pub(super) fn watch_thread(&self, monitor: Arc<Monitor>) -> WatchedThread<'_> {
         lock(&self.callers).push((thread::current().id(), monitor));
         WatchedThread(self)
     }
 
-    /// The monitor of the job whose function makes the present call.
+    /// Returns the monitor of the job whose function makes the current call; `None` outside such functions.
     pub(super) fn calling_job(&self) -> Option<Arc<Monitor>> {
         let id = thread::current().id();
         lock(&self.callers).iter().find(|(thread, _)| *thread == id).map(|(_, monitor)| monitor.clone())
     }
 
-    /// The monitor of a call that finishes its work before it returns: that of the job whose function makes the call,
-    /// or one of its own.
+    /// Returns the monitor of a synchronous call: the monitor of the job whose function makes the call, or a new one.
     pub(super) fn monitor(&self) -> Arc<Monitor> {
         self.calling_job().unwrap_or_default()
     }
 
-    /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
+    /// Charges `bytes` to the memory budget until the returned charge is dropped.
     pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
         let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
         match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {
@@ -121,7 +120,7 @@ impl Context {
     }
 }
 
-/// A thread that runs a function of the caller as a job.
+/// Guard of a thread that runs a function of the caller as a job: its drop ends the effect of `watch_thread`.
 pub(super) struct WatchedThread<'a>(&'a Context);
 
 impl Drop for WatchedThread<'_> {
@@ -131,7 +130,7 @@ impl Drop for WatchedThread<'_> {
     }
 }
 
-/// A share of the memory budget.
+/// Bytes that are charged to the memory budget until this value is dropped.
 pub(super) struct Charge {
     context: Arc<Context>,
     bytes: u64,

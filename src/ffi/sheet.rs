@@ -1,7 +1,8 @@
 //! Print sheets
 //!
-//! For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
-//! scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
+//! For artists who paint on paper: draws a sheet to print, which shows the exemplar in pale colours between alignment
+//! marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
+//! synchronous: they do their work before they return.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -14,14 +15,15 @@ use crate::image::MAX_SIDE;
 use crate::sheet;
 use glam::DVec2;
 
-/// Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and aligning.
+/// Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and for
+/// aligning.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sheet_params {
     /// sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init.
     pub struct_size: u32,
-    /// 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1; 0: no
-    /// correction.
+    /// 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the value 1;
+    /// 0: no correction.
     pub even_light: u32,
     /// Width of the paper in millimetres, in [60, 2000]; default 297.
     pub paper_width: f64,
@@ -63,7 +65,7 @@ impl luxfer_sheet_params {
     }
 }
 
-/// Quality of the alignment of a photo.
+/// Quality of the alignment of a photo with its picture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sheet_report {
@@ -71,8 +73,8 @@ pub struct luxfer_sheet_report {
     pub struct_size: u32,
     /// Number of marks found, of 10; at least 6 are needed.
     pub marks: u32,
-    /// Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives them.
-    /// More than one or two pixels mean that the paper is not flat or that the lens distorts.
+    /// Root mean square distance, in pixels of the photo, between the found marks and the positions that to_photo
+    /// predicts for them. If it is more than one or two pixels, the paper is not flat or the lens distorts.
     pub residual: f64,
     /// Expected alignment error in pixels of the picture.
     pub error: f64,
@@ -84,9 +86,9 @@ versioned!(luxfer_sheet_report, [96], {
     Self { struct_size: 96, marks: 0, residual: 0.0, error: 0.0, to_photo: [0.0; 9] }
 });
 
-/// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
-/// paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be
-/// NULL for the defaults. The caller releases *sheet. Any thread.
+/// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels). The sheet shows the picture in
+/// pale colours, as large as the paper allows, with ten marks around it. Save it as PNG and print it at params->dpi
+/// without scaling. params may be NULL for the defaults. The caller releases *sheet. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
 /// memory budget.
 #[unsafe(no_mangle)]
@@ -109,10 +111,11 @@ pub unsafe extern "C" fn luxfer_sheet_print(
     })
 }
 
-/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of
-/// width x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
-/// perspective. params may be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not
-/// matter. Takes up to a few seconds. The caller releases *artwork. Any thread.
+/// Aligns a photo or scan (linear RGB) of a painted sheet with the picture of width x height pixels for which the
+/// sheet was printed. The call finds the marks in the photo and resamples the photo to the pixels of the picture: the
+/// result is the artwork, in linear RGB. params must be equal to those of luxfer_sheet_print; NULL stands for the
+/// defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size does
+/// not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
 /// LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_sheet_align(

@@ -1,5 +1,5 @@
-//! The base of all stages: inputs that change only between jobs, one job at a time, and a result that is stored on
-//! success.
+//! The base of all stages. A stage has inputs that change only between jobs, runs one job at a time, and stores the
+//! result of a job that has succeeded.
 
 use super::context::Context;
 use super::guard::lock;
@@ -32,31 +32,31 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         Arc::new(Self { context: context.clone(), state: Mutex::new(State { busy: false, inputs, output: None }) })
     }
 
-    /// Changes the inputs, unless a job runs. A change that fails must leave them as they were.
+    /// Changes the inputs; an error while a job runs. If `change` fails, it must leave the inputs as they were.
     pub(super) fn change(&self, change: impl FnOnce(&mut I) -> Result<()>) -> Result<()> {
         let state = &mut *lock(&self.state);
         state.check_idle()?;
         change(&mut state.inputs)
     }
 
-    /// A copy of the current inputs.
+    /// Returns a copy of the current inputs.
     pub(super) fn inputs(&self) -> I {
         lock(&self.state).inputs.clone()
     }
 
-    /// The latest result.
+    /// Returns the latest result; an error if there is none yet.
     pub(super) fn output(&self) -> Result<Arc<O>> {
         lock(&self.state).output.clone().ok_or_else(|| {
             Error::new(ErrorKind::NotReady, "there is no result yet; start the stage and wait for its job to succeed")
         })
     }
 
-    /// Publishes an intermediate result while a job runs.
+    /// Stores an intermediate result while a job runs.
     pub(super) fn publish(&self, output: O) {
         lock(&self.state).output = Some(Arc::new(output));
     }
 
-    /// Replaces a part of the result by the caller's, unless a job runs.
+    /// Replaces a part of the result by a result of the caller; an error while a job runs.
     pub(super) fn replace(&self, change: impl FnOnce(&mut O)) -> Result<()>
     where
         O: Clone + Default,
@@ -67,7 +67,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         Ok(())
     }
 
-    /// Starts a job on a copy of the current inputs. If it succeeds, its result becomes the result of the stage.
+    /// Starts a job on a copy of the current inputs. If the job succeeds, its result becomes the result of the stage.
     pub(super) fn start(
         self: &Arc<Self>,
         place: *mut *mut luxfer_job,
@@ -80,7 +80,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
             state.busy = true;
             state.inputs.clone()
         };
-        // The claim ends with the job, also if its thread cannot be started.
+        // The claim on the stage ends with the job, and also if the job's thread cannot be started.
         let claim = Claim(self.clone());
         let job = Job::start(&self.context, move |job| {
             let output = work(&inputs, &claim.0, job)?;
@@ -112,7 +112,7 @@ impl<I, O> Drop for Claim<I, O> {
     }
 }
 
-/// A required input of a job.
+/// Returns a required input of a job; an error that names `setter` if the input is missing.
 pub(super) fn need<'a, T>(input: &'a Option<T>, setter: &str) -> Result<&'a T> {
     input
         .as_ref()

@@ -1,7 +1,7 @@
 //! Status
 //!
-//! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
-//! function writes its outputs only when it returns LUXFER_OK. luxfer_context_get_last_error describes the failure in
+//! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
+//! A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
 //! words.
 
 use std::ffi::c_char;
@@ -31,16 +31,17 @@ pub const LUXFER_FORMAT: luxfer_status = 8;
 pub const LUXFER_NOT_READY: luxfer_status = 9;
 /// A bug in this library: please report it.
 pub const LUXFER_INTERNAL: luxfer_status = 10;
-/// The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only.
+/// The input is well formed but has no answer: for example a photo without lines, a plane seen edge-on, or strokes of
+/// one class only.
 pub const LUXFER_DEGENERATE: luxfer_status = 11;
 /// No surface, image or entry has the given name or index.
 pub const LUXFER_NOT_FOUND: luxfer_status = 12;
-/// No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
-/// needed.
+/// No light can reach the target: there is no light path, all light of a channel is absorbed, or negative light would
+/// be needed.
 pub const LUXFER_UNREACHABLE: luxfer_status = 13;
 
-/// The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
-/// static: never free it. Any thread.
+/// Returns the name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The
+/// string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn luxfer_status_get_name(status: luxfer_status) -> *const c_char {
     let name = match status {

@@ -1,8 +1,8 @@
 //! Strokes
 //!
-//! What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
-//! or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
-//! luxfer_features_set_strokes. A stage copies the strokes; after you have added strokes, hand them to the stage again.
+//! Strokes that a user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a
+//! drawing or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
+//! luxfer_features_set_strokes. A stage copies the strokes; if you add strokes later, hand them to the stage again.
 
 use super::context::{Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -16,22 +16,23 @@ use glam::DVec2;
 use std::ffi::{c_char, c_void};
 use std::sync::{Arc, Mutex};
 
-/// Strokes for images of one size. See luxfer_strokes_create.
+/// A set of strokes for images of one size. See luxfer_strokes_create.
 pub struct luxfer_strokes {
     _opaque: [u8; 0],
 }
 
 /// The mask that strokes are for: a LUXFER_PHASE_ value.
 pub type luxfer_phase = i32;
-/// The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too.
+/// The mask of the plane that carries the lights: positive strokes lie on the plane; strokes on lights count as
+/// positive strokes too.
 pub const LUXFER_PHASE_PLANE: luxfer_phase = 0;
-/// The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them.
+/// The mask of the lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them.
 pub const LUXFER_PHASE_LIGHTS: luxfer_phase = 1;
 
 /// Largest width and height of the images that strokes are for.
 const MAX_SIDE: u32 = 65_536;
 
-/// The object of a `luxfer_strokes`.
+/// The object behind a `luxfer_strokes` handle.
 pub(super) struct Strokes {
     context: Arc<Context>,
     size: (usize, usize),
@@ -63,12 +64,12 @@ impl Strokes {
 pub(super) struct Painted<T> {
     /// The part of the caller's strokes that the stage uses.
     pub(super) taken: T,
-    /// Width and height of the image they are for; `None` without strokes of the caller.
+    /// Width and height of the image that the strokes are for; `None` if the caller has set no strokes.
     size: Option<(usize, usize)>,
 }
 
 impl<T: Default> Painted<T> {
-    /// Copies the part of the caller's strokes that `select` returns; NULL stands for no strokes.
+    /// Copies the part of the caller's strokes that `select` returns; NULL stands for an empty set of strokes.
     pub(super) fn copy(
         context: &Arc<Context>,
         strokes: *mut luxfer_strokes,
@@ -82,7 +83,7 @@ impl<T: Default> Painted<T> {
         Ok(Self { taken, size: Some(object.size) })
     }
 
-    /// Checks that the strokes are for an image of this size, if the stage has the image.
+    /// Checks that the strokes are for an image of `needed` width and height, if the stage has the image already.
     pub(super) fn check_size(&self, needed: Option<(usize, usize)>, name: &str) -> Result<()> {
         match (self.size, needed) {
             (Some((w, h)), Some((width, height))) if (w, h) != (width, height) => Err(Error::argument(format!(
@@ -100,7 +101,7 @@ impl<T: Default> Painted<T> {
     }
 }
 
-/// The strokes of one phase.
+/// Returns the strokes for a mask, a LUXFER_PHASE_ value.
 pub(super) fn of_phase(set: &StrokeSet, phase: luxfer_phase) -> Result<Vec<Stroke>> {
     match phase {
         LUXFER_PHASE_PLANE => Ok(set.plane_examples()),
@@ -113,7 +114,7 @@ pub(super) fn unknown_phase(phase: luxfer_phase) -> Error {
     Error::argument(format!("phase is {phase}; it must be a LUXFER_PHASE_ value"))
 }
 
-/// A stroke from the caller's points, for an image of the given size.
+/// Makes a stroke from the caller's points, for an image of the given size.
 fn stroke(
     points: *const c_void,
     point_count: usize,
@@ -133,8 +134,8 @@ fn stroke(
     }
 }
 
-/// Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes.
-/// Any thread.
+/// Creates an empty set of strokes for a photo, or for features, of width x height pixels. The caller releases
+/// *strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_create(
@@ -156,10 +157,10 @@ pub unsafe extern "C" fn luxfer_strokes_create(
     })
 }
 
-/// Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
-/// them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5,
-/// 0.5); radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later
-/// stroke counts. Any thread.
+/// Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. positive is 1 for a stroke
+/// on the plane or on lights, 0 for a stroke beside them. points is an array of point_count pairs of float x, y in
+/// pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. Where positive and
+/// negative strokes overlap, the later stroke counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(
     strokes: *mut luxfer_strokes,
@@ -182,9 +183,9 @@ pub unsafe extern "C" fn luxfer_strokes_add(
     })
 }
 
-/// Adds the strokes of a drawing of the same size: green (0, 255, 0) is plane, red (255, 0, 0) not plane, yellow (255,
-/// 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels are ignored. Load drawings with
-/// LUXFER_COLOUR_SRGB. Any thread.
+/// Adds the strokes of a drawing, an image of the size given to luxfer_strokes_create. Green (0, 255, 0) is plane, red
+/// (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels
+/// are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add_image(
@@ -205,8 +206,9 @@ pub unsafe extern "C" fn luxfer_strokes_add_image(
     })
 }
 
-/// Adds the strokes of a text in UTF-8. Each line has a class, a radius, and x and y of the points in pixels, such as
-/// "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a comment. Any thread.
+/// Adds the strokes of a text in UTF-8. Each line has a class, a radius in pixels, and x and y of the points in
+/// pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a
+/// comment. Any thread.
 /// LUXFER_FORMAT, naming the line, if the text is malformed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add_text(
@@ -221,7 +223,7 @@ pub unsafe extern "C" fn luxfer_strokes_add_text(
     })
 }
 
-/// Removes all strokes. Stages keep their copies. Any thread.
+/// Removes all strokes of a set. Stages keep their copies. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_clear(strokes: *mut luxfer_strokes) -> luxfer_status {
     enter(strokes, |object| {

@@ -1,9 +1,9 @@
 //! Stylisation
 //!
 //! Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
-//! the guides (pairs of images that show the light in the exemplar and in the target) and start. Or set a half-painted
-//! picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the finest
-//! finished level can be read.
+//! the guides (pairs of images that show the light in the exemplar and in the target) and start a job. Or set a
+//! half-painted picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the
+//! finest finished resolution level can be read.
 //!
 //! Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
 //! functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
@@ -32,20 +32,22 @@ pub struct luxfer_stylize {
     _opaque: [u8; 0],
 }
 
-/// Meaning of the values of a guide: a LUXFER_GUIDE_ value.
+/// How the values of a guide are compared: a LUXFER_GUIDE_ value.
 pub type luxfer_guide_range = i32;
-/// Linear light >= 0, such as renderings; it is compared as it would look on a screen.
+/// Linear light >= 0, such as a rendering; its values are compared as they would look on a screen.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
-/// Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1].
+/// Data, such as normals, object codes and edges; the common range of source and target is scaled to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
 /// Flag of luxfer_stylize_add_guides: add the normals.
 pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
-/// Flag: add the edges, for shapes finer than the strokes.
+/// Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes.
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
-/// Flag: add the colour code of materials, so that objects of a material are painted from objects of that material.
+/// Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are painted
+/// from objects of that material.
 pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
-/// Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto others.
+/// Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other kinds of
+/// light. Use it for scenes in which glossy objects reflect light onto others.
 pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 
 #[derive(Clone, Default)]
@@ -73,7 +75,7 @@ impl Pair {
     }
 }
 
-/// The part of the target to paint.
+/// The part of the target to paint: all pixels, or the pixels of a mask; an optional image gives the other pixels.
 #[derive(Clone, Default)]
 enum Target {
     #[default]
@@ -89,7 +91,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Calls `work` with the input, as for a first frame.
+    /// Calls `work` with the current inputs in the form that the stylisation takes, without a previous frame.
     pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
         let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
         let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();
@@ -102,7 +104,7 @@ impl Inputs {
     }
 }
 
-/// Adds a guide, or replaces the guide of that name.
+/// Adds a guide, or replaces the guide with that name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
     let others = guides.iter().filter(|g| g.name != pair.name);
     let channels = others.map(|g| g.source.image().channels).sum::<usize>() + pair.source.image().channels;
@@ -125,7 +127,7 @@ impl Handle for luxfer_stylize {
     const NAME: &'static str = "luxfer_stylize";
 }
 
-/// Creates the stage. The caller releases *stylize. Any thread.
+/// Creates a stylisation without inputs. The caller releases *stylize. Any thread.
 /// LUXFER_UNSUPPORTED if stylisation was left out of this build.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_create(
@@ -138,8 +140,8 @@ pub unsafe extern "C" fn luxfer_stylize_create(
     })
 }
 
-/// Sets the artwork: the exemplar scene as painted by the artist, in linear colour, 1, 3 or 4 channels, of the size of
-/// the guides' sources and aligned with them. Any thread.
+/// Sets the artwork: the exemplar scene as painted by the artist. It is an image in linear colour with 1, 3 or 4
+/// channels, of the size of the guides' sources and aligned with them. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     stylize: *mut luxfer_stylize,
@@ -154,12 +156,13 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the guide of that name. source shows the exemplar and target the scene to paint; both have
-/// the same number of channels, at most 60 in all guides together. target may be NULL to use source for both, for a
-/// half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a
-/// LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. Values that are not finite count as 0
-/// in the target; pixels of the exemplar with such values are not used. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
+/// Adds a guide, or replaces the guide with that name. source shows the exemplar scene and target the scene to paint.
+/// source and target have the same number of channels, and all guides together have at most 60 channels. If target is
+/// NULL, source serves as the target too: for a picture of which one part is painted already
+/// (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
+/// All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
+/// pixels of a source with such values are not used. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guide(
     stylize: *mut luxfer_stylize,
@@ -179,11 +182,13 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the rendered guides of two scenes. It adds the five light guides LUXFER_GUIDES_FULL to
-/// LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full", "direct", "specular", "indirect" and "two
-/// bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics",
-/// "normals", "edges" or "materials" with weight extra_weight. Any thread.
-/// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
+/// Adds the rendered guides of two scenes: source of the exemplar scene, target of the scene to paint. The call adds
+/// the five light guides LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full",
+/// "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags
+/// in extras it adds the guide "caustics", "normals", "edges" or "materials" with weight extra_weight, in [0, 1e6].
+/// Any thread.
+/// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guides(
     stylize: *mut luxfer_stylize,
@@ -241,8 +246,8 @@ pub unsafe extern "C" fn luxfer_stylize_clear_guides(stylize: *mut luxfer_styliz
     })
 }
 
-/// Sets the pixels of the artwork that may be copied: those where mask is above 0.5; 1 channel, the artwork's size.
-/// mask may be NULL: all pixels. Any thread.
+/// Sets the pixels of the artwork that may be copied: the pixels where mask is above 0.5. mask has 1 channel and the
+/// artwork's size; NULL stands for all pixels. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
     stylize: *mut luxfer_stylize,
@@ -257,9 +262,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
     })
 }
 
-/// Sets the pixels of the target to paint: those where mask is above 0.5; 1 channel, the size of the guides' targets.
-/// The other pixels are taken from known (linear, with the number of channels of the artwork), and the new paint is
-/// fitted to them; if known is NULL they are black. mask may be NULL: all pixels are painted. Any thread.
+/// Sets the pixels of the target to paint: the pixels where mask is above 0.5. mask has 1 channel and the size of the
+/// guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from known (linear, with the
+/// number of channels of the artwork), and the new paint is fitted to them; if known is NULL they are black. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     stylize: *mut luxfer_stylize,
@@ -276,10 +282,11 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     })
 }
 
-/// Makes each job start from the previous result, for the frames of an animation. motion (2 channels, the size of the
-/// guides' targets) holds for each pixel the offset to its position in the previous frame, x and y in pixels; NaN where
-/// it was not visible. The paint of the previous frame moves along and stays where it fits; see
-/// luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any thread.
+/// Makes each job start from the previous result, for the frames of an animation. motion has 2 channels and the size
+/// of the guides' targets. It holds for each pixel the offset to the position of its surface point in the previous
+/// frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves along and
+/// stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -294,8 +301,8 @@ pub unsafe extern "C" fn luxfer_stylize_set_motion(
     })
 }
 
-/// Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+/// Starts a job that paints the target. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running; LUXFER_INVALID_ARGUMENT if a
 /// setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
 /// LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
 /// leaves no exemplar patch.
@@ -329,12 +336,13 @@ pub unsafe extern "C" fn luxfer_stylize_start(
     })
 }
 
-/// Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
-/// artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the picture that were painted
-/// from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
-/// thread.
-/// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
-/// LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work too.
+/// Starts a job that updates the picture after a change of the artwork. artwork is the changed artwork, with the size
+/// and channels of the first artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the
+/// picture that were painted from there are painted again. The job takes a fraction of the time of
+/// luxfer_stylize_start. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end
+/// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
+/// too.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_update(
     stylize: *mut luxfer_stylize,
@@ -361,10 +369,10 @@ pub unsafe extern "C" fn luxfer_stylize_update(
     })
 }
 
-/// Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, the
-/// artwork's size) is above 0.5 where the picture is finished; the sources of the guides show the scene of the picture,
-/// and their targets are NULL. The call is a shorthand: it sets painted as the source mask, its inverse as the target
-/// mask, and the artwork as known. Any thread.
+/// Lets the library paint the rest of a half-painted picture. The artwork is the picture. painted has 1 channel and
+/// the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the scene of the
+/// picture, and their targets are NULL. The call is a shorthand: it sets painted as the source mask, the inverse of
+/// painted as the target mask, and the artwork as known. Any thread.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

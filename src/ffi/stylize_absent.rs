@@ -1,6 +1,6 @@
-//! Builds without stylisation (the Cargo feature `stylize`) export its symbols too, so that a program made for the
-//! whole library still starts. No stylisation can be created, so all other calls fail; releasing NULL is allowed as
-//! always.
+//! Stands in for stylisation in builds without the Cargo feature `stylize`. Such a build exports the symbols of
+//! stylisation too, so that a program made for the whole library still starts. No stylisation can be created, so all
+//! other calls fail; releasing NULL is allowed as always.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -20,7 +20,8 @@ pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: 
     enter(context, |_| left_out())
 }
 
-/// Defines functions that ignore their arguments: in the C calling convention the caller removes the arguments.
+/// Defines functions without parameters: in the C calling convention the caller removes the arguments, so they can be
+/// ignored.
 macro_rules! absent {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

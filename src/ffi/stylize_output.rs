@@ -1,4 +1,4 @@
-//! The output of a stylisation that runs or has finished.
+//! The output of a stylisation, while it runs and after it has finished.
 
 use super::scene::missing;
 use crate::error::{Error, ErrorKind, Result};
@@ -7,7 +7,7 @@ use crate::patch::Field;
 use crate::stylize::{Glimpse, LevelReport, Output, Study, Usage};
 use std::sync::{Arc, Mutex};
 
-/// The result of a run, finished or not.
+/// The output of a run: the picture so far, and more results if the run has finished.
 #[derive(Clone)]
 pub(super) struct Stylised {
     pub picture: Arc<Image>,
@@ -16,7 +16,7 @@ pub(super) struct Stylised {
     pub finished: Option<Finished>,
 }
 
-/// The result of a finished run only.
+/// Results that only a finished run has.
 #[derive(Clone)]
 pub(super) struct Finished {
     pub guide_error: Arc<Image>,
@@ -62,13 +62,13 @@ impl Stylised {
         }
     }
 
-    /// This run with the picture of an update.
+    /// Returns a copy of this output with the picture and the sources that an update has made.
     pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
         let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
         Self { picture: Arc::new(picture), finished, ..self.clone() }
     }
 
-    /// The matches of a finished run.
+    /// Returns the matches of a finished run; an error if the run has not finished.
     pub(super) fn field(&self) -> Result<Arc<Field>> {
         Ok(self.need_finished()?.field.clone())
     }
@@ -77,7 +77,7 @@ impl Stylised {
         self.finished.as_ref().and_then(|f| f.study.clone())
     }
 
-    /// The result, or an error if the run is not finished.
+    /// Returns the results of a finished run; an error if the run has not finished.
     pub(super) fn need_finished(&self) -> Result<&Finished> {
         self.finished.as_ref().ok_or_else(|| {
             Error::new(ErrorKind::NotReady, "only the picture is there before the last level is done; wait for the job")

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::patch::Vote;
 use crate::stylize::{self, Finder, Mode};
 
-/// Presets between quality and speed: a LUXFER_STYLIZE_ preset.
+/// Presets that trade quality for speed: a LUXFER_STYLIZE_ preset.
 pub type luxfer_stylize_preset = i32;
 /// Full quality, the default.
 pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;
@@ -28,20 +28,20 @@ pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
 pub const LUXFER_STYLIZE_MODE_UNIFORM: luxfer_stylize_mode = 1;
 /// Each target patch takes its nearest exemplar patch (Wexler et al. 2007).
 pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
-/// One pass in scan order (Hertzmann et al. 2001); runs on one thread.
+/// Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread.
 pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
-/// Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan et
-/// al. 2001).
+/// Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
+/// et al. 2001).
 pub const LUXFER_STYLIZE_MODE_LIT_SPHERE: luxfer_stylize_mode = 4;
 /// Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
 /// 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
 pub const LUXFER_STYLIZE_MODE_OCCURRENCE: luxfer_stylize_mode = 5;
 
-/// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
+/// The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
 pub type luxfer_stylize_search = i32;
 /// PatchMatch, the default.
 pub const LUXFER_STYLIZE_SEARCH_PATCHMATCH: luxfer_stylize_search = 0;
-/// A k-d tree over the means of patches instead of PatchMatch.
+/// A k-d tree over the mean colours and guides of patches.
 pub const LUXFER_STYLIZE_SEARCH_TABLE: luxfer_stylize_search = 1;
 
 /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value.
@@ -50,7 +50,7 @@ pub type luxfer_stylize_vote = i32;
 pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
 /// The mean of the overlapping patches, weighted so that closer matches count more.
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
-/// The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork.
+/// The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
 /// their seams.
@@ -63,13 +63,14 @@ pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 pub struct luxfer_stylize_params {
     /// sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init.
     pub struct_size: u32,
-    /// LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET.
+    /// Assignment of patches: a LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET.
     pub mode: luxfer_stylize_mode,
-    /// LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
+    /// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
     pub search: luxfer_stylize_search,
     /// Width of a patch in pixels, odd, in [1, 33]; default 5.
     pub patch: u32,
-    /// Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2.
+    /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
+    /// 1e6]; default 2.
     pub guide_weight: f32,
     /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6.
     pub levels: u32,
@@ -77,24 +78,25 @@ pub struct luxfer_stylize_params {
     pub iterations: u32,
     /// Rounds of matching and painting on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Additional rounds on the finest level without the error budget, in which each target patch takes its nearest
-    /// match, in [0, 100]; default 3; the paper has 0. In other modes than LUXFER_STYLIZE_MODE_BUDGET these are
+    /// Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In LUXFER_STYLIZE_MODE_BUDGET
+    /// each target patch takes its nearest match in these rounds, without the error budget. In other modes these are
     /// additional rounds of that mode.
     pub polish: u32,
-    /// PatchMatch sweeps of a search, in [1, 100]; default 1.
+    /// PatchMatch sweeps of one search, in [1, 100]; default 1.
     pub sweeps: u32,
     /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
     /// default 0.9.
     pub coverage: f32,
-    /// Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6.
+    /// Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6.
     pub passes: u32,
-    /// Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
-    /// the paper has 0.
+    /// Sweeps after a matching in which a target patch may continue the match of its neighbour, for fewer seams, in
+    /// [0, 100]; default 2; the paper has 0.
     pub settle: u32,
     /// Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
     /// default 0.2.
     pub seam: f32,
-    /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
+    /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
+    /// LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
     /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST.
     pub final_vote: luxfer_stylize_vote,
@@ -107,19 +109,19 @@ pub struct luxfer_stylize_params {
     /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
     /// luxfer_stylize_set_motion; without it, it has no effect.
     pub coherence: f32,
-    /// How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in [0, 1];
-    /// default 0.
+    /// How far the brightness and contrast of the exemplar's light guides are adapted to those of the target's light
+    /// guides, in [0, 1]; 0, the default: not at all.
     pub match_appearance: f32,
     /// Seed of the search; default 1.
     pub seed: u64,
-    /// Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger factor
-    /// follows the guides more closely, with smaller connected pieces of the artwork.
+    /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+    /// factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
     pub coarse_guides: f32,
     /// Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
-    /// Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
-    /// al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of average
-    /// usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+    /// Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser
+    /// et al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
+    /// distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
     /// LUXFER_STYLIZE_MODE_NEAREST.
     pub occurrence: f32,
     /// Must be 0.
@@ -132,7 +134,7 @@ const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Gree
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
 const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
-/// The setting that an integer of the C interface stands for.
+/// Converts an integer of the C interface to the setting of that index; an error beyond the end of `values`.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
     let value = usize::try_from(index).ok().and_then(|i| values.get(i));
     value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))
@@ -202,8 +204,9 @@ impl luxfer_stylize_params {
     }
 }
 
-/// Fills *params with a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
-/// LUXFER_INVALID_ARGUMENT for another value.
+/// Fills *params with a preset: LUXFER_STYLIZE_FULL, LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or
+/// LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
+/// LUXFER_INVALID_ARGUMENT if preset is another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_params_preset(
     params: *mut luxfer_stylize_params,

@@ -1,7 +1,7 @@
 //! Results of a stylisation
 //!
-//! The picture, the source of each pixel in the artwork, the error of the guides, and statistics of the run level by
-//! level.
+//! The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
+//! the run level by level.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -18,11 +18,11 @@ use std::sync::Arc;
 
 /// An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value.
 pub type luxfer_stylize_image = i32;
-/// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it is
-/// smaller: the sides of the target are halved luxfer_stylize_report.halvings times, rounded down.
+/// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it
+/// is smaller than the target: the target's sides are halved luxfer_stylize_report.halvings times, rounded down.
 pub const LUXFER_STYLIZE_IMAGE_PICTURE: luxfer_stylize_image = 0;
-/// Difference between the guides at each pixel and at the place in the exemplar from which it was painted, in [0, 1]; 1
-/// channel. It is high where nothing in the exemplar fits.
+/// Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from which the
+/// pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
 pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
 /// Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
 /// channels.
@@ -34,18 +34,19 @@ pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
 pub struct luxfer_stylize_report {
     /// sizeof(luxfer_stylize_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0.
+    /// 1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and energy
+    /// are 0.
     pub is_complete: u32,
     /// Number of finished levels; see luxfer_stylize_get_level.
     pub levels: u32,
-    /// Number of times that the sides of the target were halved to get the size of the picture.
+    /// Number of times that the target's sides were halved to get the size of the picture.
     pub halvings: u32,
     /// Width of the patches, in pixels.
     pub patch: u32,
-    /// Largest number of uses of an exemplar patch.
+    /// Number of uses of the exemplar patch that was used most often.
     pub max_uses: u32,
-    /// Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
-    /// channels of the artwork have the weight 1 together, the guides guide_weight.
+    /// Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All channels
+    /// of the artwork together have the weight 1, all guides together have the weight guide_weight.
     pub energy: f64,
     /// Share of the exemplar patches that were used, in [0, 1].
     pub used: f64,
@@ -77,7 +78,7 @@ versioned!(luxfer_stylize_report, [72], {
 });
 
 impl luxfer_stylize_report {
-    /// The numbers of a finished run.
+    /// The part of the report that only a finished run has.
     fn of(finished: &Finished) -> Self {
         Self {
             is_complete: 1,
@@ -93,7 +94,7 @@ impl luxfer_stylize_report {
     }
 }
 
-/// One round of matching and painting.
+/// One round of matching and painting on a level.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_round {
@@ -101,22 +102,22 @@ pub struct luxfer_stylize_round {
     pub struct_size: u32,
     /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
     pub passes: u32,
-    /// Energy after this round, as luxfer_stylize_report.energy.
+    /// Energy after this round, defined as for luxfer_stylize_report.energy.
     pub energy: f64,
 }
 
 versioned!(luxfer_stylize_round, [16], { Self { struct_size: 16, passes: 0, energy: 0.0 } });
 
-/// One matching pass under the error budget.
+/// One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_pass {
     /// sizeof(luxfer_stylize_pass), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
     /// Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
-    /// the error curve.
+    /// the sorted matching errors, where they begin to rise steeply.
     pub knee: f64,
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,
@@ -128,8 +129,9 @@ versioned!(luxfer_stylize_pass, [32], {
     Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
 });
 
-/// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
-/// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
+/// Gets the picture or another image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update
+/// changes the picture and the sources only; the guide error remains that of the last full run. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
 /// level is finished.
 #[unsafe(no_mangle)]
@@ -174,8 +176,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_report(
     })
 }
 
-/// Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
-/// NULL. Any thread.
+/// Gets the size of a level in pixels and the number of its rounds; level 0 is the coarsest. width, height and rounds
+/// may be NULL. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_level(
@@ -195,7 +197,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level. size is sizeof *round. Any thread.
+/// Describes a round of a level; level and index start at 0. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -216,7 +218,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a pass of a round. size is sizeof *pass. Any thread.
+/// Describes a matching pass of a round; level, round and index start at 0. size is sizeof *pass. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]

@@ -1,8 +1,8 @@
 //! Transfer
 //!
-//! The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs the
-//! stages in order. You can read every result as soon as its stage has ended, replace it by your own, and continue from
-//! any stage.
+//! The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs its
+//! stages one after the other. You can read every result as soon as its stage has ended, replace it by a result of
+//! your own, and continue from any stage.
 
 use super::context::luxfer_context;
 use super::emission::luxfer_emission_params;
@@ -39,13 +39,13 @@ pub struct luxfer_transfer {
     _opaque: [u8; 0],
 }
 
-/// A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run.
+/// A stage of the transfer: a LUXFER_STAGE_ value. The stages run in the order of their values.
 pub type luxfer_stage = i32;
-/// No stage, but a scene that was loaded: only in warnings.
+/// No stage, but a loaded scene: occurs only in warnings.
 pub const LUXFER_STAGE_SCENE: luxfer_stage = -1;
-/// Finds lines, vanishing points and the photo's camera.
+/// Finds lines, vanishing points and the camera of the photo.
 pub const LUXFER_STAGE_VIEW: luxfer_stage = 0;
-/// Computes the ten channels of the features.
+/// Computes the ten feature channels of each pixel of the photo.
 pub const LUXFER_STAGE_FEATURES: luxfer_stage = 1;
 /// Segments the plane that carries the lights.
 pub const LUXFER_STAGE_PLANE: luxfer_stage = 2;
@@ -57,51 +57,51 @@ pub const LUXFER_STAGE_UNWARP: luxfer_stage = 4;
 pub const LUXFER_STAGE_EMISSION: luxfer_stage = 5;
 /// Solves for the colour and intensity of the emission.
 pub const LUXFER_STAGE_RELIGHT: luxfer_stage = 6;
-/// Renders the picture.
+/// Renders the scene in its new light.
 pub const LUXFER_STAGE_RENDER: luxfer_stage = 7;
 
-/// The part of the photo that gives the colour to match: a LUXFER_TARGET_ value.
+/// The part of the photo whose mean colour is matched: a LUXFER_TARGET_ value.
 pub type luxfer_target = i32;
 /// The plane that carries the lights, without the lights and their halo.
 pub const LUXFER_TARGET_SURFACE: luxfer_target = 0;
 /// The whole photo.
 pub const LUXFER_TARGET_WHOLE_IMAGE: luxfer_target = 1;
 
-/// Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs behind the pointers are read during
-/// the call.
+/// Settings of a transfer. Fill them with luxfer_transfer_params_init. Its pointers are used during the call only.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_transfer_params {
     /// sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init.
     pub struct_size: u32,
-    /// Maximum side of the emissive texture in texels, in [1, 16384]; default 2048.
+    /// Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048.
     pub max_texels: u32,
-    /// Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the scale of
-    /// the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles;
-    /// plane_distance and plane_distance_error of luxfer_transfer_report state it.
+    /// Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]; it sets the scale of
+    /// the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles.
+    /// luxfer_transfer_report states the distance and its error.
     pub plane_distance: f64,
-    /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux. The
-    /// strength of the lamps is proportional to it. A photo alone does not determine this luminance: see proposed_white
-    /// of luxfer_transfer_report.
+    /// Luminance in cd/m² of the photo's white, in [1e-6, 1e9]; default 100, the luminance of matt white paper in 314
+    /// lux. The strength of the lamps is proportional to it. A photo alone does not determine this luminance: see
+    /// proposed_white of luxfer_transfer_report.
     pub white_luminance: f32,
-    /// LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
+    /// Part of the photo whose mean colour is matched: a LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
     pub target: luxfer_target,
-    /// Settings of the stages VIEW and UNWARP; NULL, the default: their defaults.
+    /// Settings of the stages VIEW and UNWARP; NULL, the default: the defaults of luxfer_rectify_params.
     pub rectify: *const luxfer_rectify_params,
-    /// Settings of the stage FEATURES; NULL, the default: their defaults.
+    /// Settings of the stage FEATURES; NULL, the default: the defaults of luxfer_features_params.
     pub features: *const luxfer_features_params,
-    /// Settings of the stage PLANE; NULL, the default: their defaults.
+    /// Settings of the stage PLANE; NULL, the default: the defaults of luxfer_segment_params.
     pub plane: *const luxfer_segment_params,
-    /// Settings of the stage LIGHTS; NULL, the default: the defaults with channels = 7, colour only.
+    /// Settings of the stage LIGHTS; NULL, the default: the defaults of luxfer_segment_params, but channels = 7,
+    /// colour only.
     pub lights: *const luxfer_segment_params,
-    /// Settings of the stage EMISSION; NULL, the default: their defaults. The transfer sets width, height, scale and
-    /// offset itself.
+    /// Settings of the stage EMISSION; NULL, the default: the defaults of luxfer_emission_params. The transfer sets
+    /// width, height, scale and offset itself.
     pub emission: *const luxfer_emission_params,
-    /// Settings of the stage RELIGHT; NULL, the default: their defaults.
+    /// Settings of the stage RELIGHT; NULL, the default: the defaults of luxfer_relight_params.
     pub relight: *const luxfer_relight_params,
-    /// Settings of the stage RENDER; NULL, the default: their defaults.
+    /// Settings of the stage RENDER; NULL, the default: the defaults of luxfer_render_params.
     pub render: *const luxfer_render_params,
-    /// Layout of the lights on the surface; NULL, the default: the defaults.
+    /// Layout of the lights on the surface; NULL, the default: the defaults of luxfer_pattern_params.
     pub pattern: *const luxfer_pattern_params,
 }
 
@@ -179,7 +179,7 @@ impl Inputs {
         &self.strokes.taken
     }
 
-    /// The inputs as the transfer takes them.
+    /// Returns the inputs in the form that the transfer takes.
     fn input(&self) -> Result<transfer::Input> {
         let depth = match &self.depth {
             Some((depth, kind)) => Some((depth.shared()?, *kind)),
@@ -211,7 +211,7 @@ fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
     found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
 }
 
-/// Creates a transfer. The caller releases *transfer. Any thread.
+/// Creates a transfer without inputs. The caller releases *transfer. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_create(
     context: *mut luxfer_context,
@@ -239,7 +239,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_photo(
     })
 }
 
-/// Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: no depth map. Any thread.
+/// Sets a depth map of the photo; depth and kind are as for luxfer_features_set_depth. depth may be NULL: no depth
+/// map. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_depth(
     transfer: *mut luxfer_transfer,
@@ -257,10 +258,10 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
 }
 
 /// Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
-/// transfer never changes the scene; each job uses the scene as it is when the job starts. Among the triangles of that
-/// name it takes the plane that faces most of the room. The parts of this plane, for example between the beams of a
-/// ceiling, share one pattern that continues from part to part. Triangles in other planes stay unchanged; light them by
-/// another transfer with its own pattern. Any thread.
+/// transfer never changes the scene; each job uses the scene as it is when the job starts. Of the planes of that
+/// object or material, the transfer takes the plane that faces most of the room. The parts of this plane, for example
+/// between the beams of a ceiling, share one pattern that continues from part to part. Triangles in other planes stay
+/// unchanged; light them by another transfer with its own pattern. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,
@@ -279,10 +280,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
     })
 }
 
-/// Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
-/// surface. If they lie in several planes, the transfer takes the plane that faces most of the room, as for a named
-/// surface. They replace earlier triangles, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be
-/// NULL, and the named surface receives the lights again. Any thread.
+/// Sets the triangles of the scene that receive the lights, instead of the named surface. triangles holds the mesh
+/// index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes the
+/// plane that faces most of the room, as for a named surface. They replace earlier triangles, and
+/// luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface receives the
+/// lights again. Any thread.
 /// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(
@@ -302,8 +304,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_triangles(
     })
 }
 
-/// Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the
-/// surface instead of making one from the photo. texture may be NULL, the default: make one. Any thread.
+/// Sets an emissive texture: linear RGB, where 1 is the photo's white. The stage EMISSION then stretches it over the
+/// surface instead of making a texture from the photo. texture may be NULL, the default: a texture is made from the
+/// photo. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_texture(
     transfer: *mut luxfer_transfer,
@@ -318,8 +321,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_texture(
     })
 }
 
-/// Sets the camera of the picture. camera may be NULL, the default: the first camera of the scene, or a camera in a
-/// corner of the room if the scene has none. Any thread.
+/// Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a
+/// camera in a corner of the room if the scene has none. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
     transfer: *mut luxfer_transfer,
@@ -334,9 +337,10 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
     })
 }
 
-/// Sets the strokes on the photo. Strokes on lights count as strokes on the plane too. The transfer copies the strokes;
-/// they replace earlier strokes; strokes may be NULL: no strokes. Any thread.
-/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
+/// Sets the strokes on the photo, for the mask of the plane and the mask of the lights. Strokes on lights count as
+/// strokes on the plane too. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no
+/// strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_strokes(
     transfer: *mut luxfer_transfer,
@@ -352,9 +356,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_strokes(
     })
 }
 
-/// Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
-/// metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace earlier
-/// rectangles; zones may be NULL if count is 0. Any thread.
+/// Sets rectangles of the surface that stay without lamps, for example at ducts and sprinklers. zones holds u0, v0, u1
+/// and v1 of each of count rectangles, in metres from the surface's corner along its axes (luxfer_surface), with u0 <=
+/// u1 and v0 <= v1. They replace earlier rectangles; zones may be NULL if count is 0. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_zones(
     transfer: *mut luxfer_transfer,
@@ -372,9 +376,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_zones(
     })
 }
 
-/// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
-/// plane, the result of the stage UNWARP by that plane. The transfer then keeps this camera, even if its lamps suggest
-/// another one. Any thread.
+/// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify. If that object has unwarped
+/// a plane, this plane replaces the result of the stage UNWARP. The transfer then keeps this camera, even if the
+/// photo's lamps suggest another one. Any thread.
 /// LUXFER_NOT_READY if rectify has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_rectify(
@@ -393,7 +397,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_rectify(
     })
 }
 
-/// Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
+/// Replaces the result of the stage FEATURES by the result of a luxfer_features. Any thread.
 /// LUXFER_NOT_READY if features has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_features(
@@ -406,8 +410,8 @@ pub unsafe extern "C" fn luxfer_transfer_use_features(
     })
 }
 
-/// Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
-/// the stage. Any thread.
+/// Replaces the result of the stage PLANE or LIGHTS by the result of a luxfer_segment; phase, a LUXFER_PHASE_ value,
+/// chooses the stage. Any thread.
 /// LUXFER_NOT_READY if segment has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_segment(
@@ -421,8 +425,9 @@ pub unsafe extern "C" fn luxfer_transfer_use_segment(
     })
 }
 
-/// Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example one drawn by hand;
-/// phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, used as a confidence in [0, 1]. Any thread.
+/// Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example a mask drawn by hand;
+/// phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, whose values are used as confidences in
+/// [0, 1]. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_mask(
     transfer: *mut luxfer_transfer,
@@ -447,12 +452,12 @@ fn use_segmentation(
     }
 }
 
-/// Starts a job that runs the stages from first to last, LUXFER_STAGE_ values, both included; the stages before first
-/// must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already, or if an input or the result of an earlier stage is missing;
+/// Starts a job that runs the stages from first to last, both included; first and last are LUXFER_STAGE_ values. The
+/// stages before first must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
 /// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
-/// jobs; the message names the stage. It ends at once if the scene does not have the surface. The results of finished
-/// stages stay.
+/// jobs; the message names the stage. It ends at once if the scene does not have the surface. Stages that have ended
+/// keep their results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,
@@ -472,7 +477,7 @@ pub unsafe extern "C" fn luxfer_transfer_start(
     })
 }
 
-/// A copy of the transfer's inputs and results, with these settings.
+/// Returns a copy of the transfer's inputs and results, with the settings of `params`.
 pub(super) fn snapshot(stage: &Runner<Inputs, Results>, params: luxfer_transfer_params) -> Result<Transfer> {
     let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
     Ok(Transfer { input: stage.inputs().input()?, params: params.params()?, results })

@@ -1,7 +1,7 @@
 //! Transfer results
 //!
-//! The results of a transfer. A result is available once its stage has ended; the rendering is available in its current
-//! state while it runs.
+//! The results of a transfer. A result is available once its stage has ended; the rendering is available in its
+//! current state while it runs.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -23,40 +23,41 @@ use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
 
-/// An image of the transfer: a LUXFER_TRANSFER_ value.
+/// An image that a stage of the transfer has made: a LUXFER_TRANSFER_ value.
 pub type luxfer_transfer_image = i32;
-/// The ten channels of the features.
+/// The ten channels of the features, as LUXFER_FEATURES_CHANNELS.
 pub const LUXFER_TRANSFER_FEATURES: luxfer_transfer_image = 0;
-/// 1 on the plane, else 0; 1 channel.
+/// The mask of the plane in the photo: 1 on the plane, else 0; 1 channel.
 pub const LUXFER_TRANSFER_PLANE_MASK: luxfer_transfer_image = 1;
-/// Probability that a pixel is on the plane; 1 channel.
+/// Probability that a pixel of the photo is on the plane, in [0, 1]; 1 channel.
 pub const LUXFER_TRANSFER_PLANE_CONFIDENCE: luxfer_transfer_image = 2;
-/// 1 on lights, else 0; 1 channel.
+/// The mask of the lights in the photo: 1 on lights, else 0; 1 channel.
 pub const LUXFER_TRANSFER_LIGHTS_MASK: luxfer_transfer_image = 3;
-/// Probability that a pixel is a light; 1 channel.
+/// Probability that a pixel of the photo is a light, in [0, 1]; 1 channel.
 pub const LUXFER_TRANSFER_LIGHTS_CONFIDENCE: luxfer_transfer_image = 4;
-/// The plane seen straight on, linear RGB.
+/// The unwarped image: the plane in frontal view, linear RGB.
 pub const LUXFER_TRANSFER_UNWARPED: luxfer_transfer_image = 5;
-/// 1 where the photo shows the plane, else 0; 1 channel.
+/// 1 where the photo shows the plane of the unwarped image, else 0; 1 channel.
 pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
-/// The emissive texture, linear RGB relative to the photo's white.
+/// The emissive texture: linear RGB, where 1 is the photo's white.
 pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
-/// 1 on lamps of the texture, else 0; 1 channel.
+/// The mask of the emissive texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
-/// The scene in its new light, linear RGB in cd/m²; in its current state while the rendering runs.
+/// The scene in its new light: linear RGB in cd/m²; in its current state while the rendering runs.
 pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
-/// Variance of the rendering; 3 channels.
+/// Variance of the rendering, as LUXFER_RENDER_VARIANCE; 3 channels.
 pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;
-/// The rendering after a noise filter, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
+/// The rendering after a noise filter, if the settings of the stage RENDER ask for a preview; see
+/// LUXFER_RENDER_PREVIEW.
 pub const LUXFER_TRANSFER_RENDER_PREVIEW: luxfer_transfer_image = 11;
 
-/// A scene of the transfer: a LUXFER_SCENE_ value.
+/// A scene that the transfer has made: a LUXFER_SCENE_ value.
 pub type luxfer_transfer_scene = i32;
 /// The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor.
 pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
 /// The scene with the solved emission: the result.
 pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
-/// As LUXFER_SCENE_LIT, with white light of equal luminance.
+/// The scene LUXFER_SCENE_LIT with white light of equal luminance.
 pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
 
 /// Time and error of each stage. The error of a stage without a result is NaN.
@@ -68,31 +69,30 @@ pub struct luxfer_transfer_report {
     /// Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
     /// ended.
     pub fixtures: u32,
-    /// Duration of each stage's last run in seconds, by LUXFER_STAGE_ value.
+    /// Duration of each stage's last run in seconds; the index is the LUXFER_STAGE_ value.
     pub seconds: [f64; 8],
-    /// Largest standard deviation of a vanishing point's direction, in radians.
+    /// Largest standard deviation of the directions of the vanishing points, in radians.
     pub view_error: f64,
-    /// Mean confidence of the features' depth, in [0, 1].
+    /// Mean confidence of the depth in the features, in [0, 1].
     pub depth_confidence: f64,
-    /// Expected share of wrong pixels in the mask of the plane.
+    /// Expected share of wrong pixels in the mask of the plane, in [0, 1].
     pub plane_error: f64,
-    /// Expected share of wrong pixels in the mask of the lights.
+    /// Expected share of wrong pixels in the mask of the lights, in [0, 1].
     pub lights_error: f64,
     /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
     pub unwarp_error: f64,
-    /// As the field error of luxfer_emission_report: largest relative difference between texture and photo in three
+    /// Field error of luxfer_emission_report: largest relative difference between texture and photo in three
     /// statistics of their lamps.
     pub emission_error: f64,
-    /// Largest relative half-width of the solution's 95 % confidence intervals.
+    /// Field error of luxfer_relight_report: largest relative half-width of the solution's 95 % confidence intervals.
     pub relight_error: f64,
-    /// As the field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its
-    /// mean.
+    /// Field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its mean.
     pub render_error: f64,
-    /// Size of a texel of the emission in metres.
+    /// Length of a texel's side on the surface, in metres.
     pub texel_size: f64,
-    /// Mean colour that the surface should have, relative to the photo's white.
+    /// Mean colour that the surface should have: linear RGB, where 1 is the photo's white.
     pub target: [f32; 3],
-    /// 0.
+    /// Reserved; always 0.
     pub reserved: u32,
     /// Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on the
     /// surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
@@ -100,11 +100,12 @@ pub struct luxfer_transfer_report {
     /// Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
     /// lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
     pub plane_distance_error: f64,
-    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: the white_luminance of luxfer_photo_metadata
-    /// if the photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office.
+    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: the white_luminance of
+    /// luxfer_photo_metadata if the photo's file states the exposure, else 159, the luminance of white paper in the
+    /// 500 lux of an office.
     pub proposed_white: f64,
-    /// Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the 100
-    /// lux of a corridor.
+    /// Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the
+    /// 100 lux of a corridor.
     pub proposed_white_low: f64,
     /// Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
     /// lux.
@@ -183,25 +184,25 @@ impl luxfer_transfer_report {
 pub struct luxfer_fixture {
     /// sizeof(luxfer_fixture), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Centre in metres.
+    /// Centre of the lamp in metres.
     pub position: [f32; 3],
     /// Unit vector of the direction in which the lamp shines.
     pub normal: [f32; 3],
-    /// Unit vector of the long axis.
+    /// Unit vector along the lamp's long axis.
     pub axis: [f32; 3],
-    /// Mean luminance per channel in cd/m².
+    /// Mean luminance of the lamp per channel in cd/m².
     pub radiance: [f32; 3],
     /// Number of the lamp's kind, as in luxfer_luminaire.
     pub kind: u32,
-    /// Length along the long axis and across it, in metres.
+    /// Lengths of the lamp along its long axis and across it, in metres.
     pub size: [f64; 2],
     /// Area in m².
     pub area: f64,
     /// Luminous flux in lumens.
     pub flux: f64,
-    /// Correlated colour temperature in kelvin; 0 for a lamp that is off.
+    /// Correlated colour temperature of the light in kelvin; 0 for a lamp that is off.
     pub cct: f64,
-    /// Distance from the blackbody locus in the CIE 1960 diagram.
+    /// Distance of the light from the blackbody locus in the CIE 1960 diagram, positive for greenish light.
     pub duv: f64,
 }
 
@@ -221,14 +222,14 @@ versioned!(luxfer_fixture, [104], {
     }
 });
 
-/// A result of a stage, or an error that names the stage.
+/// Returns the result of a stage, or an error that names the stage if there is no result.
 fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     result.as_ref().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, format!("there is no such result yet; LUXFER_STAGE_{stage} makes it"))
     })
 }
 
-/// Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
+/// Gets an image that a stage has made; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview if
 /// luxfer_render_params.preview was 0.
 #[unsafe(no_mangle)]
@@ -267,8 +268,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
     })
 }
 
-/// Gets a scene; which is a LUXFER_SCENE_ value. The caller releases *scene, which is independent of the transfer. Any
-/// thread.
+/// Gets a scene that the transfer has made; which is a LUXFER_SCENE_ value. The scene is independent of the transfer.
+/// The caller releases *scene. Any thread.
 /// LUXFER_NOT_READY before the stage EMISSION has ended, for LUXFER_SCENE_UNSOLVED, or the stage RELIGHT, for the
 /// others.
 #[unsafe(no_mangle)]
@@ -291,7 +292,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_scene(
     })
 }
 
-/// Gets time and error of each stage. size is sizeof *report. Any thread.
+/// Gets the time and the error of each stage. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first stage has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_report(
@@ -323,7 +324,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_view(
     })
 }
 
-/// Gets the solved colour and intensity and their confidence. size is sizeof *solution. Any thread.
+/// Gets the solved colour and intensity of the emission and their confidence. size is sizeof *solution. Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_solution(
@@ -342,7 +343,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_solution(
     })
 }
 
-/// Describes a lamp of the lit scene. size is sizeof *fixture. Any thread.
+/// Describes a lamp of the lit scene; index starts at 0. size is sizeof *fixture. Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_NOT_FOUND if there is no such fixture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_fixture(
@@ -372,11 +373,11 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
     })
 }
 
-/// Writes the luminaire schedule, a list of all lamps of the lit scene, to a .csv or .json file: position, normal,
-/// axis, size, area, luminance, flux and colour temperature; the names of the columns contain the units. In .json,
-/// "outline_m" holds the corners of the outline in metres. path is UTF-8. Any thread.
-/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another extension; LUXFER_IO if the
-/// file cannot be written.
+/// Writes a list of all lamps of the lit scene (luminaire schedule) to a .csv or .json file: position, normal, axis,
+/// size, area, luminance, flux and colour temperature. The names of the columns contain the units. In .json,
+/// "outline_m" holds the corners of each outline in metres. path is UTF-8. Any thread.
+/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another extension; LUXFER_IO if
+/// the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_save_fixtures(
     transfer: *mut luxfer_transfer,

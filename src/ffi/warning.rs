@@ -1,9 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, its
-//! figure and limit, the place in the photo, and the remedy. Each stage that reads the photo has a list, a transfer has
-//! the lists of all its stages, and a scene has one. A list is a copy, which stays as it is when the stage is started
-//! again. An empty list does not prove a result right.
+//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect
+//! with its figure and limit, the place in the photo, and the remedy. Each stage that has warnings has a list of them,
+//! a transfer has the lists of all its stages, and a scene has a list. A list is a copy: it does not change when the
+//! stage is started again. An empty list does not prove that a result is right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -67,8 +67,8 @@ pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
 /// strongly magnified. The place is the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle between
-/// the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
+/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle
+/// between the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
@@ -80,18 +80,18 @@ pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
-/// A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
-/// below the limit if the scene is too small. The message names the likely unit.
+/// A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
+/// metres, below the limit if the scene is too small. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
-/// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
-/// objects that have it; the severity is their number.
+/// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
+/// objects that have it; the severity is the number of these objects.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
 /// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
 /// lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without light would differ less from the photo than this one; the severity is the error of
-/// luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
+/// error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
 /// the severity is the share of the mask that is expected to be wrong.
@@ -100,33 +100,34 @@ pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
 /// large that floats have rounded them, it is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate them; the
-/// severity is their number, and the message lists the first ones with their positions.
+/// Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare does not rate
+/// them; the severity is their number, and the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 
-/// A reason to doubt a result.
+/// A warning: a reason to doubt a result.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_warning {
     /// sizeof(luxfer_warning), set by the function that fills the struct.
     pub struct_size: u32,
-    /// LUXFER_WARNING_ value.
+    /// Kind of the warning: a LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
-    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. For a luxfer_segment it is LIGHTS if
-    /// luxfer_segment_set_region gave a mask, else PLANE; for a luxfer_scene it is SCENE.
+    /// The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
+    /// luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene it is LUXFER_STAGE_SCENE.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
-    /// The figure that caused the warning; its meaning depends on the code.
+    /// The figure that caused the warning; the comment of each LUXFER_WARNING_ value says what it measures.
     pub severity: f64,
-    /// The limit that the figure has passed.
+    /// The limit that the figure has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says that
+    /// the figure is below the limit.
     pub limit: f64,
-    /// The place in the photo, x and y in pixels; 0 without one.
+    /// The place in the photo, x and y in pixels; 0 if the warning has no place.
     pub place: [f64; 2],
-    /// The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    /// The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
     /// luxfer_warnings.
     pub message: *const c_char,
-    /// The remedy.
+    /// The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the luxfer_warnings.
     pub advice: *const c_char,
 }
 
@@ -144,7 +145,7 @@ versioned!(luxfer_warning, [64], {
     }
 });
 
-/// The warnings behind a handle, each with its stage.
+/// The object behind a `luxfer_warnings` handle: a list of warnings, each with its stage.
 pub(super) struct Warnings {
     context: Arc<Context>,
     list: Vec<Entry>,
@@ -183,12 +184,12 @@ impl Warnings {
     }
 }
 
-/// Lists the warnings of a stage.
+/// Pairs each warning of a list with its stage.
 fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (luxfer_stage, Warning)> {
     list.into_iter().map(move |warning| (stage as luxfer_stage, warning))
 }
 
-/// An object whose result may be in doubt.
+/// A handle whose object has warnings.
 pub(super) trait Doubtful: Handle {
     fn list(object: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>>;
 }
@@ -257,7 +258,7 @@ impl Doubtful for luxfer_scene {
     }
 }
 
-/// Counts the warnings of a list. Any thread.
+/// Gets the number of warnings in a list. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
     enter(warnings, |object| {
@@ -266,8 +267,8 @@ pub unsafe extern "C" fn luxfer_warnings_get_count(warnings: *mut luxfer_warning
     })
 }
 
-/// Gets a warning of a list. size is sizeof *warning. Any thread.
-/// LUXFER_NOT_FOUND if there is no such warning.
+/// Gets one warning of a list; index starts at 0. size is sizeof *warning. Any thread.
+/// LUXFER_NOT_FOUND if index is beyond the end of the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get(
     warnings: *mut luxfer_warnings,
@@ -294,8 +295,8 @@ pub unsafe extern "C" fn luxfer_warnings_get(
     })
 }
 
-/// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
-/// string is static: never free it. Any thread.
+/// Returns the name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number.
+/// The string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c_char {
     let name = match code {

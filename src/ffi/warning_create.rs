@@ -1,6 +1,6 @@
 //! Warnings of an object
 //!
-//! Stages, transfers and scenes have warnings.
+//! Gets the warnings of stages, transfers and scenes.
 
 use super::guard::guard;
 use super::kinds::Kind;
@@ -16,8 +16,8 @@ use std::ffi::c_void;
 /// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
 /// - a luxfer_emission: about the texture; a plan has no warnings;
 /// - a luxfer_relight;
-/// - a luxfer_scene: an implausible size, a place far from the origin, luminaires that no picture shows, and features
-///   of its file that are not rendered.
+/// - a luxfer_scene: an implausible size, a place far from the origin, luminaires that are invisible in renderings,
+///   and features of its file that are not rendered.
 ///
 /// The caller releases *warnings. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);

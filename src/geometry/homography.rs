@@ -1,16 +1,16 @@
-//! Plane-to-plane projective maps.
+//! Homographies: projective maps between planes.
 
 use super::linear;
 use crate::error::{Error, Result};
 use glam::{DMat3, DVec2, DVec3};
 
-/// A 3 × 3 map of homogeneous points, defined up to scale.
+/// A projective map between planes, as a 3 × 3 matrix on homogeneous points, defined up to scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Homography(pub DMat3);
 
 impl Homography {
-    /// The map that takes four points to four others exactly (Hartley and Zisserman 2004, 4.1, with the normalisation
-    /// of 4.4). Returns an error if three points on either side are collinear.
+    /// Computes the homography that maps four points exactly to four others (Hartley and Zisserman 2004, 4.1, with the
+    /// normalisation of 4.4). Returns an error if three points on either side are collinear.
     pub fn from_corners(from: [DVec2; 4], to: [DVec2; 4]) -> Result<Self> {
         let (nf, nt) = (normalisation(&from)?, normalisation(&to)?);
         let (f, t) = (from.map(|p| apply(nf, p)), to.map(|p| apply(nt, p)));
@@ -24,8 +24,8 @@ impl Homography {
                 ));
             }
         }
-        // Set up two rows per point and fix the last entry to 1. If the origin maps to infinity that entry is 0, so
-        // another entry is fixed instead.
+        // Set up two rows per point, and solve for eight entries with the last entry fixed to 1. If the origin maps to
+        // infinity, the last entry is 0 and the system is singular: fix another entry instead.
         let mut a = [[0.0; 9]; 8];
         for i in 0..4 {
             let (x, y, u, v) = (f[i].x, f[i].y, t[i].x, t[i].y);
@@ -48,7 +48,8 @@ impl Homography {
         Ok(Self(nt.inverse() * normalised * nf).rescaled())
     }
 
-    /// The homography scaled to unit Frobenius norm, so that entries can be compared and inverted safely.
+    /// Scales the matrix to unit Frobenius norm, so that its entries can be compared and the matrix can be inverted
+    /// safely.
     pub fn rescaled(self) -> Self {
         let norm = self.0.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         Self(if norm > 0.0 { self.0 * (1.0 / norm) } else { self.0 })
@@ -58,18 +59,18 @@ impl Homography {
         Self(self.rescaled().0.inverse()).rescaled()
     }
 
-    /// The image of a point in homogeneous coordinates; the third coordinate changes sign across the line that maps to
+    /// Maps a point to homogeneous coordinates. The third coordinate changes sign across the line that maps to
     /// infinity.
     pub fn apply_homogeneous(&self, p: DVec2) -> DVec3 {
         self.0 * p.extend(1.0)
     }
 
-    /// The image of a point; infinite or NaN on the line that maps to infinity.
+    /// Maps a point. The result is infinite or NaN on the line that maps to infinity.
     pub fn apply(&self, p: DVec2) -> DVec2 {
         apply(self.0, p)
     }
 
-    /// The composition that applies `first`, then `self`.
+    /// Returns the homography that applies `first`, then `self`.
     pub fn after(self, first: Self) -> Self {
         Self(self.0 * first.0).rescaled()
     }
@@ -84,7 +85,8 @@ fn doubled_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Moves the centroid to the origin and scales the mean distance from it to √2.
+/// Returns the similarity that moves the centroid of the points to the origin and scales their mean distance from it
+/// to √2.
 fn normalisation(points: &[DVec2; 4]) -> Result<DMat3> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let distance = points.iter().map(|p| p.distance(centre)).sum::<f64>() / 4.0;
@@ -140,7 +142,7 @@ mod tests {
         let [a, b, c, d] = quad;
         let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
         assert!(one_side(signs(quad)));
-        // A self-intersecting or non-convex quadrilateral is cut by the horizon.
+        // If the quadrilateral intersects itself or is not convex, its corners lie on both sides of the horizon.
         let crossed = signs([a, b, d, c]);
         assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
         let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);

@@ -1,6 +1,7 @@
-//! Small dense systems: Gaussian elimination with complete pivoting, and eigenvectors of symmetric matrices.
+//! Small dense matrices: linear systems by Gaussian elimination with complete pivoting, and eigenvectors of symmetric
+//! matrices.
 
-/// Solves `a x = b` by elimination with complete pivoting; `None` if the matrix is singular to working precision.
+/// Solves `a x = b` by elimination with complete pivoting. `None` if the matrix is singular to working precision.
 pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     let scale = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
     if !scale.is_finite() || scale == 0.0 {
@@ -41,7 +42,8 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
-/// The eigenvalues of a symmetric matrix in rising order, and its unit eigenvectors (cyclic Jacobi rotations).
+/// Returns the eigenvalues of a symmetric matrix in ascending order, and its unit eigenvectors (cyclic Jacobi
+/// rotations).
 pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut v: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     for _ in 0..64 {

@@ -16,7 +16,7 @@ pub use perspective::{FocalSource, Perspective};
 
 use glam::DVec2;
 
-/// A straight piece of an edge, in pixels.
+/// A straight piece of an image edge, given by its end points in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     pub a: DVec2,

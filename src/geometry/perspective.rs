@@ -1,23 +1,23 @@
-//! The pinhole camera of a photo: focal length, principal point and the three room axes in camera space.
+//! The pinhole camera of a photo: focal length, principal point, and the three room axes in camera space.
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Origin of a focal length.
+/// Where the value of a focal length comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FocalSource {
-    /// Given by the caller.
+    /// The caller gave it.
     Given,
-    /// Derived from two finite vanishing points of orthogonal directions.
+    /// It follows from two finite vanishing points of orthogonal directions.
     VanishingPoints,
-    /// Assumed as 0.85 of the image width, because the vanishing points do not determine it.
+    /// It is assumed to be 0.85 of the image width, because the vanishing points do not determine it.
     Assumed,
-    /// Mainly from the photo's metadata, because the vanishing points are less accurate.
+    /// It comes mainly from the photo's metadata, because the vanishing points are less accurate.
     Metadata,
-    /// Derived from the shapes of lamps on a plane, which are assumed to be alike.
+    /// It follows from the shapes of lamps on a plane, which are assumed to be alike.
     Lamps,
 }
 
-/// Indices of the room axes: two horizontal ones and the vertical.
+/// Column indices of the room axes in [`Perspective::axes`]: two horizontal axes and the vertical.
 pub const HORIZONTAL_A: usize = 0;
 pub const VERTICAL: usize = 1;
 pub const HORIZONTAL_B: usize = 2;
@@ -30,22 +30,22 @@ pub struct Perspective {
     /// Principal point in pixels.
     pub principal: DVec2,
     /// Room axes as unit columns in camera space (x right, y down, z forward), orthogonal and right-handed. Column 1
-    /// is the room's vertical and points down; column 2 is the horizontal axis closest to the viewing direction.
+    /// is the room's vertical and points down. Column 2 is the horizontal axis closest to the viewing direction.
     pub axes: DMat3,
 }
 
 impl Perspective {
-    /// Camera-space direction through an image point, scaled to z = 1.
+    /// Returns the direction in camera space through an image point, scaled to z = 1.
     pub fn ray(&self, pixel: DVec2) -> DVec3 {
         ((pixel - self.principal) / self.focal).extend(1.0)
     }
 
-    /// The matrix `K` from camera space to homogeneous pixels.
+    /// Returns the matrix `K` from camera space to homogeneous pixels.
     pub fn intrinsics(&self) -> DMat3 {
         DMat3::from_cols(DVec3::new(self.focal, 0.0, 0.0), DVec3::new(0.0, self.focal, 0.0), self.principal.extend(1.0))
     }
 
-    /// The vanishing point of a room axis, in homogeneous pixels.
+    /// Returns the vanishing point of a room axis, in homogeneous pixels.
     pub fn vanishing_point(&self, axis: usize) -> DVec3 {
         self.intrinsics() * self.axes.col(axis)
     }

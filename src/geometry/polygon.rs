@@ -1,20 +1,20 @@
-//! Convex polygons in the plane.
+//! Polygons and point sets in the plane: extent, area, clipping and convex hull.
 
 use glam::DVec2;
 
-/// Extent of a set of points along a unit direction.
+/// Returns the extent of a set of points along a unit direction.
 pub fn extent(points: &[DVec2], axis: DVec2) -> f64 {
     let along = points.iter().map(|p| p.dot(axis));
     along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
 }
 
-/// Signed area, positive if the corners turn from x towards y.
+/// Returns the signed area, positive if the corners turn from the x axis towards the y axis.
 pub fn area(corners: &[DVec2]) -> f64 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
 }
 
-/// The part of a convex polygon in the half-plane `normal · p <= offset` (Sutherland and Hodgman 1974).
+/// Returns the part of a convex polygon in the half-plane `normal · p <= offset` (Sutherland and Hodgman 1974).
 pub fn clip(corners: &[DVec2], normal: DVec2, offset: f64) -> Vec<DVec2> {
     let mut out = Vec::with_capacity(corners.len() + 1);
     for (i, &p) in corners.iter().enumerate() {
@@ -30,7 +30,7 @@ pub fn clip(corners: &[DVec2], normal: DVec2, offset: f64) -> Vec<DVec2> {
     out
 }
 
-/// The convex hull of a set of points, counter-clockwise with y up: Andrew's monotone chain (1979).
+/// Returns the convex hull of a set of points, counter-clockwise with y up (Andrew's monotone chain, 1979).
 pub fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();

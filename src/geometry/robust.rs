@@ -1,7 +1,7 @@
 //! Robust statistics of measurements.
 
-/// The weighted median of `(value, weight)` pairs: the smallest value for which the pairs up to this value have at
-/// least half of the total weight. `None` if there are no pairs.
+/// Returns the weighted median of `(value, weight)` pairs: the smallest value such that the pairs up to this value
+/// have at least half of the total weight. `None` if there are no pairs.
 pub fn weighted_median(mut values: Vec<(f64, f64)>) -> Option<f64> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = 0.5 * values.iter().map(|v| v.1).sum::<f64>();

@@ -1,4 +1,4 @@
-//! Edges of shapes: changes of material, creases of the surface, and depth discontinuities.
+//! Computes the edges of shapes: changes of material, creases of the surface, and depth discontinuities.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,16 +6,17 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Difference between the normals of neighbouring pixels (1 - cosine; about 40°) that makes a full edge [origin not
-/// recorded].
+/// Neighbouring pixels whose normals differ by this (1 - cosine; about 40°) form an edge of full strength
+/// [origin not recorded].
 const FULL_CREASE: f32 = 0.25;
-/// Second difference of depth, as a share of the depth, that makes a full edge [origin not recorded].
+/// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
+/// the depth [origin not recorded].
 const FULL_STEP: f32 = 0.02;
-/// Standard deviation in pixels by which edges are blurred, so that patches beside an edge sense it [origin not
-/// recorded].
+/// Standard deviation, in pixels, of the blur of the edges, which lets patches beside an edge sense it
+/// [origin not recorded].
 const BLUR: f32 = 0.8;
 
-/// The strength of the edge at each pixel, in `[0, 1]`.
+/// Returns the strength of the edge at each pixel, in `[0, 1]`.
 pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Result<Image> {
     let (width, height) = (normals.width, normals.height);
     let mut sharp = Image::new(width, height, 1)?;

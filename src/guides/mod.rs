@@ -2,10 +2,12 @@
 //! materials.
 //!
 //! [`run`] renders a camera's view once. Besides the full picture it keeps the light of five light path expressions,
-//! the normals, the edges of shapes ([`edges`](self)), and a colour for each material derived from its name, so that
-//! equal names match across scenes. [`pairs`] brings two scenes' guides to a common exposure for `stylize`.
+//! the normals, the edges of shapes (`edges`), and a colour for each material. This colour is derived from the
+//! material's name, so that equal names match across scenes. [`pairs`] brings the guides of two scenes to a common
+//! exposure for `stylize`.
 //!
-//! The light is smoothed along surfaces (`smooth`), because sampling noise would be matched like texture.
+//! The light is smoothed along surfaces (`smooth`), because `stylize` would match sampling noise as if it were
+//! texture.
 //!
 //! For sequences, [`motion`] computes the position of each pixel in the previous frame.
 //!
@@ -29,10 +31,10 @@ use crate::rng::Rng;
 use crate::scene::Camera;
 use glam::Vec3;
 
-/// The light components, each with a name and its light path expression in Heckbert's notation: all light; one diffuse
-/// reflection; one glossy reflection; at least two diffuse reflections at the end of the path, which is colour
-/// bleeding; one or two diffuse reflections, which distinguishes shadows; and caustics, light that glossy surfaces
-/// reflect onto diffuse surfaces.
+/// The light components, each with a name and its light path expression in Heckbert's notation. "Full" is all light.
+/// "Direct" has one diffuse reflection and "specular" one glossy reflection. "Indirect" ends with at least two diffuse
+/// reflections, which is colour bleeding. "Two bounces" has one or two diffuse reflections, which distinguishes
+/// shadows. "Caustics" is light that glossy surfaces reflect onto diffuse surfaces.
 pub const LIGHT: [(&str, &str); 6] = [
     ("full", "L.*E"),
     ("direct", "LDE"),
@@ -41,7 +43,7 @@ pub const LIGHT: [(&str, &str); 6] = [
     ("two bounces", "LD{1,2}E"),
     ("caustics", "LS+DE"),
 ];
-/// Index of the caustics, which [`pairs`] includes only on request.
+/// Index in [`LIGHT`] of the caustics, which [`pairs`] includes only on request.
 const CAUSTICS: usize = 5;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -64,11 +66,11 @@ impl Default for Params {
 
 #[derive(Clone, Debug)]
 pub struct Guides {
-    /// In the order of [`LIGHT`]: linear RGB in cd/m².
+    /// The light components in the order of [`LIGHT`]: linear RGB in cd/m².
     pub light: [Image; 6],
     /// Unit normals in camera axes: x right, y up, z towards the viewer; 0 where there is no surface. 3 channels.
     pub normals: Image,
-    /// 1 on edges of shapes, 0 away from them; 1 channel.
+    /// Strength of the edges of shapes: 1 on an edge, 0 away from edges; 1 channel.
     pub edges: Image,
     /// A colour for each material, derived from its name; black where there is no surface. 3 channels.
     pub materials: Image,
@@ -97,7 +99,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     let film = render::run(world, camera, &settings, job.part(0.0, 0.95), &mut |_| {})?;
     let job = job.part(0.95, 1.0);
 
-    // The layers are in the order requested.
+    // The layers are in the order in which they were requested.
     let mut layers = film.layers.into_iter().map(|l| l.image);
     let mut next = || layers.next().ok_or_else(|| crate::error::Error::degenerate("the rendering has no layers"));
     let mut light = [film.beauty, next()?, next()?, next()?, next()?, next()?];
@@ -121,7 +123,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     Ok(Guides { light, normals, edges, materials, camera: camera.clone(), depth })
 }
 
-/// The colour code of each pixel's material.
+/// Returns an image of the colour codes of the pixels' materials.
 fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     let code = |name: &str| {
         let letters: Vec<u64> = name.bytes().map(u64::from).collect();
@@ -138,32 +140,32 @@ fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     Ok(out)
 }
 
-/// Optional guides besides the light.
+/// Guides that [`pairs`] adds only on request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     pub normals: bool,
-    /// For shapes finer than the strokes (Fig. 16).
+    /// The edges of shapes, for shapes finer than the strokes (Fig. 16).
     pub edges: bool,
-    /// A colour for each material, for artworks that paint each material in a style of its own.
+    /// The colours of the materials, for artworks that paint each material in a style of its own.
     pub materials: bool,
-    /// For scenes with caustics.
+    /// The caustics, for scenes that have them.
     pub caustics: bool,
 }
 
-/// One guide of two scenes.
+/// A guide, as images of the two scenes.
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: &'static str,
     pub source: Image,
     pub target: Image,
-    /// Whether the guide is light, in `[0, 1]`, rather than data.
+    /// True if the guide is light, in `[0, 1]`; false if it is data such as normals.
     pub is_light: bool,
     /// Whether the guide was requested in [`Extras`].
     pub is_extra: bool,
 }
 
-/// The guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over both full
-/// pictures becomes [`BRIGHT`].
+/// Returns the guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over both
+/// full pictures becomes [`BRIGHT`].
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
     let exposure = exposure(&source.light[0], &target.light[0])?;
     let mut pairs = Vec::new();
@@ -194,10 +196,10 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     Ok(pairs)
 }
 
-/// Value of the 90th percentile of luminance after the common exposure [convention].
+/// The value that the 90th percentile of luminance gets at the common exposure [convention].
 const BRIGHT: f32 = 0.8;
 
-/// The factor from luminance in cd/m² to values at the common exposure.
+/// Returns the factor from luminance in cd/m² to values at the common exposure.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

@@ -1,15 +1,16 @@
-//! The position of each pixel of a frame in the previous frame, for a moving camera in a static scene.
+//! Computes the position of each pixel of a frame in the previous frame, for a moving camera in a static scene.
 
 use super::Guides;
 use crate::error::Result;
 use crate::image::Image;
 use glam::Vec3;
 
-/// Relative difference in depth above which a surface was occluded in the previous frame [origin not recorded].
+/// A point was occluded in the previous frame if its depth exceeds the depth seen there by more than this share
+/// [origin not recorded].
 const DEPTH_TOLERANCE: f32 = 0.02;
 
-/// Two channels: the displacement in pixels from each pixel to the position of its surface point in the previous frame.
-/// It is NaN where there is no surface, and where the point was occluded or outside the picture.
+/// Computes the displacement in pixels from each pixel to the position of its surface point in the previous frame: two
+/// channels, NaN where there is no surface, and where the point was occluded or outside the picture.
 pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
     now.depth.check_same_size("this frame", &before.depth, "the frame before")?;
     let (width, height) = (now.depth.width, now.depth.height);

@@ -1,4 +1,4 @@
-//! Smoothing of rendered light along surfaces: the edge-avoiding à-trous wavelets of Dammertz et al. 2010.
+//! Smooths rendered light along surfaces, by the edge-avoiding à-trous wavelets of Dammertz et al. 2010.
 
 use crate::error::Result;
 use crate::exec;
@@ -7,14 +7,14 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Number of passes; the step doubles in each.
+/// Number of passes; the distance between the pixels averaged doubles from pass to pass.
 const PASSES: u32 = 3;
 /// The cubic B-spline that each pass applies along x and y [convention].
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Relative difference of brightness at which the weight has fallen to 1/e [origin not recorded].
+/// Relative difference in brightness at which the weight of a neighbour falls to 1/e [origin not recorded].
 const TOLERANCE: f32 = 0.25;
 
-/// The light averaged over neighbours of the same material, similar normal and similar brightness. Brightness is
+/// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is
 /// compared between means over 5 × 5 pixels, because single pixels are too noisy to distinguish light from shadow.
 pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job) -> Result<Image> {
     let floor = 0.02 * mean_luminance(light);
@@ -31,15 +31,15 @@ pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job
     Ok(current)
 }
 
-/// The surfaces that the light falls on.
+/// The surfaces on which the light falls.
 struct Surface<'a> {
     normals: &'a Image,
     material: &'a Image,
 }
 
 impl Surface<'_> {
-    /// Weighted means over 5 × 5 pixels that lie `step` pixels apart; `range_weight` gives the weight of a pair of
-    /// pixels from their brightness in `guide`.
+    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` returns the weight of a
+    /// pair of pixels from their brightness in `guide`.
     fn average(
         &self,
         light: &Image,

@@ -20,14 +20,14 @@ fn the_kinds_of_light_are_separated() {
         direct < two && two < full && specular < direct && indirect < direct && caustics < direct,
         "{full} {direct} {specular} {indirect} {two} {caustics}"
     );
-    // The ball casts a caustic onto table and wall, and, being convex, none onto itself.
+    // The ball casts a caustic onto table and wall, but none onto itself, because it is convex.
     assert!(caustics > 0.0 && f64::from(g.light[5].pixel(60, 45)[0]) < 0.1 * caustics);
-    // Only the ball is glossy, and only there the normal varies.
+    // Only the ball is glossy, and the normal varies only on the ball.
     assert!(g.light[2].pixel(5, 5).iter().all(|v| *v == 0.0));
     let middle = g.normals.pixel(60, 42);
     assert!(middle[2] > 0.8, "the ball faces the camera: {middle:?}");
     assert_ne!(g.materials.pixel(60, 45), g.materials.pixel(5, 5));
-    // The rim of the ball is an edge, the table is not.
+    // The rim of the ball is an edge; the table is not.
     let row: Vec<f32> = (0..120).map(|x| g.edges.pixel(x, 45)[0]).collect();
     assert!(row.iter().filter(|e| **e > 0.5).count() >= 2 && row[3] < 0.1 && row[60] < 0.1, "{row:?}");
 }
@@ -87,12 +87,12 @@ fn motion_follows_the_camera_and_marks_occlusions() {
     assert!(still.data.iter().all(|v| v.is_nan() || v.abs() < 1e-2));
     assert!(defined(&still) > 120 * 90 * 95 / 100);
     let moved = motion(&now, &before).unwrap();
-    // When the camera moves right, everything moves left, the ball in front more than the wall: it was further right
-    // before.
+    // If the camera moves right, the picture moves left, and the ball, which is nearer, moves farther than the wall.
+    // The previous positions are therefore farther right.
     let row: Vec<f32> = (0..120).map(|x| moved.pixel(x, 45)[0]).collect();
     let ball = moved.pixel(52, 45)[0];
     let wall = moved.pixel(5, 10)[0];
     assert!(ball > wall && wall > 0.0, "{ball} {wall} {row:?}");
-    // The strip that the ball occluded, and the strip that was outside the picture, are undefined.
+    // Motion is undefined in the strip that the ball occluded and in the strip that was outside the picture.
     assert!(row.iter().any(|v| v.is_nan()) && defined(&moved) > 120 * 90 * 80 / 100);
 }

@@ -1,14 +1,14 @@
-//! The owned image.
+//! The owned image, and allocation that reports a lack of memory as an error.
 
 use super::pages::{prefer_huge, zeros};
 use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
 use glam::{DVec2, Vec3};
 
-/// Longest allowed side of any image, in pixels.
+/// Largest allowed width and height of any image, in pixels.
 pub const MAX_SIDE: usize = 65_536;
 
-/// Interleaved `f32` samples, row by row from the top.
+/// An image of interleaved `f32` samples, row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
     pub width: usize,
@@ -17,15 +17,15 @@ pub struct Image {
     pub data: Vec<f32>,
 }
 
-/// A vector of `len` copies of `value`, or an error if memory is short (an infallible allocation would end the host's
-/// process).
+/// Returns a vector of `len` copies of `value`, or an error if memory is short. (An ordinary allocation would abort
+/// the host's process instead.)
 pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
     let mut data = try_with_capacity(len)?;
     data.resize(len, value);
     Ok(data)
 }
 
-/// An empty vector with room for `len` items, or an error.
+/// Returns an empty vector with room for `len` items, or an error if memory is short.
 pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
     let mut data = reserve::list(len).ok_or_else(|| no_memory::<T>(len))?;
     prefer_huge(data.spare_capacity_mut());
@@ -37,7 +37,7 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     let mut items = items.into_iter();
     let promised = items.size_hint().0;
     let mut data = try_with_capacity(promised)?;
-    // The promised items fit into the reserved memory. Without checks for room, the loop may add several at a time.
+    // The promised items fit into the reserved memory. Without checks for room, the compiler may vectorise the loop.
     data.extend(items.by_ref().take(promised));
     for item in items {
         try_push(&mut data, item)?;
@@ -52,20 +52,21 @@ pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
     Ok(())
 }
 
-/// Ensures capacity for `more` further items, or returns an error; capacity grows by doubling.
+/// Ensures capacity for `more` further items, or returns an error if memory is short. The capacity at least doubles
+/// when it grows.
 #[inline]
 pub(crate) fn make_room<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
     if reserve::make_room(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
 }
 
-/// The error if there is no memory for `len` items.
+/// Returns the error for a failed allocation of `len` items.
 pub(crate) fn no_memory<T>(len: usize) -> Error {
     let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
     Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
 }
 
 impl Image {
-    /// A black image.
+    /// Creates an image of zeros.
     pub fn new(width: usize, height: usize, channels: usize) -> Result<Self> {
         if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
             return Err(Error::argument(format!(
@@ -79,12 +80,12 @@ impl Image {
         Ok(Self { width, height, channels, data: zeros(len).ok_or_else(|| no_memory::<f32>(len))? })
     }
 
-    /// A copy, or an error if memory is short.
+    /// Returns a copy, or an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self { data: try_collect(self.data.iter().copied())?, ..*self })
     }
 
-    /// An image whose every pixel is computed from its column and row.
+    /// Creates an image from a function of each pixel's column and row.
     pub fn from_fn<const C: usize>(
         width: usize,
         height: usize,
@@ -106,7 +107,7 @@ impl Image {
         &self.data[y * self.row_len()..(y + 1) * self.row_len()]
     }
 
-    /// The centre of a pixel by its number, `y * width + x`.
+    /// Returns the centre, in pixels, of the pixel with the row-major index `y * width + x`.
     pub fn centre_of(&self, pixel: usize) -> DVec2 {
         DVec2::new((pixel % self.width) as f64 + 0.5, (pixel / self.width) as f64 + 0.5)
     }
@@ -121,13 +122,13 @@ impl Image {
         &mut self.data[start..start + self.channels]
     }
 
-    /// The first three channels of a pixel; a grey image gives the same value three times.
+    /// Returns the first three channels of a pixel. A grey image gives the same value three times.
     pub fn rgb(&self, x: usize, y: usize) -> Vec3 {
         let pixel = self.pixel(x, y);
         if pixel.len() >= 3 { Vec3::from_slice(pixel) } else { Vec3::splat(pixel[0]) }
     }
 
-    /// One channel as an image of its own.
+    /// Returns one channel as a new image.
     pub fn channel(&self, channel: usize) -> Result<Self> {
         let mut out = Self::new(self.width, self.height, 1)?;
         for (o, p) in out.data.iter_mut().zip(self.data.chunks_exact(self.channels)) {
@@ -136,7 +137,7 @@ impl Image {
         Ok(out)
     }
 
-    /// The same pixels with the first three channels kept; grey becomes RGB.
+    /// Returns an image of the first three channels; grey becomes RGB.
     pub fn to_rgb(&self) -> Result<Self> {
         let mut out = Self::new(self.width, self.height, 3)?;
         for (o, p) in out.data.chunks_exact_mut(3).zip(self.data.chunks_exact(self.channels)) {
@@ -145,7 +146,7 @@ impl Image {
         Ok(out)
     }
 
-    /// Checks that a partner image has the same width and height.
+    /// Checks that another image has the same width and height. The names describe both images in the error.
     pub fn check_same_size(&self, name: &str, other: &Self, other_name: &str) -> Result<()> {
         if (self.width, self.height) == (other.width, other.height) {
             return Ok(());
@@ -156,12 +157,12 @@ impl Image {
         )))
     }
 
-    /// The number of samples that are NaN or infinite.
+    /// Number of samples that are NaN or infinite.
     pub fn count_non_finite(&self) -> usize {
         self.data.iter().filter(|v| !v.is_finite()).count()
     }
 
-    /// Bilinear sample of one channel at a position in pixels, clamped at the border.
+    /// Samples one channel bilinearly at a position in pixels, clamped at the border.
     pub fn sample(&self, x: f64, y: f64, channel: usize) -> f32 {
         let (x, y) = (x - 0.5, y - 0.5);
         let clamp = |v: f64, n: usize| (v.clamp(0.0, (n - 1) as f64)) as usize;

@@ -1,17 +1,19 @@
-//! Colour: the sRGB transfer curve (IEC 61966-2-1), Rec.709 primaries, CIELAB with D65 white (CIE 15:2018), and the
-//! CIEDE2000 difference (Sharma, Wu and Dalal 2005).
+//! Colour conversions: the sRGB transfer curve (IEC 61966-2-1), Rec.709 primaries, CIELAB with a D65 white (CIE
+//! 15:2018), and the CIEDE2000 difference (Sharma, Wu and Dalal 2005).
 
 use crate::simd::widest;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Linear Rec.709 RGB to CIE XYZ, from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290); Y of white is 1.
+/// Matrix from linear Rec.709 RGB to CIE XYZ, computed from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290).
+/// White has Y = 1.
 const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.412_390_799_265_959_5, 0.212_639_005_871_510_36, 0.019_330_818_715_591_85),
     DVec3::new(0.357_584_339_383_877_96, 0.715_168_678_767_755_9, 0.119_194_779_794_625_99),
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value. The curve continues above 1, and it is odd: negative values mirror positive ones.
+/// Decodes one sRGB value to a linear value. The curve continues above 1 and is odd: the value -v gives minus the
+/// result of v.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
@@ -24,12 +26,12 @@ pub fn linear_to_srgb(v: f32) -> f32 {
     encoded.copysign(v)
 }
 
-/// The linear value of each 8-bit sRGB code.
+/// Returns the linear value of each 8-bit sRGB code.
 pub fn srgb8_table() -> [f32; 256] {
     std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0))
 }
 
-/// Luminance of linear Rec.709 RGB, in cd/m² for photometric colours.
+/// Luminance of a linear Rec.709 colour, in cd/m² for photometric colours.
 pub fn luminance(rgb: Vec3) -> f32 {
     rgb.dot(Vec3::new(0.212_639, 0.715_168_7, 0.072_192_3))
 }
@@ -38,16 +40,16 @@ pub fn linear_to_xyz(rgb: Vec3) -> DVec3 {
     RGB_TO_XYZ * rgb.as_dvec3()
 }
 
-/// Linear RGB, 1 = diffuse white, to CIELAB: L* in `[0, 100]` for colours inside the gamut.
+/// Converts linear RGB with diffuse white at 1 to CIELAB. L* lies in `[0, 100]` for colours inside the gamut.
 #[inline(always)]
 pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
-    // Rows of the matrix to CIE XYZ, relative to the white point [convention: IEC 61966-2-1].
+    // Rows of the matrix from linear RGB to CIE XYZ, divided by the white point. [convention: IEC 61966-2-1]
     const X: [f64; 3] = relative_row(0);
     const Y: [f64; 3] = relative_row(1);
     const Z: [f64; 3] = relative_row(2);
     let of = |row: [f64; 3]| {
         let t = row[0] * f64::from(rgb.x) + row[1] * f64::from(rgb.y) + row[2] * f64::from(rgb.z);
-        // [convention: CIE 15, CIELAB]
+        // Above DELTA³ CIELAB applies a cube root, below it a straight line. [convention: CIE 15, CIELAB]
         const DELTA: f64 = 6.0 / 29.0;
         let straight = t * (1.0 / (3.0 * DELTA * DELTA)) + 4.0 / 29.0;
         let root = cube_root(t);
@@ -57,20 +59,20 @@ pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
     Vec3::new((116.0 * fy - 16.0) as f32, (500.0 * (fx - fy)) as f32, (200.0 * (fy - fz)) as f32)
 }
 
-/// A row of the matrix from linear RGB to CIEXYZ relative to white.
+/// Returns a row of the matrix from linear RGB to CIE XYZ, divided by the white point.
 const fn relative_row(row: usize) -> [f64; 3] {
     let m = RGB_TO_XYZ.to_cols_array();
     let white = m[row] + m[row + 3] + m[row + 6];
     [m[row] / white, m[row + 3] / white, m[row + 6] / white]
 }
 
-/// The cube root of a value in `[1e-37, 3e38]`, with a relative error of 1e-13, by operations that vectorise. Other
-/// values give a finite number or NaN.
+/// Returns the cube root of a value in `[1e-37, 3e38]` with a relative error of 1e-13, by operations that vectorise.
+/// Any other value gives a finite number or NaN.
 #[inline(always)]
 fn cube_root(t: f64) -> f64 {
-    // `t^(-1/3)` needs no division: with e = 1 - t r³ the improved estimate is r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 +
-    // 14e³/81 + …). The first estimate divides the exponent and the mantissa bits by three and has |e| < 0.11, the
-    // second 6e-5.
+    // Improve estimates r of `t^(-1/3)`, which needs no division: with the error e = 1 - t r³, the exact value is r (1
+    // - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …). The first estimate divides the bits of exponent and mantissa by
+    //   three and has |e| < 0.11; the second estimate has |e| < 6e-5.
     let single = t as f32;
     let third = (single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32;
     let r = f32::from_bits(1_419_900_000u32.wrapping_sub(third as u32));
@@ -81,8 +83,8 @@ fn cube_root(t: f64) -> f64 {
     t * r * r
 }
 
-/// CIEDE2000 difference between the linear colours `light` and `wanted`, at the exposure at which `wanted` is a middle
-/// grey; 0 if `wanted` is black.
+/// CIEDE2000 difference between the linear colours `light` and `wanted`. Both are exposed so that `wanted` is a middle
+/// grey of luminance 0.18. The difference is 0 if `wanted` is black.
 pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     let luminance = f64::from(luminance(wanted.as_vec3()));
     if !(luminance > 0.0) {
@@ -92,7 +94,7 @@ pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     delta_e_2000(seen(wanted), seen(light))
 }
 
-/// CIEDE2000 difference of two CIELAB colours.
+/// CIEDE2000 difference between two CIELAB colours.
 pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let (a, b) = (a.as_dvec3(), b.as_dvec3());
     let chroma = |v: DVec3| v.y.hypot(v.z);
@@ -107,13 +109,13 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let hue = |v: DVec3| v.z.atan2(v.y).to_degrees().rem_euclid(360.0);
     let (ha, hb) = (hue(a), hue(b));
 
-    // Differences of lightness, chroma and hue; without chroma there is no hue.
+    // Differences of lightness, chroma and hue. A colour without chroma has no hue.
     let grey = ca * cb == 0.0;
     let dh = if grey { 0.0 } else { (hb - ha + 540.0).rem_euclid(360.0) - 180.0 };
     let (dl, dc) = (b.x - a.x, cb - ca);
     let dh_term = 2.0 * (ca * cb).sqrt() * (dh / 2.0).to_radians().sin();
 
-    // Means; that of the hue is taken along the shorter arc.
+    // Means of lightness, chroma and hue. The hue is averaged along the shorter arc.
     let (l, c) = ((a.x + b.x) / 2.0, (ca + cb) / 2.0);
     let h = match () {
         () if grey => ha + hb,
@@ -122,7 +124,7 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
         () => (ha + hb - 360.0) / 2.0,
     };
 
-    // Weights and the rotation term.
+    // Weights of the three differences, and the rotation term between chroma and hue.
     let cos = |degrees: f64| degrees.to_radians().cos();
     let t = 1.0 - 0.17 * cos(h - 30.0) + 0.24 * cos(2.0 * h) + 0.32 * cos(3.0 * h + 6.0) - 0.20 * cos(4.0 * h - 63.0);
     let l50 = (l - 50.0) * (l - 50.0);
@@ -135,7 +137,7 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
 }
 
 widest! {
-    /// Converts linear RGB planes to CIELAB in place: like [`linear_to_lab`], for many colours at once.
+    /// Converts linear RGB planes to CIELAB in place, like [`linear_to_lab`] for each pixel.
     pub fn planes_to_lab(r: &mut [f32], g: &mut [f32], b: &mut [f32]) {
         let n = r.len();
         let (r, g, b) = (&mut r[..n], &mut g[..n], &mut b[..n]);
@@ -160,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Reference values in exact arithmetic from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290).
+    /// The reference values come from exact arithmetic with the chromaticities of Rec.709 and D65 = (0.3127, 0.3290).
     #[test]
     fn lab_meets_reference_values() {
         let near = |rgb: [f32; 3], lab: [f32; 3]| {
@@ -192,7 +194,7 @@ mod tests {
         assert!((0..203).all(|k| Vec3::new(r[k], g[k], b[k]) == linear_to_lab(colour(k))));
     }
 
-    /// Pairs 1, 4, 7, 13, 17 and 25 of the test data of Sharma, Wu and Dalal (2005).
+    /// Compares with pairs 1, 4, 7, 13, 17 and 25 of the test data of Sharma, Wu and Dalal (2005).
     #[test]
     fn ciede2000_meets_the_published_pairs() {
         for (a, b, want) in [

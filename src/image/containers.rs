@@ -1,13 +1,13 @@
-//! Segments and chunks of picture files, found without decoding. Each is a slice of the file.
+//! Finds the segments and chunks of picture files without decoding them. Each is a slice of the file.
 
-/// Payloads of the segments of a JPEG before its pixels, with their markers.
+/// Iterates over the segments of a JPEG before its pixels: the marker and the payload of each.
 pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).unwrap_or_default();
     std::iter::from_fn(move || {
-        // Markers begin with any number of 0xff.
+        // A marker begins with any number of 0xff bytes.
         let at = rest.iter().position(|&b| b != 0xff)?;
         let (&marker, after) = rest.get(at..)?.split_first()?;
-        // The segments end at the start of a scan, or at bytes that are not a marker.
+        // Stop at the start of a scan, which holds the pixels, or at bytes that are not a marker.
         if at == 0 || matches!(marker, 0x00 | 0xd8..=0xda) {
             return None;
         }
@@ -18,20 +18,22 @@ pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     })
 }
 
-/// Chunks of a PNG: name, stated length, and content, which ends with the file if the file is truncated.
+/// Iterates over the chunks of a PNG: name, stated length and content. In a truncated file the last content is shorter
+/// than stated.
 pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], usize, &[u8])> {
     let mut rest = bytes.get(8..).unwrap_or_default();
     std::iter::from_fn(move || {
         let (&[a, b, c, d, ..], _) = rest.split_first_chunk::<8>()?;
         let (name, content) = rest[4..].split_first_chunk()?;
         let length = u32::from_be_bytes([a, b, c, d]) as usize;
-        // A checksum of four bytes follows the content.
+        // Skip the content and the checksum of four bytes that follows it.
         rest = content.get(length.saturating_add(4)..).unwrap_or_default();
         Some((name, length, &content[..length.min(content.len())]))
     })
 }
 
-/// Chunks of a RIFF file such as WebP: name and content, which ends with the file if the file is truncated.
+/// Iterates over the chunks of a RIFF file such as WebP: name and content. In a truncated file the last content is
+/// shorter than stated.
 pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     let mut rest = bytes.get(12..).unwrap_or_default();
     std::iter::from_fn(move || {
@@ -44,14 +46,14 @@ pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     })
 }
 
-/// Left, top, width and height of the first frame of a GIF within its screen.
+/// Returns left, top, width and height of the first frame of a GIF within its logical screen, in pixels.
 pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
-    // Skip the logical screen descriptor and the global colour table.
+    // Skip the header, the logical screen descriptor and the global colour table.
     let mut rest = bytes.get(13 + table(*bytes.get(10)?)..)?;
     loop {
         match rest {
-            // An extension: a label, then sub-blocks that begin with their length; an empty sub-block ends it.
+            // Skip an extension: a label, then sub-blocks that begin with their length, then an empty sub-block.
             [0x21, _, blocks @ ..] => {
                 let mut blocks = blocks;
                 while let (&length @ 1.., after) = blocks.split_first()? {
@@ -68,7 +70,7 @@ pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     }
 }
 
-/// Contents of the sub-blocks of the first application extension with this name in a GIF; `None` without one.
+/// Iterates over the sub-blocks of the first application extension with this name in a GIF; `None` if there is none.
 pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterator<Item = &'a [u8]> + use<'a>> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     let mut rest = bytes.strip_prefix(b"GIF8")?.get(9 + table(*bytes.get(10)?)..)?;
@@ -78,14 +80,15 @@ pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterat
         if is_wanted {
             return Some(sub_blocks(blocks).skip(1).map(|(_, block)| block));
         }
-        // An extension ends with an empty block.
+        // Skip this extension, which ends with an empty sub-block.
         let length: usize = sub_blocks(blocks).map(|(length, _)| length).sum();
         rest = blocks.get(length + 1..)?;
     }
     None
 }
 
-/// Sub-blocks of a GIF up to the empty one: the bytes of each including its length, and its content.
+/// Iterates over the sub-blocks of a GIF up to the empty one: the size in bytes including the length byte, and the
+/// content.
 fn sub_blocks(mut rest: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     std::iter::from_fn(move || {
         let (&length @ 1.., after) = rest.split_first()? else { return None };
@@ -95,7 +98,8 @@ fn sub_blocks(mut rest: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     })
 }
 
-/// The type of the colour space in the header of a BMP of version 4 or later, and the embedded profile.
+/// Returns the colour space type in the header of a BMP of version 4 or later, and the embedded profile, if any.
+/// `None` for other files.
 pub fn bmp_space(bytes: &[u8]) -> Option<([u8; 4], Option<&[u8]>)> {
     const HEADER: usize = 14;
     let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(HEADER + at..)?.first_chunk()?));
@@ -123,7 +127,7 @@ mod tests {
         for cut in 0..file.len() {
             assert!(jpeg_segments(&file[..cut]).count() <= 2);
         }
-        // A segment whose length is less than the two bytes of the length itself.
+        // State a segment length of 1, which is less than the two bytes of the length itself.
         file[5] = 1;
         assert_eq!(jpeg_segments(&file).count(), 0);
     }

@@ -1,16 +1,16 @@
-//! Reading and writing whole files without losing data of the caller.
+//! Reads and writes whole files, such that a failed write does not destroy the caller's old file.
 //!
-//! A regular file is replaced as a whole: the bytes are written to a new file in its folder, which then takes its
-//! name, with the mode and the owner of the old file. Symbolic links are followed. A target that cannot be replaced in
-//! this way is written in place: a device, a FIFO, a file with several names (hard links), or a file in a folder that
-//! accepts no new files.
+//! A regular file is replaced as a whole: the bytes are written to a new file in the same folder, which is then
+//! renamed to replace the old file and takes over its mode and owner. Symbolic links are followed. Targets that cannot
+//! be replaced in this way are written in place: a device, a FIFO, a file with several names (hard links), or a file
+//! in a folder that accepts no new files.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Reads a whole file. Devices and FIFOs are refused, because they may never end.
+/// Reads a whole file. Devices and FIFOs are refused, because reading them may never end.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     check_regular(path)?;
     fs::read(path).map_err(|e| failed(path, e))
@@ -24,7 +24,7 @@ pub fn check_regular(path: &Path) -> Result<()> {
     Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())))
 }
 
-/// Writes a whole file; after an error the old content remains.
+/// Writes a whole file. After an error the old content remains, unless the file had to be written in place.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Target::new(path)?.write(bytes)
 }
@@ -35,29 +35,30 @@ fn failed(path: &Path, e: io::Error) -> Error {
     Error::new(kind, format!("{}: {e}", path.display()))
 }
 
-/// A file to be written. It is checked before its content is computed, so that a missing folder is found early.
+/// A file that will be written. Its path is checked before the content is computed, so that a missing folder is
+/// reported early.
 pub struct Target {
     path: PathBuf,
     way: Way,
 }
 
 enum Way {
-    /// The path of a new file, with all symbolic links resolved.
+    /// The file does not exist yet: its path with all symbolic links resolved.
     Create(PathBuf),
-    /// The path of an existing regular file, with all symbolic links resolved.
+    /// The file is regular and can be replaced: its path with all symbolic links resolved, and its metadata.
     Replace(PathBuf, Metadata),
     InPlace,
 }
 
 impl Target {
-    /// Returns an error if no file can be written there.
+    /// Checks the path; returns an error if no file can be written there.
     pub fn new(path: &Path) -> Result<Self> {
         let way = match fs::metadata(path) {
             Ok(old) if old.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(old) if old.is_file() => existing(path, old),
             Ok(_) => Ok(Way::InPlace),
             Err(e) if e.kind() == io::ErrorKind::NotFound => new(path),
-            // Devices of Windows have no metadata.
+            // On Windows, metadata cannot be read for devices such as NUL: write to them in place.
             Err(_) if cfg!(windows) => Ok(Way::InPlace),
             Err(e) => Err(e),
         };
@@ -78,7 +79,7 @@ impl Target {
 }
 
 fn existing(path: &Path, old: Metadata) -> io::Result<Way> {
-    // Refuse a write-protected file, even if the folder allows to replace it.
+    // Refuse a write-protected file, even if the folder would allow its replacement.
     OpenOptions::new().write(true).open(path)?;
     let file = follow(path)?;
     Ok(if system::is_replaceable(&file, &old) { Way::Replace(file, old) } else { Way::InPlace })
@@ -94,10 +95,10 @@ fn new(path: &Path) -> io::Result<Way> {
     }
 }
 
-/// Maximum number of links in a chain; a longer chain counts as a loop, as in Linux [convention].
+/// Maximum number of symbolic links in a chain. A longer chain counts as a loop, as in Linux. [convention]
 const MAX_LINKS: usize = 40;
 
-/// The target of a chain of symbolic links, whether it exists or not.
+/// Follows a chain of symbolic links and returns the path of its target, which need not exist.
 fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut file = path.to_path_buf();
     for _ in 0..MAX_LINKS {
@@ -113,7 +114,7 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Writes a new file beside the file and renames it to replace the file.
+/// Writes a new file in the folder of `file`, and renames it to replace `file`.
 fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     let (path, mut neighbour) = create_neighbour(file, old.is_some())?;
     let written = fill(&mut neighbour, old, bytes);
@@ -125,11 +126,12 @@ fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> 
     done
 }
 
-/// Maximum number of names that are tried for the new file: other threads, and earlier processes with this id, may
-/// have taken some.
+/// Maximum number of names to try for the new file. Other threads, and earlier processes with the same id, may have
+/// taken some names.
 const MAX_NEIGHBOURS: usize = 10_000;
 
-/// Creates a new file in the folder of another one.
+/// Creates a new file in the folder of `file`; returns its path and the open file. If `is_private`, only the owner may
+/// read it.
 fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
@@ -146,7 +148,7 @@ fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
-/// Writes the new file to the disk, with the mode and the owner of the file that it will replace.
+/// Writes the content of the new file to disk, with the mode and the owner of the file that it will replace.
 fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     if let Some(old) = old {
         system::keep_owner(neighbour, old)?;
@@ -158,7 +160,7 @@ fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Resul
     flush(neighbour)
 }
 
-/// Flushes a file to the disk, if the file system supports it.
+/// Flushes a file to disk, if the file system supports this.
 fn flush(file: &File) -> io::Result<()> {
     match file.sync_all() {
         Err(e) if matches!(e.kind(), io::ErrorKind::Unsupported | io::ErrorKind::InvalidInput) => Ok(()),
@@ -166,13 +168,13 @@ fn flush(file: &File) -> io::Result<()> {
     }
 }
 
-/// Whether the error means that a folder, or a mount over a single file, refuses new files or a change of owner.
+/// Whether an error means that a folder, or a mount over a single file, refuses new files or a change of owner.
 fn is_refusal(e: &io::Error) -> bool {
     use io::ErrorKind::{CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(e.kind(), CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
 }
 
-/// Writes in place.
+/// Writes a file in place, and truncates it if it is a regular file.
 fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
     system::check_reader(path)?;
     let mut file = OpenOptions::new().write(true).open(path)?;
@@ -191,12 +193,12 @@ mod system {
     use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, fchown};
     use std::path::Path;
 
-    /// Whether the file has a single name. Links of /proc may lead to a file without a name.
+    /// Whether a file has a single name and can be found by it. (Links in /proc may lead to a file without a name.)
     pub fn is_replaceable(file: &Path, old: &Metadata) -> bool {
         old.nlink() <= 1 && fs::metadata(file).is_ok_and(|found| found.is_file())
     }
 
-    /// Nobody else may read the file before it has the mode of the old file.
+    /// Lets only the owner read the new file until it receives the mode of the old file.
     pub fn make_private(options: &mut OpenOptions) {
         options.mode(0o600);
     }
@@ -207,7 +209,7 @@ mod system {
         if is_same { Ok(()) } else { fchown(file, Some(old.uid()), Some(old.gid())) }
     }
 
-    /// Returns an error if a FIFO has no reader, because opening it would wait for one.
+    /// Returns an error if `path` is a FIFO without a reader: opening it to write would wait for one.
     pub fn check_reader(path: &Path) -> io::Result<()> {
         if fs::metadata(path)?.file_type().is_fifo() {
             OpenOptions::new().write(true).custom_flags(libc::O_NONBLOCK).open(path)?;
@@ -216,7 +218,7 @@ mod system {
     }
 }
 
-/// Systems other than Unix: a new file has the owner and the access rights that its folder gives it.
+/// On systems other than Unix, the new file gets the owner and the access rights that its folder gives it.
 #[cfg(not(unix))]
 mod system {
     use std::fs::{File, Metadata, OpenOptions};
@@ -243,7 +245,7 @@ mod tests {
     use super::*;
     use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 
-    /// An empty folder for one test.
+    /// Creates an empty folder for one test.
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("luxfer-files-{}-{name}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
@@ -270,7 +272,7 @@ mod tests {
         assert_eq!((fs::read(&real).unwrap(), fs::read(folder.join("made")).unwrap()), (b"new".into(), b"made".into()));
         symlink("loop", folder.join("loop")).unwrap();
         assert_eq!(write_file(&folder.join("loop"), b"").unwrap_err().kind, ErrorKind::Io);
-        // A file with two names keeps both.
+        // A file with two names (hard links) keeps both.
         fs::hard_link(&real, folder.join("name")).unwrap();
         write_file(&real, b"both").unwrap();
         write_file(&real, b"two").unwrap();
@@ -286,7 +288,7 @@ mod tests {
         for mode in [0o600, 0o640, 0o755] {
             fs::write(&file, "old").unwrap();
             fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
-            // Only an administrator may give a file away.
+            // Only an administrator may change the owner of a file.
             let given = std::os::unix::fs::chown(&file, Some(12_345), Some(54_321)).is_ok();
             let before = fs::metadata(&file).unwrap();
             write_file(&file, b"new").unwrap();
@@ -306,7 +308,7 @@ mod tests {
         let made = std::process::Command::new("mkfifo").arg(&fifo).status();
         assert!(made.unwrap().success());
         assert_eq!(read_file(&fifo).unwrap_err().message, format!("{} is not a regular file", fifo.display()));
-        // Without a reader there is an error instead of an endless wait.
+        // Writing to a FIFO without a reader gives an error and does not wait forever.
         assert_eq!(write_file(&fifo, b"lost").unwrap_err().kind, ErrorKind::Io);
         let mut reader = OpenOptions::new().read(true).write(true).open(&fifo).unwrap();
         write_file(&fifo, b"through").unwrap();
@@ -314,7 +316,7 @@ mod tests {
         io::Read::read_exact(&mut reader, &mut read).unwrap();
         assert_eq!(&read, b"through");
         assert!(fs::metadata(&fifo).unwrap().file_type().is_fifo());
-        // Use a link to a device, so that a defect harms only the link.
+        // Write through a link to a device, so that a defect can only harm the link.
         let null = folder.join("null");
         symlink("/dev/null", &null).unwrap();
         write_file(&null, b"away").unwrap();

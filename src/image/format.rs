@@ -1,20 +1,21 @@
-//! The format of a picture file, detected by its first bytes.
+//! Detects the format of a picture file by its first bytes.
 
 use super::{openexr, radiance};
 use crate::error::{Error, ErrorKind, Result};
 use image::ImageFormat;
 
-/// The formats that can be read, by their decoder.
+/// The picture formats that can be read, by the decoder that reads them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Exr,
     Radiance,
     Tiff,
-    /// By the crate `image`.
+    /// A format that the crate `image` decodes.
     Raster(ImageFormat),
 }
 
-/// Formats that are recognised only for the error message: offset, bytes at the offset, and name.
+/// Formats that are recognised only to name them in the error message: offset of the signature, its bytes, and the
+/// name.
 const OTHERS: [(usize, &[u8], &str); 18] = [
     (4, b"ftypavif", "AVIF"),
     (4, b"ftypavis", "AVIF"),
@@ -37,7 +38,7 @@ const OTHERS: [(usize, &[u8], &str); 18] = [
 ];
 
 impl Format {
-    /// The format of a file. The error for a known format that is not read names it.
+    /// Detects the format of a file. For a known format that is not read, the error names it.
     pub fn of(bytes: &[u8]) -> Result<Self> {
         let begins = |at: usize, with: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(with));
         if let Some((.., name)) = OTHERS.iter().find(|(at, with, _)| begins(*at, with)) {

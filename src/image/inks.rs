@@ -1,9 +1,11 @@
-//! Inks of JPEG files: cyan, magenta, yellow and black, for the colour profiles that describe them.
+//! Reads JPEG files with four inks (cyan, magenta, yellow and black), for conversion by their colour profile.
 //!
-//! The crate `image` converts inks to RGB without a profile. So this file uses the decoder on which that crate is
-//! based, `zune-jpeg`. Files store 255 for no ink, as Adobe Photoshop writes them and every reader assumes (libjpeg,
+//! The crate `image` converts inks to RGB without a profile. This file therefore uses the decoder on which that crate
+//! is based, `zune-jpeg`.
+//!
+//! By the convention of Adobe Photoshop, which every reader follows, a stored value of 255 means no ink (libjpeg,
 //! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes the inverse of the stored cyan, magenta and
-//! yellow as R, G and B; black is unchanged.
+//! yellow as R, G and B; black is stored as in CMYK files.
 
 use super::Image;
 use super::containers::jpeg_segments;
@@ -18,16 +20,16 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// Whether the frame of a JPEG has four components.
+/// Whether a JPEG has four components, according to its frame header.
 pub fn has_inks(bytes: &[u8]) -> bool {
-    // The markers C0 to CF denote frames, except tables (C4, CC) and an extension (C8). The sixth byte of a frame is
-    // its number of components.
+    // The markers C0 to CF begin frame headers, except the markers of tables (C4, CC) and of an extension (C8). The
+    // sixth byte of a frame header is the number of components.
     jpeg_segments(bytes)
         .find(|(marker, _)| matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc))
         .is_some_and(|(_, frame)| frame.get(5) == Some(&4))
 }
 
-/// The amounts of the four inks in `[0, 1]`, upright.
+/// Decodes the amounts of the four inks in `[0, 1]`, turned upright by `orientation`.
 pub fn decode(bytes: &[u8], orientation: Orientation) -> Result<Image> {
     let options = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -38,7 +40,7 @@ pub fn decode(bytes: &[u8], orientation: Orientation) -> Result<Image> {
         return Err(Error::format("the JPEG's four components are no inks"));
     };
     check_size(width as u64, height as u64)?;
-    // Keep the components as they are.
+    // Ask for the components as stored, without conversion to RGB.
     decoder.set_options(options.jpeg_set_out_colorspace(stored));
     let mut raw = try_vec(4 * width * height, 0u8)?;
     memory::check_pixels(bytes, ImageFormat::Jpeg, width, height, 4)?;
@@ -58,8 +60,8 @@ fn of_cmyk(stored: [u8; 4]) -> [f32; 4] {
     stored.map(|v| 1.0 - f32::from(v) / 255.0)
 }
 
-/// Converts YCCK to amounts of inks: the R, G and B of YCbCr (JFIF; ITU-T T.871, 7) are the amounts of cyan, magenta
-/// and yellow.
+/// Converts YCCK to amounts of inks. The R, G and B that follow from YCbCr (JFIF; ITU-T T.871, 7) are the amounts of
+/// cyan, magenta and yellow.
 fn of_ycck([y, cb, cr, k]: [u8; 4]) -> [f32; 4] {
     let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
     // [convention]: T.871, 7
@@ -77,7 +79,7 @@ mod tests {
         assert_eq!(of_cmyk([255, 0, 255, 0]), [0.0, 1.0, 0.0, 1.0]);
         assert_eq!(of_ycck([0, 128, 128, 255]), [0.0; 4]);
         assert_eq!(of_ycck([255, 128, 128, 0]), [1.0; 4]);
-        // Cyan alone: the YCbCr of pure red.
+        // A pixel of cyan alone is stored as the YCbCr of pure red.
         assert_eq!(of_ycck([76, 85, 255, 255]), [254.0 / 255.0, 0.0, 0.0, 0.0]);
     }
 }

@@ -1,9 +1,9 @@
-//! Picture files: reads PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR; writes PNG and OpenEXR. Only this
-//! file, `raster` and `radiance` use the crate `image`.
+//! Reads and writes picture files: reads PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR; writes PNG and
+//! OpenEXR.
 //!
 //! A header that claims more than [`MAX_PIXELS`] is refused before any allocation. Photos are converted from the
-//! colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are not, as glTF requires
-//! (2.0, 3.8.3), nor are data.
+//! colour space that their file states to linear Rec.709 ([`super::file_colour`]). Textures and data are not
+//! converted: glTF requires readers to ignore the colour space of textures (2.0, 3.8.3).
 
 pub use super::files::{Target, check_regular, read_file, write_file};
 pub use super::limits::{Encoding, MAX_PIXELS};
@@ -20,19 +20,19 @@ use std::path::Path;
 pub use crate::image::openexr::{Layer, encode as encode_exr};
 pub use crate::image::working::working_bytes;
 
-/// An upright picture in linear Rec.709, and the metadata of its file.
+/// A picture in linear Rec.709, turned upright, with the metadata of its file.
 #[derive(Clone, Debug)]
 pub struct Photo {
     pub image: Image,
     pub metadata: PhotoMetadata,
 }
 
-/// Reads a file with 1, 3 or 4 channels as linear values, upright.
+/// Reads a picture file from disk as 1, 3 or 4 channels of linear values, turned upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.context(path.display()))
 }
 
-/// Reads a picture file in memory, with rows, columns and colour space as stored.
+/// Decodes a picture file in memory. Rows, columns and colour space stay as stored.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     match Format::of(bytes)? {
         Format::Exr => Ok(openexr::decode(bytes)?.0),
@@ -42,7 +42,8 @@ pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     }
 }
 
-/// Reads a picture file in memory, turns it upright by its EXIF orientation, and converts its colours.
+/// Decodes a picture file in memory, turns it upright by its EXIF orientation, and converts its colours to linear
+/// Rec.709.
 pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     let format = Format::of(bytes)?;
     let exif = match format {
@@ -67,7 +68,7 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     Ok(Photo { image, metadata })
 }
 
-/// Converts linear colours from the space that their file states to Rec.709.
+/// Converts linear colours from the space that their file states to linear Rec.709; returns how this was done.
 fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
     let colour = match space {
         _ if encoding == Encoding::Linear => FileColour::Data,
@@ -84,15 +85,15 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
     Ok((image, colour))
 }
 
-/// The numbers that a decoder returns for a picture.
+/// The kind of samples for which a decoder is asked.
 enum Read {
     Colours(Encoding),
     /// Amounts of cyan, magenta, yellow and black.
     Inks,
 }
 
-/// Reads a picture as stored, and converts it from the space that its file states, or from sRGB if the file states
-/// none.
+/// Decodes a picture with `read`, and converts it to linear Rec.709 from the space that its file states, or from sRGB
+/// if the file states none.
 fn convert_stored(
     space: Space,
     encoding: Encoding,
@@ -114,8 +115,8 @@ fn convert_stored(
     convert((read(Read::Colours(encoding))?, space), encoding)
 }
 
-/// Width, height and maximum number of channels of a picture file, from its header alone. The sides are those of the
-/// stored picture, before it is turned upright.
+/// Returns width, height and the maximum number of channels of a picture file, from its header alone. Width and height
+/// are those of the stored picture, before it is turned upright.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
         Format::Exr => openexr::probe(bytes),
@@ -125,7 +126,7 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     }
 }
 
-/// Encodes a linear image as an 8-bit sRGB PNG after multiplying it by `exposure`; 1, 3 or 4 channels.
+/// Encodes a linear image of 1, 3 or 4 channels as an 8-bit sRGB PNG. The colours are first multiplied by `exposure`.
 pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
     let colour = match image.channels {
         1 => image::ExtendedColorType::L8,
@@ -153,10 +154,10 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
     state_srgb(out.into_inner())
 }
 
-/// Adds the chunk `sRGB` to a PNG, with the relative colorimetric intent.
+/// Inserts an `sRGB` chunk into a PNG, with the relative colorimetric rendering intent.
 fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
     const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
-    // Insert it after the signature and the header.
+    // Insert the chunk after the signature and the header chunk.
     let (head, pixels) = png.split_at(8 + 25);
     let parts = [head, &CHUNK, pixels];
     let mut out = try_with_capacity(parts.iter().map(|part| part.len()).sum())?;
@@ -192,7 +193,7 @@ mod tests {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
             }
         }
-        // A file whose tiles claim 2^20 pixels per side.
+        // An OpenEXR file whose tiles claim 2^20 pixels per side.
         let mut bomb = exr.clone();
         let at = exr.windows(15).position(|w| w == b"tiles\0tiledesc\0").unwrap() + 15 + 4;
         assert_eq!(bomb[at..at + 8], [64, 0, 0, 0, 64, 0, 0, 0]);
@@ -203,7 +204,7 @@ mod tests {
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
         assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Unsupported);
-        // An OpenEXR file whose two windows claim 16384 pixels per side.
+        // An OpenEXR file whose display and data window claim 16384 pixels per side.
         let mut bomb = exr.clone();
         let window = |width: i32, height: i32| [0, 0, width - 1, height - 1].map(i32::to_le_bytes).concat();
         let places: Vec<usize> = (0..exr.len() - 16).filter(|&at| exr[at..at + 16] == window(19, 13)).collect();
@@ -219,8 +220,8 @@ mod tests {
         let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
-        // The offset table of the only tile, which begins with its column, its row and its level in both directions.
-        // The tile has one pixel at all levels.
+        // Find the offset table, which has one entry. The only tile follows it, beginning with its column, row and
+        // level in both directions. Change the level: the tile has one pixel at every level.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

@@ -1,8 +1,8 @@
-//! Memory that third-party codecs need. They abort the process if it cannot be allocated. Therefore it is checked
-//! before they run, and charged to the memory budget of the caller ([`super::working`]).
+//! Upper bounds of the memory that third-party codecs need. These codecs abort the process if an allocation fails. The
+//! memory is therefore checked before they run, and charged to the caller's memory budget ([`super::working`]).
 //!
-//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`. Buffers
-//! that the library passes to these crates are not included.
+//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`. They do
+//! not include the buffers that this library passes to these crates.
 
 use super::containers::riff_chunks;
 use super::{MAX_SIDE, no_memory};
@@ -13,16 +13,16 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use image::ImageFormat;
 
-/// Maximum size of a profile in bytes; larger ones are ignored. [convention]: profiles of displays and cameras have a
-/// few thousand, of scanners up to a million.
+/// Maximum size in bytes of a colour profile; larger ones are ignored. [convention]: profiles of displays and cameras
+/// have a few thousand bytes, those of scanners up to a million.
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
-/// Returns an error if the system does not have this many bytes.
+/// Returns an error if the system cannot provide this many bytes.
 pub fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
-/// Checks the memory for the pixels of a file of the crate `image`, beside the picture itself.
+/// Checks the memory that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
 pub(super) fn check_pixels(
     file: &[u8],
     format: ImageFormat,
@@ -33,11 +33,11 @@ pub(super) fn check_pixels(
     check(pixels(file, format, width, height, pixel_bytes))
 }
 
-/// Bytes that the crate `image` needs for the pixels of a file.
+/// Bytes that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // In progressive files: the coefficients of four components, two bytes each, in blocks of up to 32 pixels. In
-        // all files: a row of blocks.
+        // Progressive files: the coefficients of four components, two bytes each, in blocks of up to 32 pixels. All
+        // files: a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // The frame, if it is narrower than the screen, and the tables of the LZW decoder.
@@ -46,7 +46,7 @@ pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usi
     }
 }
 
-/// Checks the memory for decoding the scan lines of a Radiance file.
+/// Checks the memory for decoding the scan lines of a Radiance file with this many columns.
 pub(super) fn check_scanlines(columns: usize) -> Result<()> {
     check(scanlines(columns))
 }
@@ -55,29 +55,31 @@ pub(super) fn scanlines(columns: usize) -> usize {
     16 * columns + (1 << 20)
 }
 
-/// Bytes for the pixels of a WebP file in addition to the picture.
+/// Bytes for decoding the pixels of a WebP file, in addition to the picture itself.
 fn webp(file: &[u8], width: usize, height: usize) -> usize {
     let has = |wanted: &[u8; 4]| riff_chunks(file).any(|(name, _)| name == wanted);
-    // Lossy files: Y, U and V in blocks of 16, and the partitions of the file, one of which may claim 2^24 bytes.
+    // Lossy files: Y, U and V in blocks of 16 pixels, and the partitions of the file, one of which may claim 2^24
+    // bytes.
     let lossy = 2 * (width + 16) * (height + 16) + 3 * file.len() + (17 << 20);
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
-    // Per pixel: RGBA, twice for animations; the transforms; and for each block of 4 x 4 pixels the index of its code
-    // tables. Per byte of the file: code tables, of which the shortest take 12 bytes in the file and 4 KiB in memory.
+    // Lossless files and files with alpha or animation. Per pixel: RGBA, twice for animations; the transforms; and for
+    // each block of 4 x 4 pixels the index of its code tables. Per byte of the file: code tables, of which the
+    // shortest take 12 bytes in the file and 4 KiB in memory.
     11 * width * height + 400 * file.len() + lossy
 }
 
-/// Checks the memory for the decompressors of a TIFF's pixels.
+/// Checks the memory for the decompressors of a TIFF file.
 pub(super) fn check_unpacking() -> Result<()> {
     check(UNPACKING)
 }
 
-/// Bytes for the decompressors.
+/// Bytes that the decompressors of a TIFF file need.
 pub(super) const UNPACKING: usize = 1 << 20;
 
-/// Checks the memory for a chunk of a PNG file other than pixels. The chunks of pixels are read piece by piece; a
-/// colour profile is unpacked up to a limit, and deflate expands data at most 1032 times.
+/// Checks the memory for a chunk of a PNG file. Chunks of pixels need none, because they are read piece by piece. A
+/// colour profile is unpacked up to a limit; deflate expands it at most 1032 times.
 pub(super) fn check_chunk(name: &[u8], length: usize, file_bytes: usize) -> Result<()> {
     check(chunk(name, length, file_bytes))
 }
@@ -90,8 +92,8 @@ pub(super) fn chunk(name: &[u8], length: usize, file_bytes: usize) -> usize {
     }
 }
 
-/// Bytes that the PNG decoder may need in addition to the pixels of a file of `file_bytes` bytes: chunks, which grow
-/// by doubling, a row of maximum width, and a colour profile.
+/// Bytes that the PNG decoder may need in addition to the pixels, for a file of `file_bytes` bytes: chunks, whose
+/// buffers grow by doubling; a row of maximum width; and a colour profile.
 pub(super) fn png_limit(file_bytes: usize) -> usize {
     file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_PROFILE_BYTES)
 }
@@ -100,19 +102,19 @@ pub(super) fn check_profile(bytes: usize, has_tables: bool) -> Result<()> {
     check(profile(bytes, has_tables))
 }
 
-/// Bytes for a colour profile: its tables as floating-point numbers, the curves, and, for profiles with colour tables,
-/// the tables of a transform (33³ colours, curves of 2^16 values).
+/// Bytes for reading a colour profile: its tables as floating-point numbers, its curves, and, if it has colour tables,
+/// the tables of the transform made from them (33³ colours, curves of 2^16 values).
 pub(super) fn profile(bytes: usize, has_tables: bool) -> usize {
     bytes.saturating_mul(32).saturating_add(if has_tables { 8 << 20 } else { 2 << 20 })
 }
 
-/// Checks the memory for writing a PNG file with this many bytes of pixels: the compressed and the uncompressed file,
-/// which grow by doubling.
+/// Checks the memory for writing a PNG file with this many bytes of pixels: the compressed and the uncompressed data,
+/// whose buffers grow by doubling.
 pub(super) fn check_packing(bytes: usize) -> Result<()> {
     check(bytes.saturating_mul(5))
 }
 
-/// Width and height of a block of an OpenEXR file, which may be larger than the picture.
+/// Width and height in pixels of a block of an OpenEXR file, which may be larger than the picture.
 fn block_size(header: &Header) -> [usize; 2] {
     match header.blocks {
         BlockDescription::Tiles(tiles) => [tiles.tile_size.0, tiles.tile_size.1],
@@ -120,14 +122,14 @@ fn block_size(header: &Header) -> [usize; 2] {
     }
 }
 
-/// Bytes of a whole block.
+/// Size in bytes of a whole block of an OpenEXR file.
 pub(super) fn block_bytes(header: &Header) -> usize {
     let [width, height] = block_size(header);
     width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
 }
 
-/// Checks the memory for the first layer of an OpenEXR file: all of its samples, a block in a decompressor, and lists
-/// of blocks.
+/// Checks the memory for reading the first layer of an OpenEXR file: all its samples, a block in a decompressor, and
+/// the lists of blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     check(layer(headers))
 }
@@ -138,7 +140,7 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
     let transform = match header.compression {
-        // DWA works on blocks of 8 x 8 pixels, which take 768 bytes per channel.
+        // DWA works on blocks of 8 x 8 pixels, each of which takes 768 bytes per channel.
         Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
         _ => 0,
     };
@@ -149,21 +151,21 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks)
 }
 
-/// Side in pixels of the tiles in which OpenEXR files are written.
+/// Side in pixels of the tiles in OpenEXR files that this library writes.
 const TILE: usize = 64;
 
 fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// Checks that there is memory for the blocks that are being compressed, and for the list of blocks, while an OpenEXR
-/// file is written. The bytes of the file, [`max_file_bytes`], are checked apart.
+/// Checks the memory for writing an OpenEXR file: the blocks being compressed and the list of blocks. The caller
+/// checks the memory for the file itself, [`max_file_bytes`].
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }
 
-/// Size in bytes of an OpenEXR file of incompressible samples with this many bytes of names and notes: samples, and
-/// for each block its offset and head.
+/// Largest size in bytes of an OpenEXR file, reached if its samples cannot be compressed: the samples, an offset and a
+/// head per block, and `texts` bytes of names and attributes.
 pub(super) fn max_file_bytes(width: usize, height: usize, channels: usize, texts: usize) -> usize {
     4 * channels * width * height + 32 * tiles(width, height) + 64 * channels + texts + 4096
 }

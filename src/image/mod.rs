@@ -1,8 +1,8 @@
-//! Images: owned buffers of `f32`, strided views of the caller's memory, colour, resampling and files.
+//! Images: owned buffers of `f32`, strided views of the caller's memory, colour, resampling and picture files.
 //!
-//! Inside the library a colour is scene-linear Rec.709 RGB (D65 white); where an image is photometric its luminance is
-//! in cd/m². sRGB is decoded and encoded here and nowhere else. Pixel `(x, y)` covers `[x, x+1) × [y, y+1)`: the
-//! centre of the top-left pixel is (0.5, 0.5), rows run downwards.
+//! Inside the library a colour is scene-linear Rec.709 RGB (D65 white). If an image is photometric, its luminance is
+//! in cd/m². Only this module decodes and encodes sRGB. Pixel `(x, y)` covers `[x, x+1) × [y, y+1)`: the centre of the
+//! top-left pixel is (0.5, 0.5), and rows run downwards.
 
 mod buffer;
 pub mod colour;

@@ -1,9 +1,10 @@
-//! Files of exact numbers: windows of a picture as OpenEXR files that store any number of doubles per pixel.
+//! Stores any number of `f64` values per pixel exactly, in OpenEXR files that each hold a window (a rectangle) of a
+//! picture.
 //!
-//! The picture itself is in R, G and B, so that any program can display it; the data window states the position of the
-//! window in the whole picture, which is the display window. A double is stored in two channels of 32-bit integers,
-//! `number.K.high` and `number.K.low`, because floating-point channels have at most 32 bits. Further information is
-//! stored as text attributes of the header.
+//! The channels R, G and B hold the picture itself, so that any program can display it. The display window of the file
+//! is the whole picture, and the data window is the window that the file holds. Each `f64` is stored in two channels
+//! of 32-bit integers, `number.K.high` and `number.K.low`, because floating-point channels have at most 32 bits.
+//! Further information is stored as text attributes of the header.
 
 use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
@@ -15,18 +16,18 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The header of a file of exact numbers.
+/// The header of a file that stores `f64` values per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
-    /// Width and height of the whole picture.
+    /// Width and height of the whole picture, in pixels.
     pub whole: [usize; 2],
-    /// Column and row of the window's first pixel.
+    /// Column and row in the whole picture of the window's first pixel.
     pub corner: [usize; 2],
-    /// Width and height of the window.
+    /// Width and height of the window, in pixels.
     pub size: [usize; 2],
-    /// Number of doubles per pixel.
+    /// Number of `f64` values per pixel.
     pub numbers: usize,
-    /// Names and texts of the attributes.
+    /// The text attributes: name and text of each.
     pub notes: Vec<(String, String)>,
 }
 
@@ -53,7 +54,7 @@ impl Head {
                 size[0], size[1], whole[0], whole[1]
             )));
         }
-        // Three channels of the picture, then two for each number in order.
+        // The channels are sorted by name: three of the picture, then two for each number in order.
         let channels = &header.channels.list;
         let numbers = channels.len().saturating_sub(3) / 2;
         for (i, channel) in channels.iter().enumerate() {
@@ -83,12 +84,12 @@ fn utf8(text: &ex::Text) -> String {
     String::from_utf8_lossy(text.bytes()).into_owned()
 }
 
-/// The channel name of one half of a number.
+/// Returns the name of the channel with one half of a number.
 fn name(number: usize, is_high: bool) -> String {
     format!("number.{number:05}.{}", if is_high { "high" } else { "low" })
 }
 
-/// Reads the header of a file.
+/// Reads the header of a file on disk.
 pub fn read_head(path: &Path) -> Result<Head> {
     check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
@@ -96,8 +97,8 @@ pub fn read_head(path: &Path) -> Result<Head> {
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
-/// Passes the numbers of each pixel to `pixel`. The file must have the given head; any other is refused before memory
-/// is allocated for it.
+/// Decodes a file and calls `pixel` for each pixel, with its position in the data window and its `f64` values. The
+/// header of the file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
     let found = Head::of(&headers)?;
@@ -124,7 +125,7 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
     Ok(())
 }
 
-/// Encodes a window: its picture with 3 channels, and `number(x, y, k)` for each pixel.
+/// Encodes a window: its picture with 3 channels, and `number([x, y], k)` for each pixel and each `k`.
 pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let [width, height] = head.size;
@@ -149,7 +150,7 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
     let list = ex::AnyChannels::sort(list);
-    // Use run-length compression: the low digits of sums are noise, and better compression would take as long as
+    // Use run-length compression. The low digits of the sums are noise; stronger compression would take as long as
     // tracing the paths.
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
@@ -200,7 +201,7 @@ mod tests {
         })
         .unwrap();
         assert_eq!(seen, 19 * 13);
-        // The picture lies at the position of its window in the whole.
+        // The window appears at its position in the whole picture.
         let whole = decode_picture(&bytes, Encoding::Linear).unwrap();
         assert_eq!([whole.width, whole.height], head.whole);
         for (x, y) in (0..13).flat_map(|y| (0..19).map(move |x| (x, y))) {
@@ -219,7 +220,7 @@ mod tests {
         }
         let other = Head { numbers: 4, ..head.clone() };
         assert_eq!(decode(&bytes, &other, |_, _| ()).unwrap_err().kind, ErrorKind::Format);
-        // OpenEXR files without numbers, and with a layer.
+        // OpenEXR files without numbers, and with a named layer.
         let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
         assert_eq!(Head::of(&headers(&plain).unwrap()).unwrap().numbers, 0);

@@ -1,11 +1,11 @@
-//! OpenEXR files: reads flat layers of R, G, B (and A) or of one channel; writes any layers. Only this file, `samples`
-//! and `numbers` use the crate `exr`.
+//! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this file,
+//! `samples`, `numbers` and `memory` use the crate `exr`.
 //!
 //! A picture has the size of the display window of its file. Pixels outside the data window are 0; pixels outside the
 //! display window are dropped. Colours are converted from the chromaticities that the file states to linear Rec.709.
 //!
-//! Not read, with an error that names it: deep data, and luminance with subsampled chroma. Of several resolutions the
-//! largest is read, and of several parts the first.
+//! Deep data and luminance with subsampled chroma are not read; the error names them. If a file has several
+//! resolutions, the largest is read; if it has several parts, the first.
 
 use super::file_colour::{Chromaticities, Space};
 use super::limits::{MAX_COMPRESSION, check_size};
@@ -18,11 +18,11 @@ use std::io::Cursor;
 
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Primaries with which R, G and B are CIE X, Y and Z [convention].
+/// The primaries that a file states if its R, G and B are CIE X, Y and Z. [convention]
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
-/// Tiles of up to this many bytes are accepted in a file of any length. A larger tile is refused if the file is too
-/// short to contain it, even at the maximum compression ratio.
+/// Tiles of up to this many bytes are accepted in files of any length. A larger tile is refused if the file is too
+/// short to contain it even at the maximum compression ratio.
 const MAX_TILE_BYTES: usize = 64 << 20;
 
 pub(super) fn broken(e: exr::error::Error) -> Error {
@@ -44,13 +44,13 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     for header in &meta.headers {
         let (width, height) = (header.layer_size.0, header.layer_size.1);
         check_size(width as u64, height as u64)?;
-        // Memory for all channels is allocated before the first one is read.
+        // The decoder allocates memory for all channels before it reads the first one.
         if (width * height).saturating_mul(header.channels.bytes_per_pixel)
             > bytes.len().saturating_mul(MAX_COMPRESSION)
         {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
         }
-        // A tile may be larger than the picture, and the decoder allocates all of it.
+        // A tile may be larger than the picture, and the decoder allocates memory for the whole tile.
         let tile = memory::block_bytes(header);
         if tile > bytes.len().saturating_mul(MAX_COMPRESSION).max(MAX_TILE_BYTES) {
             return Err(Error::format(format!(
@@ -61,7 +61,7 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     Ok(meta.headers)
 }
 
-/// The first layer of a file whose headers have been checked, with all of its channels.
+/// Decodes the first layer of a file whose headers have been checked, with all of its channels.
 pub(super) fn first_layer(
     bytes: &[u8],
     headers: &exr::meta::Headers,
@@ -76,7 +76,7 @@ pub(super) fn first_layer(
     Ok(file.map_err(broken)?.layer_data)
 }
 
-/// The display window, which all layers share.
+/// Returns the display window, which all layers share.
 fn display(headers: &exr::meta::Headers) -> Result<ex::IntegerBounds> {
     let header = headers.first().ok_or_else(|| Error::format("the OpenEXR file has no layers"))?;
     let window = header.shared_attributes.display_window;
@@ -84,7 +84,7 @@ fn display(headers: &exr::meta::Headers) -> Result<ex::IntegerBounds> {
     Ok(window)
 }
 
-/// Width, height and largest number of channels.
+/// Returns width, height and the largest number of channels, from the headers.
 pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     let headers = headers(bytes)?;
     let size = display(&headers)?.size;
@@ -97,7 +97,8 @@ pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
     Ok(memory::layer(&headers(bytes)?))
 }
 
-/// The first layer with R, G and B (and A), or with a single channel, and the colour space that the file states.
+/// Decodes the first layer if it has R, G and B (and A) or a single channel; also returns the colour space that the
+/// file states.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let headers = headers(bytes)?;
     let window = display(&headers)?;
@@ -126,11 +127,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     Ok((out, space))
 }
 
-/// The part of a layer that lies within the picture.
+/// The part of a layer (the data window) that lies within the picture (the display window).
 struct Place {
-    /// Width of the layer.
+    /// Width of the layer in pixels.
     width: usize,
-    /// First column and row of this part, counted in the layer (`from`) and in the picture (`to`).
+    /// Column and row of the first pixel of this part, counted in the layer (`from`) and in the picture (`to`).
     from: [usize; 2],
     to: [usize; 2],
     size: [usize; 2],
@@ -139,7 +140,7 @@ struct Place {
 impl Place {
     fn new<C>(layer: &ex::Layer<C>, window: ex::IntegerBounds) -> Self {
         let corner = layer.attributes.layer_position;
-        // First column or row of the layer, relative to the picture.
+        // First column and row of the layer, relative to the picture.
         let start =
             [(corner.0, window.position.0), (corner.1, window.position.1)].map(|(a, b)| i64::from(a) - i64::from(b));
         let stored = [layer.size.0, layer.size.1];
@@ -170,7 +171,8 @@ impl Place {
     }
 }
 
-/// The space with these chromaticities; if `neutral` is stated, it becomes white.
+/// Returns the conversion from stated chromaticities to Rec.709. If `neutral` is stated, that chromaticity becomes
+/// white.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {
@@ -178,26 +180,26 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
         None if neutral.is_some() => Chromaticities::REC709,
         None => return Space::Unstated,
     };
-    // Take D65 as the white of a picture in CIE XYZ: (1/3, 1/3) only defines the coordinates.
+    // For a picture in CIE XYZ, take D65 as white. The stated white (1/3, 1/3) only defines the coordinates.
     let is_xyz = chromaticities.primaries == XYZ;
     let white = if is_xyz { Chromaticities::REC709.white } else { chromaticities.white };
     let white = neutral.map_or(white, point);
     chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Space::linear)
 }
 
-/// A named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
+/// A layer of an OpenEXR file: a named group of channels. With an empty name, the channels are plain `R`, `G`, `B`.
 pub struct Layer<'a> {
     pub name: &'a str,
     pub image: &'a Image,
-    /// One letter or word per channel: `["R", "G", "B"]`, `["Z"]`, `["X", "Y", "Z"]`.
+    /// One letter or word per channel, such as `["R", "G", "B"]`, `["Z"]` or `["X", "Y", "Z"]`.
     pub channels: &'a [&'a str],
 }
 
-/// Encodes layers of equal size into a single-part 32-bit float OpenEXR file, with channels named `layer.channel` and
-/// the chromaticities of Rec.709. `notes` are text attributes of the header, by name.
+/// Encodes layers of equal size as a single-part OpenEXR file of 32-bit floats. Channels are named `layer.channel`,
+/// and the file states the chromaticities of Rec.709. `notes` are text attributes of the header, as (name, text).
 pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
-    // Texts of OpenEXR files are UTF-8.
+    // Store texts as UTF-8, as OpenEXR prescribes.
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let first = layers.first().ok_or_else(|| Error::argument("an OpenEXR file needs at least one layer"))?.image;
     let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
@@ -236,7 +238,7 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     Ok(out.into_inner())
 }
 
-/// The chromaticities that written files state.
+/// Returns the chromaticities that written files state.
 fn rec709() -> attribute::Chromaticities {
     let point = |[x, y]: [f64; 2]| ex::Vec2(x as f32, y as f32);
     let [red, green, blue] = Chromaticities::REC709.primaries.map(point);
@@ -249,7 +251,8 @@ mod tests {
     use crate::image::file_colour::FileColour;
     use crate::image::io::{Encoding, decode, decode_photo, probe};
 
-    /// A file of red pixels, numbered from 1, whose data window has this corner and size within the display window.
+    /// A file whose pixels have the red values 1, 2, ... `corner` and `size` give its data window, `display` its
+    /// display window.
     fn file(corner: [i32; 2], size: [usize; 2], display: ([i32; 2], [usize; 2])) -> Vec<u8> {
         colourful(corner, size, display, |_| ())
     }
@@ -283,7 +286,8 @@ mod tests {
     #[test]
     fn the_data_window_lies_in_the_display_window() {
         let display = ([10, 20], [4, 3]);
-        // The whole picture, a part inside, a part that extends beyond both ends, and a part outside.
+        // The data window is in turn the whole picture, inside it, beyond its start, beyond its end, beyond both, and
+        // outside.
         assert_eq!(red(&file([10, 20], [4, 3], display)), (1..=12).collect::<Vec<i32>>());
         assert_eq!(red(&file([11, 21], [2, 1], display)), [0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0]);
         assert_eq!(red(&file([9, 19], [3, 2], display)), [5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
@@ -303,7 +307,7 @@ mod tests {
     #[test]
     fn chromaticities_are_converted_and_data_are_not() {
         let point = |x, y| ex::Vec2(x, y);
-        // ACEScg (S-2014-004) and ACES2065-1 (SMPTE ST 2065-1).
+        // The chromaticities of ACEScg (S-2014-004) and ACES2065-1 (SMPTE ST 2065-1).
         let acescg = attribute::Chromaticities {
             red: point(0.713, 0.293),
             green: point(0.165, 0.830),
@@ -316,7 +320,8 @@ mod tests {
             blue: point(0.0001, -0.077),
             ..acescg
         };
-        // By the matrices of the ACES system to linear Rec.709 with Bradford adaptation; negative components become 0.
+        // The red values follow from the matrices of the ACES system to linear Rec.709 with Bradford adaptation;
+        // negative components become 0.
         for (chromaticities, wanted) in [(acescg, 1.705_05), (aces, 2.521_69)] {
             let bytes = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(chromaticities);
@@ -328,7 +333,7 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // The white of a picture in XYZ is D65, with or without a stated neutral: check X.
+        // The white of a picture in XYZ is D65, with or without a stated neutral: check the red that X gives.
         for neutral in [None, Some(point(0.3127, 0.3290))] {
             let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(attribute::Chromaticities {

@@ -1,14 +1,14 @@
-//! Huge pages for large buffers: the first access to a small page costs the system as much as hundreds of operations,
-//! and ten channels of a megapixel have ten thousand of them.
+//! Huge pages for large buffers. The first access to each small page costs as much time as hundreds of operations, and
+//! ten channels of a megapixel have ten thousand small pages.
 
 use crate::reserve;
 use std::alloc::Layout;
 use std::mem::MaybeUninit;
 
-/// Bytes of a huge page.
+/// Size in bytes of a huge page.
 pub(crate) const HUGE: usize = 2 << 20;
 
-/// Requests huge pages for all of a buffer except the ends that do not fill one; a hint, on Linux only.
+/// Asks the system for huge pages for a buffer, except for the ends that do not fill one. A hint, on Linux only.
 pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     #[cfg(all(target_os = "linux", not(miri)))]
     {
@@ -25,8 +25,8 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     let _ = room;
 }
 
-/// Zeros, or `None` if memory is short. Fresh memory of the system is zero, so each page is cleared only when a thread
-/// first writes to it.
+/// Returns `len` zeros, or `None` if memory is short. Fresh memory from the system is zero, so the system clears each
+/// page only when a thread first writes to it.
 pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
     let layout = Layout::array::<f32>(len).ok().filter(|layout| layout.size() > 0);
     let Some(layout) = layout else { return (len == 0).then(Vec::new) };

@@ -1,9 +1,10 @@
-//! Conversion between interleaved pixels and one plane per channel, four by four: a transposition in registers.
+//! Converts between interleaved pixels and one plane per channel. Blocks of four pixels and four channels are
+//! transposed in registers.
 
 use glam::{Mat4, Vec4};
 
-/// Splits interleaved pixels into planes, one per channel. `N` is the capacity of a plane: there may be fewer pixels,
-/// but not more.
+/// Splits interleaved pixels into planes, one per channel. `N` is the capacity of a plane in pixels; there may be
+/// fewer pixels, but not more.
 #[inline(always)]
 pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
@@ -22,8 +23,8 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     }
 }
 
-/// Like [`deinterleave`] for a constant number of channels, at least four, so that offsets are constants. Stores
-/// `of(channel, four values)`.
+/// Like [`deinterleave`], but for a constant number of channels, at least four, so that offsets are compile-time
+/// constants. Stores `of(channel, values)` in place of every four values of a channel.
 #[inline(always)]
 pub fn deinterleave_of<const C: usize, const N: usize>(
     pixels: &[f32],
@@ -49,7 +50,7 @@ pub fn deinterleave_of<const C: usize, const N: usize>(
     }
 }
 
-/// Interleaves planes again.
+/// Interleaves planes, one per channel, into pixels.
 #[inline(always)]
 pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
@@ -68,7 +69,7 @@ pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
     }
 }
 
-/// First channels of the groups of four; the last group may overlap the one before.
+/// Iterates over the first channel of each group of four. The last group may overlap the group before it.
 #[inline(always)]
 fn starts(channels: usize) -> impl Iterator<Item = usize> {
     (0..channels).step_by(4).map(move |c| c.min(channels - 4))

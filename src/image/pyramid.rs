@@ -1,18 +1,18 @@
-//! Resampling: exact area averages for any size, and Gaussian blur.
+//! Resampling of images: exact area averages for any size, halving, and Gaussian blur.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Resizes the image; each new pixel is the exact average of the area it covers (bilinear interpolation where it
-/// magnifies).
+/// Resizes an image. When it shrinks, each new pixel is the exact average of the area that it covers; when it grows,
+/// pixels are interpolated bilinearly.
 pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Image> {
     let columns = weights(image.width, width);
     let rows = weights(image.height, height);
     let c = image.channels;
 
-    // Along x, then along y.
+    // Resize along x, then along y.
     let mut wide = Image::new(width, image.height, c)?;
     exec::for_rows(&mut wide.data, width * c, job.part(0.0, 0.5), |y, out| {
         let source = image.row(y);
@@ -33,8 +33,8 @@ pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Im
     Ok(out)
 }
 
-/// For each of `to` intervals that partition `from` pixels: the first pixel that contributes and the weights, which
-/// sum to 1.
+/// Returns the filter weights along one axis, on which `to` new pixels cover `from` old pixels. For each new pixel:
+/// the first old pixel that contributes, and the weights of this pixel and its successors, which sum to 1.
 fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
     let scale = from as f64 / to as f64;
     (0..to)
@@ -42,7 +42,8 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
             let (low, high) = if scale >= 1.0 {
                 (i as f64 * scale, (i + 1) as f64 * scale)
             } else {
-                // Magnification: a unit-wide box at the centre of the new pixel gives bilinear interpolation.
+                // When the image grows, a box one old pixel wide around the centre of the new pixel gives bilinear
+                // interpolation.
                 let centre = (i as f64 + 0.5) * scale;
                 ((centre - 0.5).max(0.0), (centre + 0.5).min(from as f64))
             };
@@ -55,8 +56,8 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
-/// The image at half the size, rounded up, each new pixel the mean of two by two; an odd last column or row counts
-/// twice.
+/// Returns the image at half the size, rounded up. Each new pixel is the mean of 2 × 2 pixels; an odd last column or
+/// row counts twice.
 pub fn half(image: &Image, job: Job) -> Result<Image> {
     let c = image.channels;
     let mut out = Image::new(image.width.div_ceil(2), image.height.div_ceil(2), c)?;
@@ -73,7 +74,8 @@ pub fn half(image: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// Gaussian blur with standard deviation `sigma` pixels, truncated at three; the border pixels are repeated outwards.
+/// Gaussian blur with a standard deviation of `sigma` pixels, truncated at three standard deviations. The border
+/// pixels are repeated outwards.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     if sigma <= 0.0 {
         return Ok(image.clone());
@@ -88,8 +90,8 @@ pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     let mut wide = Image::new(image.width, image.height, c)?;
     exec::for_rows(&mut wide.data, image.row_len(), job.part(0.0, 0.5), |y, out| {
         let source = image.row(y);
-        // Compute the interior tap by tap, which vectorises, and the borders pixel by pixel. Both sum in the same
-        // order.
+        // Compute the interior of a row tap by tap, which vectorises, and its borders pixel by pixel. Both sum the
+        // taps in the same order.
         let border = (radius as usize * c).min(out.len());
         let inside = border..(out.len() - border).max(border);
         for (k, w) in kernel.iter().enumerate() {

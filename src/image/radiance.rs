@@ -1,8 +1,10 @@
-//! Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats): this file reads the header,
-//! the crate `image` the pixels.
+//! Reads Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats). This file reads the
+//! header; the crate `image` decodes the pixels.
 //!
-//! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`; `PRIMARIES` and values in XYZ are
-//! converted to linear Rec.709. Scan lines may run in any of the eight directions. Not modelled: `PIXASPECT`.
+//! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`. Colours in other `PRIMARIES` or in CIE XYZ
+//! are converted to linear Rec.709. Scan lines may run in any of the eight directions.
+//!
+//! Not modelled: `PIXASPECT`, the pixel aspect ratio.
 
 use super::file_colour::{Chromaticities, Space};
 use super::limits::check_size;
@@ -14,19 +16,19 @@ use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 use std::io::Read;
 
-/// The first line of a file begins with one of these texts.
+/// The texts with which the first line of a Radiance file may begin.
 pub const MAGICS: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 
-/// Code points of CIE XYZ among the primaries of Recommendation ITU-T H.273.
+/// Code point of the primaries of CIE XYZ in Recommendation ITU-T H.273.
 const XYZ: u8 = 10;
 
 struct Header {
-    /// Length and number of the scan lines.
+    /// Length of a scan line, and number of scan lines.
     columns: usize,
     rows: usize,
     orientation: Orientation,
     space: Space,
-    /// Offset of the pixels.
+    /// Offset of the pixels in the file, in bytes.
     pixels: usize,
 }
 
@@ -69,16 +71,16 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Number and length of the scan lines, and their orientation, from a header line such as `-Y 480 +X 640`. The line
-/// states the direction from one scan line to the next and its number of lines, then the direction along a scan line
-/// and its length.
+/// Reads a header line such as `-Y 480 +X 640`. Returns the number of scan lines, their length, and the orientation.
+/// The line states the direction from one scan line to the next and the number of scan lines, then the direction along
+/// a scan line and its length.
 fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     let text = String::from_utf8_lossy(line);
     let wrong =
         || Error::format(format!("the Radiance file's resolution is {text:.40}; it must be like -Y 480 +X 640"));
     let parts: Vec<&str> = text.split_whitespace().take(5).collect();
     let [across, rows, along, columns] = parts[..] else { return Err(wrong()) };
-    // The orientation as EXIF numbers it.
+    // The orientation by its number in EXIF.
     let orientation = match (across, along) {
         ("-Y", "+X") => 1,
         ("-Y", "-X") => 2,
@@ -94,9 +96,9 @@ fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     Ok([number(rows)?, number(columns)?, orientation])
 }
 
-/// The header lines that describe the values.
+/// The statements of the header about the meaning of the values.
 struct Colour {
-    /// The stored values are those of the scene times this factor.
+    /// Factor by which the values of the scene were multiplied before they were stored.
     factor: DVec3,
     chromaticities: Option<Chromaticities>,
     is_readable: bool,
@@ -120,7 +122,7 @@ impl Colour {
                     format!("the Radiance file is in the format {format:.40}, which is not read"),
                 ));
             }
-            // Each program that changed the picture has added a line; multiply them.
+            // Each program that changed the exposure has added a line; the product of all lines counts.
             b"EXPOSURE" => match numbers::<1>(value) {
                 Some([factor]) => self.factor *= factor,
                 None => self.is_readable = false,
@@ -156,7 +158,7 @@ impl Colour {
     }
 }
 
-/// The numbers of a value, separated by blanks; further ones are ignored.
+/// Parses `N` numbers separated by blanks, and ignores anything after them. `None` if there are fewer.
 fn numbers<const N: usize>(value: &[u8]) -> Option<[f64; N]> {
     let text = str::from_utf8(value).ok()?;
     let mut parts = text.split_whitespace().map(|part| part.parse().ok().filter(|v: &f64| v.is_finite()));
@@ -167,19 +169,19 @@ fn numbers<const N: usize>(value: &[u8]) -> Option<[f64; N]> {
     Some(numbers)
 }
 
-/// Width, height and number of channels of the stored picture.
+/// Returns width, height and number of channels of the stored picture.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     let header = Header::new(bytes)?;
     Ok((header.columns, header.rows, 3))
 }
 
-/// Bytes of memory for reading the picture, in addition to it.
+/// Bytes of memory for reading the picture, in addition to the picture itself.
 pub fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let header = Header::new(bytes)?;
     Ok(header.columns * header.rows * 12 + memory::scanlines(header.columns))
 }
 
-/// The picture, upright, and the colour space that the file states.
+/// Decodes the picture, turned upright, and returns the colour space that the file states.
 pub fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let header = Header::new(bytes)?;
     let (columns, rows) = (header.columns, header.rows);
@@ -201,7 +203,7 @@ mod tests {
     use crate::image::file_colour::FileColour;
     use crate::image::io::{Encoding, decode_photo, probe};
 
-    /// Three by two pixels with the values 1 to 6 in all channels, after these header lines.
+    /// A file of three by two pixels with the values 1 to 6 in all channels, whose header has the given lines.
     fn file(lines: &str, resolution: &str) -> Vec<u8> {
         let pixels: Vec<u8> = (1..=6u8).flat_map(|v| [v << 4, v << 4, v << 4, 132]).collect();
         [format!("#?RADIANCE\n{lines}\n{resolution}\n").as_bytes(), &pixels].concat()
@@ -220,7 +222,7 @@ mod tests {
         let lines = format!("{format}EXPOSURE= 2\npfilt -e 4\n\tEXPOSURE=4.0\nCOLORCORR= 1 2 0.5\n");
         let (image, colour) = load(&lines, Encoding::Srgb);
         assert_eq!((&image[..3], colour), (&[0.125, 0.0625, 0.25][..], FileColour::Converted));
-        // Data stay unchanged, and invalid factors are ignored.
+        // As data, the values stay unchanged. Colours with invalid factors are not converted.
         assert_eq!(load(&lines, Encoding::Linear), (plain.clone(), FileColour::Data));
         for line in ["EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=bright\n", "COLORCORR=1 2\n", "PRIMARIES=0 0 0\n"] {
             assert_eq!(load(line, Encoding::Srgb), (plain.clone(), FileColour::Unconverted), "{line}");
@@ -240,7 +242,7 @@ mod tests {
         }
         let rec709 = "PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n";
         assert_eq!(load(rec709, Encoding::Srgb).1, FileColour::Stated);
-        // The red of Recommendation BT.2020.
+        // A red pixel in the primaries of Recommendation BT.2020.
         let bytes = file("PRIMARIES=0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329\n", "-Y 2 +X 3");
         let mut red = bytes.clone();
         let at = bytes.len() - 24;

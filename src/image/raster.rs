@@ -1,4 +1,4 @@
-//! PNG, JPEG, WebP, BMP and GIF files, by the crate `image`. Of an animation the first frame is read.
+//! Reads PNG, JPEG, WebP, BMP and GIF files with the crate `image`. Of an animation, only the first frame is read.
 
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::containers::{gif_frame, png_chunks};
@@ -9,14 +9,15 @@ use crate::error::{Error, ErrorKind, Result};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
-/// Width, height and number of channels, from the header.
+/// Returns width, height and number of channels of a file, from its header.
 pub fn probe(bytes: &[u8], format: ImageFormat) -> Result<(usize, usize, usize)> {
     let decoder = decoder(bytes, format)?;
     let (width, height) = decoder.dimensions();
     Ok((width as usize, height as usize, channels(usize::from(decoder.color_type().channel_count()))))
 }
 
-/// Bytes of memory for reading a file in addition to the picture, without the ancillary chunks of a PNG.
+/// Bytes of memory for reading a file, in addition to the picture itself. The ancillary chunks of a PNG are not
+/// included.
 pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     let decoder = decoder(bytes, format)?;
     let (width, height) = decoder.dimensions();
@@ -25,7 +26,7 @@ pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     Ok(stored.saturating_add(memory::pixels(bytes, format, width as usize, height as usize, pixel)))
 }
 
-/// Number of channels of the image for a number of stored channels: grey with alpha becomes RGBA.
+/// Returns the number of channels of the image for a number of stored channels: grey with alpha becomes RGBA.
 fn channels(stored: usize) -> usize {
     if stored == 2 { 4 } else { stored }
 }
@@ -48,8 +49,8 @@ fn decoder(bytes: &[u8], format: ImageFormat) -> Result<impl ImageDecoder + '_> 
     Ok(decoder)
 }
 
-/// Checks the chunks of a PNG for its decoder, which assumes that the palette has three bytes per colour, and which
-/// allocates without limit for other chunks and for a row.
+/// Checks the chunks of a PNG on behalf of its decoder. The decoder assumes that the palette has three bytes per
+/// colour, and it allocates memory without limit for other chunks and for a row.
 fn check_chunks(bytes: &[u8]) -> Result<()> {
     for (name, length, content) in png_chunks(bytes) {
         if name == b"IHDR"
@@ -67,8 +68,8 @@ fn check_chunks(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Checks the frame of a GIF for its decoder, which allocates memory for a frame of any size, however small the
-/// screen.
+/// Checks the first frame of a GIF on behalf of its decoder, which allocates memory for a frame of any size, however
+/// small the screen.
 fn check_frame(bytes: &[u8]) -> Result<()> {
     let screen = |at: usize| Some(usize::from(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?)));
     let sizes = gif_frame(bytes).zip(screen(6)).zip(screen(8));
@@ -106,7 +107,7 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
 
     let stored = usize::from(colour.channel_count());
     let mut out = Upright::new(width, height, channels(stored), orientation)?;
-    // Integers in sRGB are decoded by a table or the curve; all other samples are only scaled.
+    // Integers in sRGB are decoded by a table or by the curve; all other samples are only scaled.
     let is_curved = encoding == Encoding::Srgb;
     let curve = |v: f32, is_alpha: bool| if is_curved && !is_alpha { srgb_to_linear(v) } else { v };
     match usize::from(colour.bytes_per_pixel()) / stored {
@@ -126,7 +127,8 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
     Ok(out.image)
 }
 
-/// Writes the pixels of a file to their positions; `value` returns a sample by its index and whether it is alpha.
+/// Writes the pixels of a file to their upright positions. `value` returns a sample, given its index and whether it is
+/// alpha.
 fn fill(out: &mut Upright, [width, height]: [usize; 2], stored: usize, value: impl Fn(usize, bool) -> f32) {
     for y in 0..height {
         for x in 0..width {
@@ -139,7 +141,7 @@ fn fill(out: &mut Upright, [width, height]: [usize; 2], stored: usize, value: im
     }
 }
 
-/// The sample at an index; `N` bytes each.
+/// Returns the sample at `index`, converted by `of` from its `N` bytes.
 fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> T {
     of(std::array::from_fn(|k| raw[index * N + k]))
 }
@@ -151,14 +153,14 @@ mod tests {
     use image::codecs::{bmp::BmpEncoder, gif::GifEncoder, webp::WebPEncoder};
     use image::{ExtendedColorType, Frame, ImageEncoder, Rgba, RgbaImage};
 
-    /// A lossy WebP's frame of 24 x 16 pixels, red on the left and blue on the right.
+    /// The VP8 frame of a lossy WebP file: 24 x 16 pixels, red on the left and blue on the right.
     const LOSSY: &[u8] = &[
         0xb0, 0x03, 0x00, 0x9d, 0x01, 0x2a, 0x18, 0x00, 0x10, 0x00, 0x3f, 0x11, 0x72, 0xb0, 0x50, 0x2c, 0x26, 0xa4,
         0xa2, 0xb0, 0x08, 0x01, 0x80, 0x22, 0x09, 0x40, 0x13, 0xa6, 0x50, 0x56, 0x80, 0xab, 0xff, 0xdc, 0x00, 0x03,
         0x36, 0x00, 0x00, 0xfe, 0xdf, 0xf9, 0x13, 0xd9, 0x75, 0x9c, 0x36, 0xa2, 0x13, 0x9b, 0x7b, 0x72, 0xbf, 0xaf,
         0xff, 0xf1, 0x0d, 0xed, 0xbe, 0xe3, 0xbf, 0xa1, 0x86, 0x67, 0xd8, 0x01, 0x17, 0x75, 0x40, 0x00,
     ];
-    /// Alpha of this frame: all of the upper half, half of the lower.
+    /// Alpha for the frame in `LOSSY`: 1 in the upper half, 0.5 in the lower half.
     const ALPHA: &[u8] = &[0x01, 0x10, 0x0b, 0x26, 0xea, 0x99, 0x67, 0xb0, 0x3b, 0x22, 0x72, 0x7e, 0x7c];
 
     fn riff(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
@@ -169,13 +171,13 @@ mod tests {
         [b"RIFF", &(chunks.len() as u32 + 4).to_le_bytes()[..], b"WEBP", &chunks].concat()
     }
 
-    /// Four colours, the last of them half transparent where alpha is stored.
+    /// A picture of four colours, the last of which has the given alpha.
     fn picture(alpha: u8) -> RgbaImage {
         let colours = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [9, 99, 199, alpha]];
         RgbaImage::from_fn(20, 14, |x, y| Rgba(colours[(x / 10 + y / 7 * 2) as usize]))
     }
 
-    /// Each format with its number of channels and the kind of picture.
+    /// One file per format: its name, its number of channels, and its bytes.
     fn files() -> [(&'static str, usize, Vec<u8>); 4] {
         let raw = |encode: &dyn Fn(&mut Vec<u8>)| {
             let mut file = Vec::new();
@@ -202,7 +204,7 @@ mod tests {
                 "gif",
                 4,
                 raw(&|f| {
-                    // A second frame, which is ignored.
+                    // A GIF with a second frame, which the reader ignores.
                     let frames = [picture(255), RgbaImage::from_pixel(20, 14, Rgba([1, 2, 3, 255]))].map(Frame::new);
                     GifEncoder::new(f).encode_frames(frames).unwrap()
                 }),
@@ -221,7 +223,7 @@ mod tests {
                     assert!((v - f32::from(w) / 255.0).abs() < 1e-6, "{name}: {pixel:?} instead of {wanted:?}");
                 }
             }
-            // Decoded as sRGB, except alpha.
+            // As sRGB, the colours are decoded by the curve, but alpha is not.
             let curved = decode_photo(&file, Encoding::Srgb).unwrap().image;
             assert!((curved.pixel(19, 13)[1] - srgb_to_linear(99.0 / 255.0)).abs() < 1e-6);
             assert!(channels == 3 || curved.pixel(19, 13)[3] == image.pixel(19, 13)[3]);
@@ -242,7 +244,7 @@ mod tests {
     fn truncated_files_are_errors() {
         let lossy = riff(&[(b"VP8 ", LOSSY)]);
         for (name, _, file) in files().into_iter().chain([("lossy webp", 3, lossy)]) {
-            // Errors in the last frame, the end and the padding do not affect the first frame.
+            // Damage to the last frame, the trailer and the padding does not affect the first frame.
             let needed = match name {
                 "gif" => file.len() / 2,
                 "lossy webp" => 30,
@@ -251,7 +253,7 @@ mod tests {
             for cut in 0..needed {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "{name} cut at {cut}");
             }
-            // A changed byte may cause an error or change the picture, but must not cause a panic.
+            // A changed byte may cause an error or change the picture, but it must not cause a panic.
             for at in 0..file.len().min(200) {
                 for value in [0, 1, 127, 255] {
                     let mut bad = file.clone();
@@ -275,7 +277,7 @@ mod tests {
         gif[frame + 5..frame + 9].copy_from_slice(&[255; 4]);
         let error = probe(&gif).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("65535 x 65535 pixels"), "{error}");
-        // An animation on a canvas of 2^24 pixels per side.
+        // An animation whose canvas claims 2^24 pixels per side.
         let canvas = [&[2, 0, 0, 0][..], &[255; 6]].concat();
         let webp = riff(&[(b"VP8X", &canvas), (b"ANIM", &[0; 6]), (b"ANMF", &[0; 32])]);
         assert_eq!(probe(&webp).unwrap_err().kind, ErrorKind::Format);

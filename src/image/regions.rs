@@ -1,17 +1,18 @@
-//! Connected regions of lit pixels in an image.
+//! Finds connected regions of lit pixels in an image, such as the lamps of a light texture.
 
 use super::{Image, try_vec};
 use crate::error::Result;
 
-/// The 8-connected regions of pixels with a colour above 0.
+/// The 8-connected regions of lit pixels: pixels with a colour channel above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regions {
-    /// For each pixel the number of its region plus one, or 0; regions are numbered by their first pixel, row by row.
+    /// For each pixel, 0 if it is dark, or 1 plus the number of its region. Regions are numbered by their first pixel
+    /// in row-major order.
     pub labels: Vec<u32>,
     pub count: usize,
 }
 
-/// Number of pixels that are tested together.
+/// Number of pixels that are tested for light at once.
 const BLOCK: usize = 64;
 
 impl Regions {
@@ -19,7 +20,7 @@ impl Regions {
         let (width, height) = (image.width, image.height);
         let colours = image.channels.min(3);
         let lit = |i: usize| image.data[i * image.channels..][..colours].iter().any(|&v| v > 0.0);
-        // Lamps are few, so skip dark pixels in blocks.
+        // Skip blocks of dark pixels: lamps cover little of an image.
         let blocks = image.data.chunks(BLOCK * image.channels.max(1)).enumerate();
         let lit_blocks = blocks.filter(|(_, pixels)| any_light(pixels, image.channels)).map(|(block, _)| block * BLOCK);
         let mut labels = try_vec(width * height, 0u32)?;
@@ -29,7 +30,7 @@ impl Regions {
             if labels[start] != 0 || !lit(start) {
                 continue;
             }
-            // Flood the region from its first pixel.
+            // Flood-fill the region from its first pixel.
             count += 1;
             labels[start] = count;
             open.push(start);
@@ -50,7 +51,7 @@ impl Regions {
     }
 }
 
-/// Whether a colour channel of any of these pixels is above 0; with four or more channels the first three are colours.
+/// Whether any colour channel of these pixels is above 0. With four or more channels, the first three are colours.
 pub fn any_light(pixels: &[f32], channels: usize) -> bool {
     match channels {
         0..=3 => pixels.iter().fold(0.0, |high, v| f32::max(high, *v)) > 0.0,

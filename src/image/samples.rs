@@ -1,6 +1,6 @@
-//! The samples of an OpenEXR layer: allocates memory fallibly and puts each line at its place in the picture. (The
-//! reader of the crate `exr` aborts the process if memory is short, and trusts the file about the resolution that a
-//! tile belongs to.)
+//! Receives the samples of an OpenEXR layer from the crate `exr`: returns an error if memory is short, and checks the
+//! position of each line. (The crate's own receiver aborts the process if memory is short, and trusts what a tile says
+//! about its resolution.)
 
 use crate::image::try_vec;
 use exr::block::chunk::TileCoordinates;
@@ -12,7 +12,7 @@ use exr::meta::header::Header;
 use exr::prelude::{FlatSamples, Vec2, f16};
 use std::io::ErrorKind;
 
-/// Reads the largest resolution of a layer.
+/// Reads only the largest resolution of a layer.
 pub(super) struct Largest;
 
 /// The samples of one channel that have been read so far.
@@ -48,7 +48,7 @@ impl SamplesReader for Samples {
 
     fn read_line(&mut self, line: LineRef<'_>) -> UnitResult {
         let at = line.location;
-        // The head of a tile may contradict the table of tiles.
+        // The head of a tile may contradict the offset table, by which the tile was selected.
         let misplaced = || Error::Invalid("a block that is not where the table of blocks has it".into());
         if at.level != Vec2(0, 0) || at.position.0 + at.sample_count > self.width {
             return Err(misplaced());

@@ -1,12 +1,12 @@
-//! Strided views of pixels in the caller's memory. A view is checked once against the size of the memory; then it is
-//! read into an [`Image`] or written from one.
+//! Strided views of pixels in the caller's memory. The layout of a view is checked against the size of the memory;
+//! then the pixels are read into an [`Image`] or written from one.
 
 use crate::error::{Error, Result};
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
 use crate::image::{Image, MAX_SIDE};
 use half::f16;
 
-/// The format of a channel of a pixel.
+/// The number format of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     U8,
@@ -25,16 +25,16 @@ impl Sample {
     }
 }
 
-/// The meaning of the numbers.
+/// How the numbers of a view encode colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColourSpace {
-    /// Scene-linear Rec.709, or data other than colour.
+    /// Scene-linear Rec.709 colours, or data other than colour.
     Linear,
-    /// sRGB-encoded colour; a fourth channel is alpha and stays linear.
+    /// sRGB-encoded colours. The last of 2 or 4 channels is alpha, which is linear.
     Srgb,
 }
 
-/// The layout of an image in memory. Integer samples stand for `[0, 1]`.
+/// The layout of an image in the caller's memory. Integer samples stand for `[0, 1]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     pub sample: Sample,
@@ -42,16 +42,16 @@ pub struct Layout {
     pub colour_space: ColourSpace,
     pub width: usize,
     pub height: usize,
-    /// Bytes from one pixel to the next; 0 = packed.
+    /// Bytes from one pixel to the next; 0 if pixels follow each other without gaps.
     pub pixel_stride: usize,
-    /// Bytes from one row to the next; 0 = packed.
+    /// Bytes from one row to the next; 0 if rows follow each other without gaps.
     pub row_stride: usize,
-    /// Whether the first row in memory is the bottom one.
+    /// Whether the first row in memory is the bottom row of the image.
     pub bottom_up: bool,
 }
 
 impl Layout {
-    /// Fills in packed strides and checks that everything fits into `byte_size` bytes.
+    /// Replaces strides of 0 by their values, and checks that all pixels fit into `byte_size` bytes.
     pub fn checked(mut self, byte_size: usize) -> Result<Self> {
         let side = |name: &str, v: usize| {
             if (1..=MAX_SIDE).contains(&v) {
@@ -103,13 +103,13 @@ impl Layout {
         y * self.row_stride + x * self.pixel_stride
     }
 
-    /// Whether a channel is sRGB-encoded.
+    /// Whether a channel is sRGB-encoded: alpha is not.
     fn is_encoded(&self, channel: usize) -> bool {
         self.colour_space == ColourSpace::Srgb && channel < 3 && !(self.channels == 2 && channel == 1)
     }
 }
 
-/// Reads the caller's pixels as linear values. NaN and infinity are kept; each stage handles them.
+/// Reads the caller's pixels as linear values. NaN and infinity are kept; the stages that use the image handle them.
 pub fn read(layout: Layout, bytes: &[u8]) -> Result<Image> {
     let layout = layout.checked(bytes.len())?;
     let mut image = Image::new(layout.width, layout.height, layout.channels)?;
@@ -136,7 +136,8 @@ pub fn read(layout: Layout, bytes: &[u8]) -> Result<Image> {
     Ok(image)
 }
 
-/// Writes linear values into the caller's pixels; integers are clamped and rounded, a NaN becomes 0.
+/// Writes linear values to the caller's pixels. For integer samples, values are clamped to `[0, 1]` and rounded, and
+/// NaN becomes 0.
 pub fn write(image: &Image, layout: Layout, bytes: &mut [u8]) -> Result<()> {
     let layout = layout.checked(bytes.len())?;
     if (image.width, image.height, image.channels) != (layout.width, layout.height, layout.channels) {
@@ -190,7 +191,7 @@ mod tests {
                     let mut bytes = vec![0; 80 * 3];
                     write(&image, layout, &mut bytes).unwrap();
                     let back = read(layout, &bytes).unwrap();
-                    // sRGB is steepest at white: its slope there is 2.3.
+                    // Rounding errors grow by the slope of the sRGB decoding curve, which is steepest at white: 2.3.
                     let worst = back.data.iter().zip(&image.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                     assert!(worst <= 2.3 * tolerance, "{sample:?} {space:?}: {worst}");
                 }

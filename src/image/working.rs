@@ -1,5 +1,5 @@
-//! Bytes of memory for reading a picture file, in addition to the resulting picture: for memory budgets, which count
-//! them while the file is read.
+//! Bounds the memory for reading a picture file, in addition to the resulting picture. Memory budgets count these
+//! bytes while the file is read.
 
 use super::containers::png_chunks;
 use super::file_colour::{self, icc};
@@ -9,7 +9,8 @@ use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
-/// An upper bound from the headers alone. No codec runs, and only a colour profile is allocated, which is freed again.
+/// Returns an upper bound of the working memory in bytes, from the headers alone. No codec runs, and at most a colour
+/// profile is allocated, which is freed again.
 pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     let format = Format::of(bytes)?;
     let pixels = match format {
@@ -20,7 +21,7 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
         Format::Raster(format) => raster::working_bytes(bytes, format)?,
     };
     let profile = file_colour::profile(bytes, format)?;
-    // If a profile converts the inks, their amounts are first read as a picture of four channels.
+    // If a profile converts the inks, their amounts are first read as an image of four channels of four bytes.
     let inks = match &profile {
         Some(_) if file_colour::has_inks(bytes, format) => {
             let (width, height, _) = probe(bytes)?;
@@ -32,14 +33,15 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     Ok(pixels.saturating_add(profile).saturating_add(inks) as u64)
 }
 
-/// For a PNG: its samples in the decoder's format, and its other chunks.
+/// Bytes for a PNG: its samples in the decoder's format, and its other chunks.
 fn png(bytes: &[u8]) -> usize {
     let mut total = 0usize;
     for (name, _, content) in png_chunks(bytes) {
         let own = match (name, content) {
             (b"IHDR", &[a, b, c, d, e, f, g, h, depth, colour, ..]) => {
                 let [width, height] = [[a, b, c, d], [e, f, g, h]].map(|side| u32::from_be_bytes(side) as usize);
-                // Grey, RGB and palettes may have a transparent colour, which becomes alpha.
+                // Grey, RGB and palette images may have a transparent colour, for which the decoder adds an alpha
+                // channel.
                 let channels = if matches!(colour, 0 | 4) { 2 } else { 4 };
                 let pixel = channels * if depth == 16 { 2 } else { 1 };
                 let row = memory::pixels(bytes, ImageFormat::Png, width, height, pixel);

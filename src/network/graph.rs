@@ -1,4 +1,4 @@
-//! A network ready to run: its nodes in order, with validated operators.
+//! A network ready to run: its nodes in the order of execution, with validated operators.
 
 use super::ops::Op;
 use super::read::{self, NodeMessage, unsupported};
@@ -6,10 +6,10 @@ use super::tensor::Tensor;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 
-/// A network with one input image. Of its outputs, only the first is computed.
+/// A network with one input, an image. Only the first of its outputs is computed.
 pub struct Network {
     pub(super) nodes: Vec<Node>,
-    /// For each value passed between nodes, its contents if known before the run.
+    /// For each value passed between nodes, its contents if they are known before the run.
     pub(super) constants: Vec<Option<Tensor>>,
     pub(super) input: usize,
     pub(super) output: usize,
@@ -19,19 +19,19 @@ pub struct Network {
 pub(super) struct Node {
     pub name: String,
     pub op: Op,
-    /// Indices of the input values; optional ones may be absent.
+    /// Indices of the values that this node reads; `None` for optional inputs that are absent.
     pub inputs: Vec<Option<usize>>,
     pub outputs: Vec<Option<usize>>,
-    /// Values that no later node needs.
+    /// Indices of the values that no later node reads, so that they can be dropped after this node.
     pub last_uses: Vec<usize>,
 }
 
-/// Maximum number of nodes: the largest DPT has about 3,000.
+/// Maximum number of nodes in a network. For comparison, the largest DPT has about 3,000.
 const MAX_NODES: usize = 100_000;
 
 impl Network {
-    /// Parses the bytes of an ONNX file. Errors: `Format` if they are damaged or inconsistent, `Unsupported` for
-    /// operators and types that are not implemented; both name the place.
+    /// Parses an ONNX file held in memory. Errors: `Format` if the file is damaged or inconsistent, `Unsupported` for
+    /// operators and types that are not implemented. Both errors name the place in the network.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let model = read::model(bytes)?;
         if !(7..=21).contains(&model.opset) {
@@ -40,7 +40,7 @@ impl Network {
         if model.nodes.len() > MAX_NODES {
             return Err(unsupported(format_args!("{} nodes (at most {MAX_NODES} are allowed)", model.nodes.len())));
         }
-        // Old files list their weights among the inputs.
+        // Files of older versions list their weights among the inputs: skip the inputs that are constants.
         let mut inputs = model.inputs.into_iter().filter(|(name, _)| !model.constants.contains_key(name));
         let (input_name, input_shape) = inputs.next().ok_or_else(|| Error::format("the network has no input"))?;
         if let Some((second, _)) = inputs.next() {
@@ -68,12 +68,13 @@ impl Network {
         Ok(network)
     }
 
-    /// The sizes that the input must have; `None` for any size. Empty if the file does not declare them.
+    /// Returns the size that the input must have along each axis; `None` allows any size. Empty if the file states no
+    /// shape.
     pub fn input_shape(&self) -> &[Option<usize>] {
         &self.input_shape
     }
 
-    /// Drops nodes that the output does not depend on, and records the last use of each value.
+    /// Drops nodes on which the output does not depend, and records the last use of each value.
     fn drop_unused_nodes(&mut self) {
         let mut is_needed = vec![false; self.constants.len()];
         is_needed[self.output] = true;
@@ -94,7 +95,7 @@ impl Network {
     }
 }
 
-/// The values of a graph by name.
+/// Assigns an index to each named value of a graph while the nodes of the graph are read.
 struct Values<'a> {
     numbers: HashMap<&'a str, usize>,
     constants: Vec<Option<Tensor>>,
@@ -121,7 +122,7 @@ impl<'a> Values<'a> {
         let inputs = inputs.collect::<Result<_>>()?;
         let mut outputs = Vec::new();
         for name in &message.outputs {
-            // The output of a node without inputs is constant.
+            // The output of a `Constant` node is known before the run.
             let constant = if let Op::Constant(tensor) = &op { Some(tensor.clone()) } else { None };
             outputs.push(given(&name).then(|| self.define(name, constant)).transpose()?);
         }

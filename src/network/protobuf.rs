@@ -1,9 +1,9 @@
-//! The wire format of Protocol Buffers: fields of a message as views of its bytes.
+//! Reads the wire format of Protocol Buffers: the fields of a message, as views of its bytes.
 
 use crate::error::{Error, Result};
 use crate::image::try_push;
 
-/// The value of a field.
+/// The value of a field, by its wire type.
 #[derive(Clone, Copy)]
 pub enum Value<'a> {
     Varint(u64),
@@ -16,7 +16,7 @@ fn truncated() -> Error {
     Error::format("the file is truncated, or not an ONNX file")
 }
 
-/// Calls `field` with the number and the value of every field of a message.
+/// Calls `field` with the number and the value of each field of a message.
 pub fn fields<'a>(message: &'a [u8], mut field: impl FnMut(u64, Value<'a>) -> Result<()>) -> Result<()> {
     let mut rest = message;
     while !rest.is_empty() {
@@ -86,7 +86,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Appends the numbers of a repeated field, packed or not.
+    /// Appends the integers of a repeated field to `to`, whether the field is packed or not.
     pub fn integers(self, to: &mut Vec<i64>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.integer()?);
@@ -98,7 +98,7 @@ impl<'a> Value<'a> {
         Ok(())
     }
 
-    /// As [`Value::integers`], for floats.
+    /// Appends the floats of a repeated field to `to`, whether the field is packed or not.
     pub fn floats(self, to: &mut Vec<f32>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.float()?);

@@ -1,4 +1,4 @@
-//! The messages of an ONNX file (`onnx.proto3`), restricted to the fields used here.
+//! Reads the messages of an ONNX file (`onnx.proto3`), restricted to the fields that this library uses.
 
 use super::protobuf::{Value, fields};
 use super::tensor::{Data, Tensor, count};
@@ -7,18 +7,18 @@ use crate::image::{try_collect, try_push};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// `ModelProto` with its `GraphProto`.
+/// The contents of `ModelProto` and its `GraphProto`.
 #[derive(Default)]
 pub struct Model<'a> {
     pub opset: i64,
     pub nodes: Vec<NodeMessage<'a>>,
     pub constants: HashMap<&'a str, Tensor>,
-    /// Names with their shapes; `None` is an open size.
+    /// Name and shape of each input; `None` is a size that the file leaves open.
     pub inputs: Vec<(&'a str, Vec<Option<usize>>)>,
     pub outputs: Vec<&'a str>,
 }
 
-/// `NodeProto`.
+/// The contents of `NodeProto`.
 #[derive(Default)]
 pub struct NodeMessage<'a> {
     pub kind: &'a str,
@@ -29,7 +29,7 @@ pub struct NodeMessage<'a> {
     pub attributes: HashMap<&'a str, Attribute<'a>>,
 }
 
-/// `AttributeProto`: the fields that are set.
+/// The contents of `AttributeProto`; only the fields that the file sets.
 #[derive(Default)]
 pub struct Attribute<'a> {
     pub float: Option<f32>,
@@ -125,12 +125,12 @@ fn attribute(bytes: &[u8]) -> Result<(&str, Attribute<'_>)> {
     Ok((name, attribute))
 }
 
-/// `ValueInfoProto`.
+/// Reads a `ValueInfoProto`: the name and the shape of a value.
 fn value_info(bytes: &[u8]) -> Result<(&str, Vec<Option<usize>>)> {
     let (mut name, mut shape) = ("", Vec::new());
     fields(bytes, |number, value| match number {
         1 => value.text().map(|text| name = text),
-        // TypeProto, its tensor type, the shape of that, and its axes.
+        // Visit the TypeProto, its tensor type, the shape of the tensor, and the axes of the shape.
         2 => nested(value, 1, |tensor| {
             nested(tensor, 2, |axes| {
                 nested(axes, 1, |axis| {
@@ -151,12 +151,12 @@ fn value_info(bytes: &[u8]) -> Result<(&str, Vec<Option<usize>>)> {
     Ok((name, shape))
 }
 
-/// Visits the fields with a given number in a message.
+/// Calls `work` for each field with the number `wanted` in a message.
 fn nested<'a>(message: Value<'a>, wanted: u64, mut work: impl FnMut(Value<'a>) -> Result<()>) -> Result<()> {
     fields(message.bytes()?, |number, value| if number == wanted { work(value) } else { Ok(()) })
 }
 
-/// `TensorProto`.
+/// Reads a `TensorProto`: the name and the contents of a tensor.
 fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
     let (mut name, mut kind, mut raw) = ("", 0, None);
     let (mut shape, mut floats, mut integers) = (Vec::new(), Vec::new(), Vec::new());

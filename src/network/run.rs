@@ -1,4 +1,4 @@
-//! Execution: node by node in the order of the file, dropping every value after its last use.
+//! Runs a network: executes its nodes in order, and drops each value after its last use.
 
 use super::graph::Network;
 use super::ops::Call;
@@ -6,13 +6,13 @@ use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// Maximum number of bytes of all values at a time, in addition to the network's own weights; the temporary memory of
+/// Maximum number of bytes that all values take at a time, without the network's own weights. The temporary memory of
 /// a node may take as much again.
 pub const MAX_BYTES: usize = 1 << 30;
 
 impl Network {
-    /// Computes the first output for an input. Errors: `Format` if shapes are inconsistent, `OutOfMemory` beyond
-    /// [`MAX_BYTES`].
+    /// Computes the network's first output. Errors: `Format` if shapes are inconsistent, `OutOfMemory` if the values
+    /// exceed [`MAX_BYTES`].
     pub fn run(&self, input: Tensor, job: Job) -> Result<Tensor> {
         let mut values: Vec<Option<Tensor>> = vec![None; self.constants.len()];
         let mut used = input.bytes();

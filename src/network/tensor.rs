@@ -1,10 +1,10 @@
-//! Numeric arrays with a shape, and the memory budget for them.
+//! Tensors, numeric arrays with a shape, and the memory budget for them.
 
 use crate::error::{Error, Result};
 use crate::image::{no_memory, try_vec};
 use std::sync::Arc;
 
-/// A dense array, row-major. Cheap to clone and to reshape, because the numbers are shared.
+/// A dense row-major array. Cloning and reshaping are cheap, because the numbers are shared.
 #[derive(Clone, Debug)]
 pub struct Tensor {
     pub shape: Vec<usize>,
@@ -14,11 +14,11 @@ pub struct Tensor {
 #[derive(Clone, Debug)]
 pub enum Data {
     Floats(Arc<Vec<f32>>),
-    /// All integer types, and booleans as 0 and 1.
+    /// Integers of any type, and booleans as 0 and 1.
     Integers(Arc<Vec<i64>>),
 }
 
-/// The number of items of a shape, or an error if it exceeds all memory.
+/// Returns the number of elements of a shape, or an error if no memory could hold them.
 pub fn count(shape: &[usize]) -> Result<usize> {
     let all = shape.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
     all.filter(|&n| n <= usize::MAX / 16)
@@ -36,7 +36,7 @@ impl Tensor {
         Self { shape, data: Data::Integers(Arc::new(values)) }
     }
 
-    /// The same numbers in another shape of equal size.
+    /// Returns a tensor with these numbers in another shape of equal size.
     pub fn reshaped(&self, shape: Vec<usize>) -> Result<Self> {
         if count(&shape)? != self.len() {
             return Err(Error::format(format!("a tensor of shape {:?} cannot be reshaped to {shape:?}", self.shape)));
@@ -72,7 +72,7 @@ impl Tensor {
         }
     }
 
-    /// The shape, if it has `N` axes.
+    /// Returns the shape as an array; an error unless it has `N` axes.
     pub fn shape_of<const N: usize>(&self) -> Result<[usize; N]> {
         self.shape
             .as_slice()
@@ -80,20 +80,20 @@ impl Tensor {
             .map_err(|_| Error::format(format!("a tensor has shape {:?}; {N} axes are needed", self.shape)))
     }
 
-    /// An axis index counted from the front, or from the back if negative.
+    /// Returns the index of an axis. A negative `axis` counts from the last axis.
     pub fn axis(&self, axis: i64) -> Result<usize> {
         normal_axis(axis, self.shape.len())
     }
 }
 
-/// An axis index of `rank` axes counted from the front, or from the back if negative.
+/// Returns the index of one of `rank` axes. A negative `axis` counts from the last axis.
 pub fn normal_axis(axis: i64, rank: usize) -> Result<usize> {
     let from_front = if axis < 0 { axis.checked_add(rank as i64) } else { Some(axis) };
     let found = from_front.and_then(|a| usize::try_from(a).ok()).filter(|&a| a < rank);
     found.ok_or_else(|| Error::format(format!("axis is {axis}; the tensor has {rank}")))
 }
 
-/// The number of bytes that may still be allocated.
+/// Number of bytes that may still be allocated.
 #[derive(Clone, Copy)]
 pub(crate) struct MemoryBudget(pub usize);
 
@@ -102,13 +102,13 @@ impl MemoryBudget {
         if count <= self.0 / size_of::<T>() { Ok(()) } else { Err(no_memory::<T>(count)) }
     }
 
-    /// A list of copies of a value, if the budget allows.
+    /// Allocates a list of copies of `value`; an error if the budget does not allow it.
     pub fn vec<T: Clone>(self, count: usize, value: T) -> Result<Vec<T>> {
         self.check::<T>(count)?;
         try_vec(count, value)
     }
 
-    /// Zeros for a shape.
+    /// Allocates zeros for a shape; an error if the budget does not allow it.
     pub fn zeros(self, shape: &[usize]) -> Result<Vec<f32>> {
         self.vec(count(shape)?, 0.0)
     }

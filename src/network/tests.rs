@@ -1,5 +1,5 @@
 //! Tests operators against their definitions, and files that are damaged, inconsistent, or demand too much memory.
-//! Whole networks are compared with another runtime in `tests/python/test_network.py`.
+//! `tests/python/test_network.py` compares whole networks with another runtime.
 
 use super::writer::Setting::{F, I, Is, S, T};
 use super::writer::Writer;
@@ -18,7 +18,7 @@ fn run(file: &[u8], input: &Tensor) -> Result<Tensor> {
     Network::parse(file)?.run(input.clone(), Monitor::default().job())
 }
 
-/// The output of a single node with further, constant inputs.
+/// Runs a network of a single node on `x`. `more` are the node's further inputs, which are constants.
 fn node(kind: &str, x: &Tensor, more: &[(&str, &Tensor)], settings: &[super::writer::Setting]) -> Tensor {
     let shape: Vec<i64> = x.shape.iter().map(|&n| n as i64).collect();
     let mut writer = Writer::new(17, &shape);
@@ -111,8 +111,8 @@ fn products_of_stacks_of_matrices() {
         let (x, w) = (x.as_floats().unwrap(), w.as_floats().unwrap());
         close(&got, &out, |i| {
             let (matrix, row, column) = (i / columns / rows, i / columns % rows, i % columns);
-            // Broadcast the stacks: matrices of `a` repeat along its axis of size 1, matrices of `b` along the outermost
-            // axis.
+            // Broadcast the stacks of matrices: those of `a` repeat along its axis of size 1, those of `b` along the
+            // outermost axis.
             let (m, n) = match a.len() {
                 4 if a[1] == 1 => (matrix / 3, matrix % 3),
                 _ => (matrix, 0),
@@ -150,12 +150,12 @@ fn element_wise_operators_broadcast_as_in_numpy() {
         ("Sigmoid", |v| 1.0 / (1.0 + (-v).exp())),
         ("HardSwish", |v| v * ((v + 3.0) / 6.0).clamp(0.0, 1.0)),
         ("Softplus", |v| v.exp().ln_1p()),
-        // erf by its series.
+        // The error function by its power series.
         ("Erf", |v| {
             let terms = (0..12).map(|n| {
                 let n = f64::from(n);
                 let factorial: f64 = (1..=n as i32).map(f64::from).product();
-                (-1.0f64).powf(n) * v.powf(0.0).copysign(1.0) * v * (v * v).powf(n) / (factorial * (2.0 * n + 1.0))
+                (-1.0f64).powf(n) * v * (v * v).powf(n) / (factorial * (2.0 * n + 1.0))
             });
             2.0 / std::f64::consts::PI.sqrt() * terms.sum::<f64>()
         }),
@@ -251,7 +251,7 @@ fn images_are_rearranged_resized_and_pooled() {
     expect(node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
 }
 
-/// A network that uses all the operators with which shapes are computed.
+/// A network with all the operators that compute shapes.
 fn small() -> Writer {
     let weights = noise(5, &[4, 3, 3, 3]);
     Writer::new(13, &[1, 3, 16, 16])
@@ -334,7 +334,7 @@ fn files_that_ask_for_more_than_there_is_are_refused() {
         let (w, t) = (w.constant("a", &Tensor::integers(vec![], vec![0])), Tensor::integers(vec![], vec![i64::MAX]));
         w.constant("b", &t).constant("c", &Tensor::integers(vec![], vec![1])).node("Range", &["a", "b", "c"], "y", &[])
     });
-    // Missing weights, incompatible shapes, and exponential growth from node to node.
+    // A missing weight, incompatible shapes, and a size that doubles with each node.
     with(&|w| w.node("Add", &["x", "nothing"], "y", &[]));
     with(&|w| {
         let column = Tensor::floats(vec![1 << 15, 1], vec![1.0; 1 << 15]);
@@ -349,7 +349,7 @@ fn files_that_ask_for_more_than_there_is_are_refused() {
         }
         w
     });
-    // Unsupported operators are named.
+    // The error names an unsupported operator.
     let error = with(&|w| w.node("Loop", &["x"], "y", &[]));
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("Loop"), "{error}");
     let error = with(&|w| w.node("Conv", &["x", "x"], "y", &[Is("strides", &[0, 0])]));

@@ -1,8 +1,8 @@
-//! Writes networks for tests as ONNX files.
+//! Writes ONNX files of networks, for tests.
 
 use super::tensor::{Data, Tensor};
 
-/// The bytes of a message, appended field by field.
+/// The bytes of a Protocol Buffers message, appended field by field.
 #[derive(Default, Clone)]
 pub struct Message(Vec<u8>);
 
@@ -39,7 +39,7 @@ impl Message {
     }
 }
 
-/// An attribute of a node that a test sets.
+/// An attribute that a test gives to a node: its name and value.
 pub enum Setting<'a> {
     I(&'a str, i64),
     F(&'a str, f32),
@@ -59,14 +59,14 @@ pub fn tensor(name: &str, tensor: &Tensor) -> Message {
     message.bytes(8, name.as_bytes())
 }
 
-/// A network under construction; its input is "x".
+/// A network under construction. Its input is named "x", its output "y".
 pub struct Writer {
     graph: Message,
     opset: i64,
 }
 
 impl Writer {
-    /// With an input of the given shape; 0 leaves a size open.
+    /// Starts a network with an input of the given shape; a size of 0 is left open.
     pub fn new(opset: i64, shape: &[i64]) -> Self {
         Self { graph: Message::default().message(11, &value("x", shape)), opset }
     }
@@ -104,7 +104,7 @@ impl Writer {
         self
     }
 
-    /// The file, with the output "y".
+    /// Returns the ONNX file, with the output "y".
     pub fn file(&self) -> Vec<u8> {
         let graph = self.graph.clone().message(12, &value("y", &[]));
         let opset = Message::default().integer(2, self.opset);

@@ -1,4 +1,4 @@
-//! Sets of usable patches.
+//! Sets of patches of an image, for instance of the patches that may be used as matches.
 
 use super::position::pack;
 use crate::error::Result;
@@ -17,8 +17,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The patches of width `patch` in an image of `width × height` pixels that lie inside the mask; with `any`, also
-    /// the patches that only overlap it.
+    /// Returns the patches of width `patch` in an image of `width × height` pixels that lie inside the mask; with
+    /// `any`, also the patches that only overlap the mask.
     pub fn new(width: usize, height: usize, patch: usize, mask: Option<&[bool]>, any: bool) -> Result<Self> {
         let (w, h) = (width + 1 - patch, height + 1 - patch);
         let mut member = try_vec(w * h, true)?;
@@ -85,7 +85,7 @@ impl Domain {
         self.count = self.list.len();
     }
 
-    /// Positions of the members.
+    /// Packed positions of the members in scan order; may include removed members until [`Domain::compact`].
     pub fn members(&self) -> &[u32] {
         &self.list
     }
@@ -95,7 +95,7 @@ impl Domain {
         &self.member
     }
 
-    /// Converts the set into [`Domain::flags`].
+    /// Converts the set into the list of [`Domain::flags`].
     pub fn into_flags(self) -> Vec<bool> {
         self.member
     }

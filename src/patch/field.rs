@@ -1,4 +1,4 @@
-//! The nearest-neighbour field.
+//! The nearest-neighbour field: a match for each patch of an image.
 
 use super::domain::Domain;
 use super::position::{NONE, pack, unpack};
@@ -11,7 +11,7 @@ pub struct Field {
     /// Number of patches along x and y.
     pub width: usize,
     pub height: usize,
-    /// Packed positions, or [`NONE`].
+    /// Packed positions of the matches, or [`NONE`].
     pub at: Vec<u32>,
     /// Distances; `u32::MAX` marks a match that is only an initial position for the search (a hint).
     pub error: Vec<u32>,
@@ -22,13 +22,13 @@ impl Field {
         Ok(Self { width, height, at: try_vec(width * height, NONE)?, error: try_vec(width * height, u32::MAX)? })
     }
 
-    /// A copy, or an error if memory is short.
+    /// Returns a copy, or an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         let copy = |list: &[u32]| try_collect(list.iter().copied());
         Ok(Self { at: copy(&self.at)?, error: copy(&self.error)?, ..*self })
     }
 
-    /// A field of hints: each patch points to the same relative position among the patches of `base`.
+    /// Returns a field of hints: each patch points to the same relative position among the patches of `base`.
     pub fn proportional(width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -37,9 +37,9 @@ impl Field {
         Ok(field)
     }
 
-    /// The field at twice the resolution, as hints. Each match is twice the coarse match plus the parity of the fine
-    /// position, clamped to `base`. Where the finer image has more than twice the patches of the coarse image, the
-    /// patches beyond continue the match of the last coarse patch.
+    /// Returns the field at twice the resolution, as hints. Each match is twice the coarse match plus the parity of
+    /// the fine position, clamped to `base`. If the finer image has more than twice the patches of the coarse image,
+    /// the extra patches continue the match of the last coarse patch.
     pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -54,8 +54,8 @@ impl Field {
         Ok(field)
     }
 
-    /// The inverse field: for each patch of `base`, the patch of this field that is matched to it, and their distance.
-    /// Hints are left out. If several patches share a match, the closest one is taken (the first, if equal).
+    /// Returns the inverse field: for each patch of `base`, the patch of this field that is matched to it, and their
+    /// distance. Hints are left out. If several patches share a match, the closest one is taken (the first, if equal).
     pub fn invert(&self, base: &Domain) -> Result<Self> {
         let mut inverse = Self::new(base.width, base.height)?;
         for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {
@@ -78,7 +78,7 @@ impl Field {
         }
     }
 
-    /// Sum of the distances of matched patches.
+    /// Returns the sum of the distances of matched patches.
     pub fn energy(&self) -> f64 {
         self.error.iter().filter(|&&e| e != u32::MAX).map(|&e| f64::from(e)).sum()
     }
@@ -91,7 +91,8 @@ mod tests {
     #[test]
     fn identity_survives_upsampling_to_odd_sizes_and_inversion() {
         for (w, h) in [(6usize, 5usize), (7, 4), (1, 1), (13, 9)] {
-            // Patches of width 5 in images of (w + 4) × (h + 4) pixels, halved: the coarse image has fewer patches.
+            // With patches of width 5, an image of (w + 4) × (h + 4) pixels has w × h patches. The image of half the
+            // size has less than half as many patches along each side.
             let (cw, ch) = (((w + 4) / 2).saturating_sub(4).max(1), ((h + 4) / 2).saturating_sub(4).max(1));
             let coarse_base = Domain::new(cw, ch, 1, None, false).unwrap();
             let base = Domain::new(w, h, 1, None, false).unwrap();

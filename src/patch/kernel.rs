@@ -1,13 +1,13 @@
-//! Distance between two patches with early exit; the only file of this engine with `unsafe` code.
+//! Computes the distance between two patches, with early exit; the only file of the patch engine with `unsafe` code.
 //!
-//! Both versions add the same integers in 32 bits and stop after the same row, so they agree to the bit. [`Quantiser`]
-//! (see `quantised.rs`) keeps the sum below 2³¹.
+//! The portable and the AVX2 version add the same integers in 32 bits and stop after the same row, so they agree to
+//! the bit. [`Quantiser`] (see `quantised.rs`) keeps the sum below 2³¹.
 //!
 //! [`Quantiser`]: super::Quantiser
 
 use crate::simd::Level;
 
-/// The instruction set to compute with.
+/// The instruction set with which distances are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kernel(Level);
 
@@ -19,13 +19,13 @@ pub struct Patch<'a> {
 }
 
 impl Kernel {
-    /// The fastest kernel on this machine.
+    /// Returns the fastest kernel on this machine.
     pub fn detect() -> Self {
         Self(Level::widest())
     }
 
-    /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row in which
-    /// the sum reaches `limit`.
+    /// Returns the sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row
+    /// in which the sum reaches `limit`.
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
         let end = |p: &Patch| (rows - 1) * p.row_len + run;
@@ -77,7 +77,7 @@ unsafe fn avx2(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
                 sums = _mm256_add_epi32(sums, _mm256_zextsi128_si256(_mm_madd_epi16(d, d)));
             }
         }
-        // Add the eight lanes.
+        // Add the eight lanes of `sums`.
         let half = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256::<1>(sums));
         let pair = _mm_add_epi32(half, _mm_unpackhi_epi64(half, half));
         let one = _mm_add_epi32(pair, _mm_shuffle_epi32::<1>(pair));

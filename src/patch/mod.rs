@@ -1,19 +1,20 @@
 //! Patch matching: the nearest-neighbour field between two multi-channel images, and operations on it.
 //!
-//! The engine of Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization of 3D Renderings", §3.3-3.4. It
-//! is independent of the meaning of the channels: a [`QuantisedImage`] holds colour and guide channels multiplied by
-//! their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit with and without
-//! SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their borders between
-//! sweeps, with random numbers that depend on position only, so the field does not depend on the number of threads.
-//! [`Table`] is an alternative search that is not PatchMatch.
+//! This is the engine of Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization of 3D Renderings",
+//! §3.3-3.4. It is independent of the meaning of the channels: a [`QuantisedImage`] holds colour and guide channels
+//! multiplied by their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit
+//! with and without SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their
+//! borders between sweeps. Its random numbers depend on position only, so the field does not depend on the number of
+//! threads. [`Table`] is an alternative search, a k-d tree.
 //!
-//! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has `(W -
-//! w + 1) × (H - w + 1)` patches of width `w`.
+//! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has
+//! `(W - w + 1) × (H - w + 1)` patches of width `w`.
 //!
-//! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent on
-//! distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
-//! exemplar and target take 32 bytes per pixel each. They exceed the caches, but tiles fit. A neighbour whose match
-//! continues a patch's own match offers no new candidate, so sweeps become faster as a field becomes more coherent.
+//! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent
+//! on distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
+//! exemplar and target take 32 bytes per pixel each. They exceed the caches, but tiles fit. If a neighbour's match and
+//! a patch's own match continue each other, the neighbour offers no new candidate, so sweeps become faster as a field
+//! becomes more coherent.
 //!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 

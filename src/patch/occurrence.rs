@@ -1,10 +1,10 @@
-//! The occurrence map of an image and the penalty of further use: Kaspar et al., "Self Tuning Texture Optimization"
-//! (2015).
+//! Counts how often each pixel of an image is used by matches, and penalises further use: Kaspar et al., "Self Tuning
+//! Texture Optimization" (2015).
 //!
-//! The occurrence Ω of a pixel is the number of matches that contain it, and ω its value under uniform usage of all
-//! allowed patches. The penalty of a match, added to its distance, is λ times the mean of Ω / ω over its pixels. ω is
-//! computed per pixel, since fewer patches contain pixels near a border: uniform usage then has the same penalty
-//! everywhere, and an identity field remains an identity.
+//! The occurrence Ω of a pixel is the number of matches that contain the pixel. Under uniform usage of all allowed
+//! patches, the occurrence of this pixel would be ω. The penalty of a match, added to its distance, is λ times the
+//! mean of Ω / ω over its pixels. ω is computed per pixel, since fewer patches contain pixels near a border: uniform
+//! usage then has the same penalty everywhere, and an identity field remains an identity.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -15,12 +15,12 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// The occurrence map. A search on one thread updates it with every match that changes.
 pub struct Occurrence {
-    /// Width of the image in pixels, and of a patch.
+    /// Width of the image (`width`) and of a patch (`patch`), in pixels.
     width: usize,
     patch: usize,
-    /// Ω of each pixel.
+    /// Ω of each pixel: the number of matches that contain it.
     uses: Vec<AtomicU32>,
-    /// Penalty per use of each pixel.
+    /// Penalty of one use of each pixel.
     each: Vec<f32>,
 }
 
@@ -43,7 +43,7 @@ impl Occurrence {
         Ok(occurrence)
     }
 
-    /// The penalty of a match at `position`.
+    /// Returns the penalty of a match at `position`.
     pub fn cost(&self, position: u32) -> u32 {
         let cost: f32 =
             pixels(position, self.width, self.patch).map(|i| self.uses[i].load(Relaxed) as f32 * self.each[i]).sum();
@@ -59,7 +59,7 @@ impl Occurrence {
         self.count(to, 1);
     }
 
-    /// Adds to the uses of the pixels of a match, wrapping.
+    /// Adds `times`, with wrap-around, to the uses of the pixels of a match; `u32::MAX` subtracts one use.
     fn count(&self, position: u32, times: u32) {
         pixels(position, self.width, self.patch).for_each(|i| {
             self.uses[i].fetch_add(times, Relaxed);
@@ -67,7 +67,7 @@ impl Occurrence {
     }
 }
 
-/// The pixel indices of a patch in an image of `width`.
+/// Returns the pixel indices of a patch in an image of `width` pixels per row.
 fn pixels(position: u32, width: usize, patch: usize) -> impl Iterator<Item = usize> {
     let (x, y) = unpack(position);
     (y..y + patch).flat_map(move |row| row * width + x..row * width + x + patch)
@@ -85,18 +85,18 @@ mod tests {
         let occurrence = Occurrence::new(&identity, &allowed, 3, 1000.0).unwrap();
         let costs = |o: &Occurrence| allowed.members().iter().map(|&at| o.cost(at)).collect::<Vec<u32>>();
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1), "{:?}", costs(&occurrence));
-        // Twice as many patches, used uniformly.
+        // With twice as many patches, uniform usage costs the same.
         let twice = Field { width: 14, height: 5, at: [&identity.at[..]; 2].concat(), error: vec![0; 70] };
         let even = Occurrence::new(&twice, &allowed, 3, 1000.0).unwrap();
         assert!(costs(&even).iter().all(|c| c.abs_diff(1000) <= 1));
-        // One match moves from one end to the other and back.
+        // Move one match from one end to the other and back.
         let (from, to) = (pack(0, 0), pack(6, 4));
         occurrence.replace(from, to);
         assert!(occurrence.cost(from) < 900 && occurrence.cost(to) > 1100);
         assert!(occurrence.cost(pack(3, 2)).abs_diff(1000) <= 1);
         occurrence.replace(to, from);
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1));
-        // For any weight, penalty plus distance fits into one integer.
+        // For any weight, the sum of penalty and distance fits into one integer.
         let heavy = Occurrence::new(&identity, &allowed, 3, 1e30).unwrap();
         assert!(heavy.cost(from) <= i32::MAX as u32 / 2 + 1);
         assert_eq!(Occurrence::new(&Field::new(3, 3).unwrap(), &allowed, 3, 1.0).unwrap().cost(from), 0);

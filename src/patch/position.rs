@@ -1,4 +1,4 @@
-//! Positions of patches, packed into one integer.
+//! Packs the position of a patch into one integer.
 
 /// Marks a patch without a match.
 pub const NONE: u32 = u32::MAX;

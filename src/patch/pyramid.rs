@@ -1,15 +1,15 @@
-//! Resolution levels, each half of the next.
+//! Pyramid levels, each with half the resolution of the next finer one.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 
-/// Side of an image after `level` halvings; at least 1.
+/// Returns the side of an image after `level` halvings; at least 1.
 pub fn level_size(side: usize, level: usize) -> usize {
     (side >> level).max(1)
 }
 
-/// Number of levels for which the shortest side has at least `smallest` pixels; between 1 and `wanted`.
+/// Returns the number of levels on which the shortest side has at least `smallest` pixels; between 1 and `wanted`.
 pub fn level_count(shortest_side: usize, smallest: usize, wanted: usize) -> usize {
     (1..wanted.max(1)).take_while(|&l| level_size(shortest_side, l) >= smallest).count() + 1
 }

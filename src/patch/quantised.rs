@@ -1,11 +1,11 @@
-//! Images quantised for matching.
+//! Images whose channels are quantised for matching.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 
-/// Samples per pixel are padded to a multiple of this: half an AVX2 register of `i16`.
+/// The number of samples per pixel is padded to a multiple of this: half an AVX2 register of `i16`.
 pub const LANES: usize = 8;
 
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
@@ -14,7 +14,7 @@ pub const LANES: usize = 8;
 pub struct QuantisedImage {
     pub width: usize,
     pub height: usize,
-    /// Samples per pixel, a multiple of [`LANES`]; samples beyond the channels are 0.
+    /// Number of samples per pixel, a multiple of [`LANES`]; samples beyond the channels are 0.
     pub lanes: usize,
     pub data: Vec<i16>,
 }
@@ -49,22 +49,22 @@ pub struct Quantiser {
 }
 
 impl Quantiser {
-    /// Quantisers for channels of the given weights (≥ 0, at least one positive), as fine as a patch of width `patch`
-    /// allows: the largest possible sum of squared differences stays below 2³¹.
+    /// Returns quantisers for channels of the given weights (≥ 0, at least one positive), as fine as a patch of width
+    /// `patch` allows: the largest possible sum of squared differences stays below 2³¹.
     pub fn for_weights(weights: &[f64], patch: usize) -> Vec<Self> {
         let unit = Self::unit(weights, patch);
         weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
     }
 
-    /// The integer that a value of 1 at weight 1 becomes.
+    /// Returns the integer to which a value of 1 is quantised at weight 1, before rounding.
     pub fn unit(weights: &[f64], patch: usize) -> f64 {
         let total: f64 = weights.iter().sum();
-        // Rounding can lengthen each difference by one step; two percent leave room for that.
+        // Rounding can lengthen each difference by one step; the margin of two per cent leaves room for that.
         (0.98 * f64::from(i32::MAX) / ((patch * patch) as f64 * total)).sqrt()
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Rounds to nearest, as the value is non-negative, without calling the C library.
+        // Add one half to round to nearest, as the value is non-negative: this needs no call of the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

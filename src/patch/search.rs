@@ -1,7 +1,8 @@
 //! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
-//! The query image is divided into fixed tiles. A sweep visits each tile forwards and backwards. It uses the current
-//! matches inside the tile, and the matches from before the sweep outside it. All tiles are written back at the end.
+//! The query image is divided into fixed tiles. A sweep visits the patches of each tile forwards and then backwards.
+//! It uses the current matches inside the tile, and the matches from before the sweep outside it. All tiles are
+//! written back at the end.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -14,7 +15,7 @@ use crate::exec;
 use crate::job::Job;
 use crate::rng::{Rng, hash};
 
-/// Patches along the side of a tile: with 16 channels, a tile and its matches fit into a second-level cache.
+/// Number of patches along the side of a tile: with 16 channels, a tile and its matches fit into a second-level cache.
 const TILE: usize = 48;
 
 /// The search for matches of patches of `query` among patches of `base`.
@@ -44,7 +45,7 @@ pub struct Sweep {
 }
 
 impl Search<'_> {
-    /// Distance between a patch of the query and one of the base, with early exit at `limit`.
+    /// Returns the distance between a patch of the query and a patch of the base, with early exit at `limit`.
     #[inline]
     pub fn distance(&self, x: usize, y: usize, match_x: usize, match_y: usize, limit: u32) -> u32 {
         fn at(image: &QuantisedImage, x: usize, y: usize) -> Patch<'_> {
@@ -54,7 +55,7 @@ impl Search<'_> {
         self.kernel.distance(at(self.query, x, y), at(self.base, match_x, match_y), run, self.patch, limit)
     }
 
-    /// The usage penalty of a match at a position; 0 for [`NONE`], or without penalties.
+    /// Returns the usage penalty of a match at a position; 0 for [`NONE`], or if there are no penalties.
     fn cost(&self, position: u32) -> u32 {
         match self.occurrence {
             Some(occurrence) if position != NONE => occurrence.cost(position),
@@ -62,7 +63,8 @@ impl Search<'_> {
         }
     }
 
-    /// Recomputes the distances of the patches for which `wanted` holds and that have an allowed match.
+    /// Recomputes the distances of the patches for which `wanted` holds. A patch without an allowed match gets
+    /// `u32::MAX`.
     pub fn rescore(&self, field: &mut Field, job: Job, wanted: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let width = field.width;
         let at = &field.at;
@@ -81,7 +83,7 @@ impl Search<'_> {
         })
     }
 
-    /// Compares every active patch with every allowed one: for images of a few thousand pixels.
+    /// Compares every active patch with every allowed patch: for images of a few thousand pixels.
     pub fn exhaustive(&self, field: &mut Field, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let width = field.width;
         let rows = exec::map(field.height, job, |y| {
@@ -102,7 +104,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Lowers the distances of the patches for which `active` holds; without usage penalties, no distance rises.
+    /// Improves the matches of the patches for which `active` holds, by propagation and random search. Without usage
+    /// penalties, no distance rises.
     pub fn sweep(
         &self,
         field: &mut Field,
@@ -135,10 +138,10 @@ impl Search<'_> {
 }
 
 impl Search<'_> {
-    /// Lets each active patch continue a neighbour's match if that lowers its cost: its distance, plus `seam` for each
-    /// of its four neighbours whose match it does not continue. Runs one forward and one backward round of iterated
-    /// conditional modes (Besag 1986). It searches for no new matches, and the sum of distances and seams of a tile
-    /// never rises.
+    /// Lets each active patch continue a neighbour's match if that lowers the patch's cost. The cost is the distance,
+    /// plus `seam` for each of the four neighbours whose match the patch does not continue. Runs one forward and one
+    /// backward round of iterated conditional modes (Besag 1986). It searches for no new matches, and the sum of
+    /// distances and seams of a tile never rises.
     pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let tiles = exec::map(columns * rows, job, |t| {
@@ -150,7 +153,7 @@ impl Search<'_> {
     }
 }
 
-/// A copy of a part of the field.
+/// A copy of a rectangular part of the field.
 struct Tile {
     x0: usize,
     y0: usize,
@@ -177,7 +180,8 @@ impl Tile {
         }
     }
 
-    /// Searches forwards and backwards; returns whether there was anything to do.
+    /// Runs a sweep over the active patches of this tile, forwards and then backwards. Returns whether any patch was
+    /// searched.
     fn search(
         &mut self,
         search: &Search,
@@ -197,7 +201,7 @@ impl Tile {
                 continue;
             }
             busy = true;
-            // Compare distances including penalties, but store them without.
+            // Compare distances including usage penalties, but store distances without them.
             let total = self.error[i].saturating_add(search.cost(self.at[i]));
             let mut best = Best { at: self.at[i], error: total, x, y };
 
@@ -226,7 +230,7 @@ impl Tile {
         busy
     }
 
-    /// Joins forwards and backwards; returns whether anything changed.
+    /// Runs [`Search::join`] on this tile, forwards and then backwards. Returns whether any match changed.
     fn join(&mut self, search: &Search, before: &Field, seam: u32, active: &(impl Fn(usize) -> bool + Sync)) -> bool {
         let count = self.width * self.height;
         let mut changed = false;
@@ -271,7 +275,7 @@ impl Tile {
         changed
     }
 
-    /// The match of a patch: the current one inside this tile, the one before the sweep outside it.
+    /// Returns the match of a patch: inside this tile the current match, outside it the match from before the sweep.
     fn neighbour(&self, before: &Field, x: isize, y: isize) -> Option<u32> {
         if x < 0 || y < 0 || x as usize >= before.width || y as usize >= before.height {
             return None;
@@ -296,8 +300,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling
-    /// radii.
+    /// Tries uniformly random positions if there is no match yet. Then tries positions around the best match, at
+    /// falling radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {

@@ -1,5 +1,5 @@
-//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975). A query descends to one
-//! leaf without backtracking, and is compared in full with the patches around that leaf in tree order.
+//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975). A query patch descends
+//! to one leaf without backtracking, and is compared in full with the patches around this leaf in tree order.
 //!
 //! Means carry little information about texture, so the matches are worse than PatchMatch's, but no iterations and no
 //! initial field are needed.
@@ -17,7 +17,7 @@ use crate::job::Job;
 /// Maximum number of patches in a leaf.
 const LEAF: usize = 8;
 
-/// The mean of each channel over each patch.
+/// The mean of each channel over each patch of an image.
 pub struct Means {
     width: usize,
     lanes: usize,
@@ -48,7 +48,8 @@ impl Means {
     }
 }
 
-/// The patches of one image in k-d tree order, in which similar patches are mostly close.
+/// The patches of one image in the order of the tree's leaves. In this order, similar patches are mostly close to each
+/// other.
 pub struct Table {
     order: Vec<u32>,
     /// Channel and value of each split; the children of node `i` are `2i + 1` and `2i + 2`.
@@ -56,7 +57,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Sorts the members of `domain`.
+    /// Builds the tree over the members of `domain`.
     pub fn new(means: &Means, domain: &Domain, job: Job) -> Result<Self> {
         let mut order = domain.members().to_vec();
         let leaves = order.len().div_ceil(LEAF).max(1).next_power_of_two();
@@ -82,7 +83,8 @@ impl Table {
         Ok(Self { order, splits })
     }
 
-    /// Index in the order near which patches with similar means lie.
+    /// Descends the tree. Returns the index in `order` of the middle of the leaf, near which patches with similar
+    /// means lie.
     fn leaf_of(&self, means: &[i16]) -> usize {
         let (mut low, mut high, mut node) = (0, self.order.len(), 0);
         while let Some(&(channel, value)) = self.splits.get(node) {
@@ -97,7 +99,7 @@ impl Table {
     }
 }
 
-/// The channel of the widest range in a sample of the members.
+/// Returns the channel of the widest range in a sample of the members.
 fn widest(means: &Means, members: &[u32]) -> usize {
     let step = (members.len() / 256).max(1);
     let spread = |channel: usize| {
@@ -105,12 +107,12 @@ fn widest(means: &Means, members: &[u32]) -> usize {
         let (low, high) = values.fold((i16::MAX, i16::MIN), |(l, h), v| (l.min(v), h.max(v)));
         i32::from(high) - i32::from(low)
     };
-    // Ties go to the first, so that padding is never chosen.
+    // Of equal ranges, take the first channel, so that padding is never chosen.
     (0..means.lanes).rev().max_by_key(|&c| spread(c)).unwrap_or(0)
 }
 
 impl Search<'_> {
-    /// Compares each active patch with the `tries` nearest allowed patches in table order; no distance rises.
+    /// Compares each active patch with `tries` allowed patches that are nearest in tree order; no distance rises.
     pub fn look_up(
         &self,
         field: &mut Field,
@@ -129,8 +131,7 @@ impl Search<'_> {
                 let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
                     let middle = table.leaf_of(query_means.of(pack(x, y))).min(count - 1);
-                    // Walk outwards on both sides, skipping patches that are not allowed, for a bounded number of
-                    // steps.
+                    // Walk outwards on both sides for a bounded number of steps. Skip patches that are not allowed.
                     let mut left = tries;
                     for step in 0..16 * tries {
                         let at = if step % 2 == 0 { middle + step / 2 } else { middle.wrapping_sub(step / 2 + 1) };
@@ -194,7 +195,8 @@ mod tests {
         };
         let mut field = Field::new(26, 16).unwrap();
         search.look_up(&mut field, &table, &means, 2 * LEAF, job.job(), |_| true).unwrap();
-        // A patch whose mean equals that of a split may lie on its other side: these few ties are missed.
+        // A patch whose mean equals the value of a split may lie on the other side of the split: these few patches are
+        // missed.
         let found = |(i, &at): (usize, &u32)| at == pack(i % 26 + 7, i / 26 + 11);
         assert!(field.at.iter().enumerate().filter(|&p| found(p)).count() > 26 * 16 * 95 / 100);
         assert!(field.at.iter().zip(&field.error).enumerate().all(|(i, (at, &e))| (e == 0) == found((i, at))));

@@ -1,5 +1,5 @@
-//! Reconstructs the image from a field: the average of the pixels that overlapping matches place at each position
-//! (Algorithm 1).
+//! Reconstructs the image from a field by Algorithm 1: averages the pixels that overlapping matches place at each
+//! position.
 
 use super::field::Field;
 use super::position::{NONE, pack, unpack};
@@ -8,30 +8,30 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Combination of the pixels placed at the same position.
+/// How the pixels placed at the same position are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vote {
     /// The mean, as in the paper.
     Plain,
-    /// The mean weighted by `1 / (1 + E / mean E)`.
+    /// The mean weighted by `1 / (1 + E / mean E)`, where E is the distance of a match.
     Weighted,
-    /// The pixel closest to the mean: introduces no new colours, so texture keeps its contrast.
+    /// The pixel whose colour is closest to the mean: introduces no new colours, so texture keeps its contrast.
     Nearest,
-    /// The pixel placed most often (ties: the one closest to the mean): where two pieces of the exemplar meet, each
+    /// The pixel placed most often (ties: the one closest to the mean). Where two pieces of the exemplar meet, each
     /// stays intact up to the seam.
     Majority,
 }
 
 /// A distinct exemplar pixel placed at a position, with its votes.
 struct Ballot {
-    /// Source position relative to the target position, wrapping: equal for patches that continue each other.
+    /// Packed source position minus packed target position, wrapping: equal for patches that continue each other.
     offset: u32,
     count: usize,
     weight: f64,
 }
 
-/// Reconstructs each pixel of `out` for which `wanted` holds from the matches in `style`; pixels without a match keep
-/// their value. Where all matches agree, the result equals the exemplar's pixel to the bit.
+/// Reconstructs each pixel of `out` for which `wanted` holds from the matched pixels of `style`; pixels without a
+/// match keep their value. Where all matches agree, the result equals the exemplar's pixel to the bit.
 pub fn vote(
     out: &mut Image,
     field: &Field,
@@ -51,7 +51,7 @@ pub fn vote(
                 let (px, py) = unpack(offset.wrapping_add(pack(x, y)));
                 style.pixel(px, py)
             };
-            // Fast path: a single piece of the exemplar covers most positions.
+            // Fast path for most pixels: all patches over the pixel place the same exemplar pixel there.
             if let Some(offset) = common_offset(field, patch, x, y) {
                 pixel.copy_from_slice(colour(offset));
                 continue;
@@ -88,7 +88,7 @@ pub fn vote(
     })
 }
 
-/// Collects the exemplar pixels that the patches over a position place there; `weight(i)` is the weight of patch `i`.
+/// Collects the exemplar pixels that the patches over a pixel place there; `weight(i)` is the weight of patch `i`.
 #[inline(always)]
 fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usize; 2], weight: impl Fn(usize) -> f64) {
     ballots.clear();
@@ -108,7 +108,8 @@ fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usiz
     }
 }
 
-/// The source offset on which all matches over a position agree; `None` if they differ or one is missing.
+/// Returns the offset from target to source that all patches over a pixel share; `None` if the offsets differ or a
+/// patch has no match.
 #[inline]
 fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32> {
     let (columns, rows) = (fields_over(x, patch, field.width), fields_over(y, patch, field.height));
@@ -121,12 +122,13 @@ fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32>
     (first != NONE && rows.into_iter().all(agrees)).then_some(offset)
 }
 
-/// The exemplar pixel on which all matches over a position agree; `None` if they differ or one is missing.
+/// Returns the exemplar pixel that all patches over target pixel (`x`, `y`) place there; `None` if the patches
+/// disagree or one of them has no match.
 pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
     common_offset(field, patch, x, y).map(|offset| unpack(offset.wrapping_add(pack(x, y))))
 }
 
-/// The patches along one axis that cover a pixel.
+/// Returns the range of patches along one axis that cover a pixel.
 fn fields_over(pixel: usize, patch: usize, count: usize) -> std::ops::Range<usize> {
     (pixel + 1).saturating_sub(patch)..(pixel + 1).min(count)
 }
@@ -136,7 +138,7 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Five patches over one pixel: two place 0 there, the others 0.5, 1 and 1 from different positions.
+    /// Of the five patches over one pixel, two place 0 there; the others place 0.5, 1 and 1 from different positions.
     #[test]
     fn votes_are_averaged_or_chosen_from() {
         let style = Image::from_fn(40, 5, |x, _| [[0.0, 0.5, 1.0, 1.0][(x.clamp(10, 39) - 10) / 8]]).unwrap();

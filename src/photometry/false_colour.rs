@@ -1,23 +1,23 @@
-//! False colour: renders a luminance or illuminance image in colours of visible order, with a scale bar.
+//! False colour: shows a luminance or illuminance image by an ordered scale of colours, with a scale bar.
 //!
 //! The colours run from dark violet over red to light yellow in OKLab (Ottosson 2020). Lightness increases uniformly
-//! with the value, so the order is visible also to the colour-blind and in greyscale print; hue helps to distinguish
-//! steps.
+//! with the value, so the order is visible also to colour-blind people and in greyscale print. Hue helps to tell steps
+//! apart.
 
 use super::glyphs::{self, draw};
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour};
 use glam::Vec3;
 
-/// The mapping from values to colours.
+/// How values map to positions on the colour scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     Linear,
-    /// All decades have equal width.
+    /// Equal ratios of values have equal distances on the scale.
     Logarithmic,
 }
 
-/// The quantity of the values.
+/// The quantity that the image holds, which selects the unit on the scale bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Luminance, in cd/m².
@@ -30,12 +30,12 @@ pub enum Unit {
 pub struct Params {
     pub scale: Scale,
     pub unit: Unit,
-    /// Value of the darkest colour, ≥ 0. On a logarithmic scale, 0 selects a thousandth of the value of the lightest
-    /// colour.
+    /// Value of the darkest colour, ≥ 0, in the unit of the image. On a logarithmic scale, 0 selects a thousandth of
+    /// the maximum.
     pub minimum: f64,
-    /// Value of the lightest colour, > `minimum`; 0 selects the largest value of the image.
+    /// Value of the lightest colour, > `minimum`, in the unit of the image; 0 selects the largest value of the image.
     pub maximum: f64,
-    /// Whether to draw the scale bar beside the image, which widens it.
+    /// Whether to draw the scale bar to the right of the image, which makes the output wider.
     pub bar: bool,
 }
 
@@ -45,20 +45,21 @@ impl Default for Params {
     }
 }
 
-/// Colour of pixels without a value, such as those between the triangles of a mesh's map.
+/// Linear colour of pixels whose value is NaN, such as those between the triangles in an illuminance map of a mesh.
 const NO_VALUE: Vec3 = Vec3::splat(0.05);
 const PAPER: Vec3 = Vec3::splat(1.0);
 const INK: Vec3 = Vec3::ZERO;
 
-/// Linear RGB at a fraction of the scale, in `[0, 1]`.
+/// Returns the linear RGB colour at a position on the scale, 0 (darkest) to 1 (lightest).
 pub fn colour_of(share: f64) -> Vec3 {
     let t = share.clamp(0.0, 1.0) as f32;
     let lightness = 0.22 + 0.73 * t;
-    // Chroma follows the sRGB gamut along the way: small at the ends, largest at the reds.
+    // Let the chroma follow the sRGB gamut: small at both ends of the scale, largest at the reds.
     let chroma = 0.19 * (4.0 * t * (1.0 - t)).sqrt() * (1.0 - 0.25 * t) + 0.03 + 0.05 * t;
     let hue = (-75.0 + 180.0 * t).to_radians();
     let wanted = oklab_to_linear(lightness, chroma * hue.cos(), chroma * hue.sin());
-    // Reduce chroma, never lightness, until the colour is in gamut; bisect, since the gamut has no closed form.
+    // Reduce the chroma, never the lightness, until the colour is in gamut. Bisect, since the gamut has no closed
+    // form.
     if inside(wanted) {
         return wanted.clamp(Vec3::ZERO, Vec3::ONE);
     }
@@ -75,7 +76,7 @@ fn inside(rgb: Vec3) -> bool {
     rgb.min_element() >= -1e-4 && rgb.max_element() <= 1.0 + 1e-4
 }
 
-/// OKLab to linear RGB (Ottosson 2020, "A perceptual color space for image processing").
+/// Converts OKLab to linear RGB (Ottosson 2020, "A perceptual color space for image processing").
 fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
     let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;
     let m = lightness - 0.105_561_346 * a - 0.063_854_17 * b;
@@ -88,14 +89,14 @@ fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
     )
 }
 
-/// The image in false colour, linear RGB. Uses the luminance of three-channel images and the values of single-channel
-/// ones.
+/// Renders the image in false colour, as linear RGB. Images with three channels are shown by their luminance, images
+/// with one channel by their values.
 ///
 /// # Errors
-/// An invalid range; no value above 0 where the range is derived from the image.
+/// An invalid range of values; no value above 0 although the range is to be taken from the image.
 pub fn render(image: &Image, params: &Params) -> Result<Image> {
     let range = Range::new(params, image)?;
-    // With 256 steps, the difference between neighbouring colours is too small to see.
+    // Use 256 colours: the difference between neighbours is then too small to see.
     let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
     let seen = |x: usize, y: usize| {
         let share = range.share(f64::from(value(image, x, y)));
@@ -112,7 +113,7 @@ pub fn render(image: &Image, params: &Params) -> Result<Image> {
     Ok(out)
 }
 
-/// The width in pixels that the scale bar adds to the image; 0 without a bar.
+/// Width in pixels that the scale bar adds to the image; 0 without a bar.
 pub fn bar_width(image: &Image, params: &Params) -> Result<usize> {
     Ok(if params.bar { Bar::new(&Range::new(params, image)?, params.unit, image.height).width } else { 0 })
 }
@@ -149,20 +150,20 @@ impl Range {
         Ok(Self { scale: params.scale, minimum, maximum })
     }
 
-    /// The position of a value on the scale, in `[0, 1]`; NaN stays NaN.
+    /// Returns the position of a value on the scale, clamped to `[0, 1]`; NaN stays NaN.
     fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.minimum) / (self.maximum - self.minimum),
-            // Put 0 at the dark end.
+            // Values up to 0 have no logarithm: show them with the darkest colour.
             Scale::Logarithmic if value <= 0.0 => 0.0,
             Scale::Logarithmic => (value / self.minimum).ln() / (self.maximum / self.minimum).ln(),
         };
         share.clamp(0.0, 1.0)
     }
 
-    /// The values at which the scale is labelled. Linear: multiples of a step that is 1, 2 or 5 times a power of ten,
-    /// at most `count + 1` of them. Logarithmic: at most `count` values, namely 1, 2 and 5 times the powers of ten, or
-    /// the powers of ten alone, or every second or fourth of these.
+    /// Returns the values at which the scale is labelled. A linear scale has at most `count + 1` labels, at multiples
+    /// of 1, 2 or 5 times a power of ten. A logarithmic scale has at most `count` labels: 1, 2 and 5 times the powers
+    /// of ten, or the powers of ten alone, or every second or fourth power of ten.
     fn ticks(&self, count: usize) -> Vec<f64> {
         let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
         let exponents =
@@ -170,7 +171,7 @@ impl Range {
         let within = |v: &f64| *v >= self.minimum * (1.0 - 1e-9) && *v <= self.maximum * (1.0 + 1e-9);
         match self.scale {
             Scale::Linear => {
-                // Choose the smallest round step that is wide enough.
+                // Choose the smallest round step that gives at most `count` intervals.
                 let wide = (self.maximum - self.minimum) / count.max(1) as f64;
                 let exponent = wide.log10().floor() as i32;
                 let steps = [(exponent, 1.0), (exponent, 2.0), (exponent, 5.0), (exponent + 1, 1.0)];
@@ -192,9 +193,9 @@ impl Range {
     }
 }
 
-/// The scale bar: a strip of colours on white, with ticks, numbers and the unit above.
+/// The layout in pixels of the scale bar: a strip of colours on white, with ticks, numbers, and the unit above.
 struct Bar {
-    /// Pixels per dot of a glyph.
+    /// Side in pixels of a dot of a glyph.
     dot: usize,
     width: usize,
     top: usize,
@@ -202,13 +203,13 @@ struct Bar {
     left: usize,
     right: usize,
     unit: &'static str,
-    /// The row and the text of each tick.
+    /// Row in the image, and text, of each tick.
     ticks: Vec<(usize, String)>,
 }
 
 impl Bar {
     fn new(range: &Range, unit: Unit, height: usize) -> Self {
-        // Glyphs are a twenty-fourth of the image in height, in whole pixels per dot.
+        // Glyphs are a twenty-fourth as high as the image, rounded down to whole pixels per dot.
         let dot = (height / (24 * glyphs::HEIGHT)).max(1);
         let line = (glyphs::HEIGHT + 2) * dot;
         let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));
@@ -246,7 +247,7 @@ impl Bar {
     }
 }
 
-/// The shortest text of a number, with an exponent if it would have many zeros.
+/// Returns the shortest text of a number, with an exponent if it would otherwise have many zeros.
 fn text(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }
@@ -256,8 +257,8 @@ fn text(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Lightness also increases uniformly in CIELAB, in which the map was not designed, and no two neighbours are
-    /// equal.
+    /// In CIELAB, which was not used to design the scale, lightness also increases nearly uniformly and no two
+    /// neighbours are equal.
     #[test]
     fn colours_are_in_perceptual_order() {
         let lightness: Vec<f32> = (0..=32).map(|i| colour::linear_to_lab(colour_of(f64::from(i) / 32.0)).x).collect();
@@ -278,11 +279,11 @@ mod tests {
         assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NO_VALUE);
         let log = Params { scale: Scale::Logarithmic, minimum: 1.0, maximum: 1e4, ..plain.clone() };
         assert!(close(at(&log, 0), 0.0) && close(at(&log, 1), 0.25) && close(at(&log, 2), 0.5));
-        // Colour images are shown by their luminance.
+        // A colour image is shown by its luminance.
         let green = Image::from_fn(1, 1, |_, _| [0.0, 100.0, 0.0]).unwrap();
         let shown = render(&green, &Params { maximum: 143.033_74, ..plain.clone() }).unwrap().rgb(0, 0);
         assert!(close(shown, 0.5), "{shown}");
-        // Invalid ranges are rejected.
+        // Invalid ranges give an error.
         let dark = Image::new(2, 2, 1).unwrap();
         for (image, params) in [
             (&dark, plain.clone()),
@@ -304,7 +305,7 @@ mod tests {
         assert_eq!([0.0, 0.5, 1500.0, 2e7, 1e-5].map(text), ["0", "0.5", "1500", "2e7", "1e-5"]);
     }
 
-    /// The bar is drawn beside images of any size, dark at the bottom and light at the top, with labels.
+    /// Beside images of any size, the bar is dark at the bottom and light at the top, and it has labels.
     #[test]
     fn the_bar_is_drawn() {
         let image = Image::from_fn(200, 300, |x, y| [(x * y) as f32]).unwrap();

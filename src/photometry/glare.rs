@@ -1,12 +1,12 @@
-//! Unified glare rating of a luminance image (CIE 117:1995): `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`, summed over the
-//! glare sources, with the luminance `L`, solid angle `ω` and position index `p` of each, and the background luminance
-//! `Lb`.
+//! Unified glare rating of a luminance image (CIE 117:1995): `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`. The sum runs
+//! over the glare sources with their luminance `L` in cd/m², solid angle `ω` in sr and position index `p`; `Lb` is the
+//! background luminance in cd/m².
 //!
-//! Glare sources are the connected regions brighter than a threshold: an emissive texture is not uniform, and a rating
-//! by the luminaire's mean would underestimate the perceived glare (Scheir et al. 2017). The background luminance is
-//! the mean over the rest of the image, weighted by its contribution to the illuminance at the eye; it is more
-//! accurate for wide images. The position index is Guth's above the line of sight, and that of Iwata and Tokura (1997)
-//! below it, as in `evalglare`.
+//! Glare sources are the connected regions brighter than a threshold. Rating each luminaire by its mean luminance
+//! would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The background
+//! luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the illuminance at
+//! the eye; a wider image makes it more accurate. The position index is Guth's above the line of sight, and that of
+//! Iwata and Tokura (1997) below, as in `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -15,36 +15,37 @@ use std::f64::consts::PI;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight points to its centre and is
-    /// horizontal.
+    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is horizontal, through the
+    /// centre of the image.
     pub fov_y: f64,
-    /// Luminance in cd/m² from which a pixel belongs to a glare source; 0 selects five times the mean of the image.
+    /// A pixel belongs to a glare source if its luminance in cd/m² is at least this value; 0 selects five times the
+    /// mean of the image.
     pub threshold: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// Unified glare rating; below 10 there is no discomfort, and `-∞` means that there is no source.
+    /// Unified glare rating. Below 10 glare causes no discomfort; `-∞` means that there is no glare source.
     pub ugr: f64,
-    /// Background luminance in cd/m².
+    /// Background luminance `Lb` in cd/m².
     pub background: f64,
-    /// The threshold used, in cd/m².
+    /// The luminance threshold used, in cd/m².
     pub threshold: f64,
     pub sources: Vec<Source>,
 }
 
-/// A glare source.
+/// A glare source: a connected region of pixels above the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
-    /// Mean luminance in cd/m².
+    /// Mean luminance `L` in cd/m².
     pub luminance: f64,
-    /// Solid angle in steradian. CIE 117 is valid for 0.0003 to 0.1 sr.
+    /// Solid angle `ω` in steradian. CIE 117 is valid for 0.0003 to 0.1 sr.
     pub solid_angle: f64,
-    /// Position index; 1 on the line of sight.
+    /// Position index `p`, which is 1 on the line of sight and grows away from it.
     pub position: f64,
 }
 
-/// Sums over a region of pixels.
+/// Sums over the pixels of a region.
 #[derive(Clone, Copy, Default)]
 struct Patch {
     solid_angle: f64,
@@ -52,7 +53,7 @@ struct Patch {
     direction: DVec3,
 }
 
-/// Rates an image of luminance (1 channel) or of linear RGB, in cd/m².
+/// Rates an image of luminance (1 channel) or of linear RGB, both in cd/m².
 ///
 /// # Errors
 /// An image that is empty or not finite; parameters out of range.
@@ -81,7 +82,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     Ok(Rating { ugr, background, threshold, sources })
 }
 
-/// Five times the mean luminance of the image over its solid angle.
+/// Returns five times the mean luminance of the image over its solid angle.
 fn default_threshold(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
     let (light, angle) = (0..pixels).fold((0.0, 0.0), |(light, angle), i| {
         let (_, omega) = view.pixel(i);
@@ -90,7 +91,8 @@ fn default_threshold(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &Vi
     5.0 * light / angle
 }
 
-/// Background luminance: the mean over the pixels, weighted by their illuminance at the eye.
+/// Returns the background luminance: the mean over the given pixels, weighted by the cosine at the eye and the solid
+/// angle.
 fn background(pixels: impl Iterator<Item = usize>, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
     let (mut light, mut weight) = (0.0, 0.0);
     for i in pixels {
@@ -101,7 +103,7 @@ fn background(pixels: impl Iterator<Item = usize>, luminance: &impl Fn(usize) ->
     if weight > 0.0 { light / weight } else { 0.0 }
 }
 
-/// Collects the glare sources by flood fill.
+/// Collects the glare sources by flood fill over pixels for which `glares` is true.
 fn sources(
     [width, height]: [usize; 2],
     luminance: &impl Fn(usize) -> f64,
@@ -145,7 +147,7 @@ fn sources(
     Ok(sources)
 }
 
-/// A pinhole camera that looks along -z, with y up.
+/// The view of the image: a pinhole camera that looks along -z, with y up.
 struct View {
     width: usize,
     centre: [f64; 2],
@@ -159,7 +161,7 @@ impl View {
         Self { width, centre: [width as f64 / 2.0, height as f64 / 2.0], pixel }
     }
 
-    /// Unit direction of a pixel, and its solid angle by the exact integral over its square.
+    /// Returns the unit direction of a pixel's centre, and the exact solid angle of the pixel.
     fn pixel(&self, i: usize) -> (DVec3, f64) {
         let x = ((i % self.width) as f64 - self.centre[0]) * self.pixel;
         let y = (self.centre[1] - (i / self.width) as f64) * self.pixel;
@@ -170,11 +172,12 @@ impl View {
     }
 }
 
-/// Position index of a direction; the line of sight is -z, and y is up.
+/// Returns the position index of a direction. The line of sight is -z, and y is up.
 pub fn position_index(direction: DVec3) -> f64 {
     let (side, up, ahead) = (direction.x, direction.y, -direction.z);
     if up >= 0.0 {
-        // Guth 1963: τ is the angle from the vertical, σ the angle from the line of sight, in degrees.
+        // Guth 1963: τ is the angle from the vertical in the image plane, σ the angle from the line of sight, in
+        // degrees.
         let tau = side.abs().atan2(up).to_degrees();
         let tau = if side == 0.0 && up == 0.0 { 0.0 } else { tau };
         let sigma = side.hypot(up).atan2(ahead).to_degrees();
@@ -182,7 +185,7 @@ pub fn position_index(direction: DVec3) -> f64 {
         let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
         (first + second).exp()
     } else {
-        // Iwata and Tokura 1997: a function of the distance from the line of sight relative to the distance ahead.
+        // Iwata and Tokura 1997: a function of the distance from the line of sight over the distance ahead.
         let ratio = side.hypot(up) / ahead.max(1e-9);
         let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
         (1.0 + factor * ratio).min(16.0)
@@ -193,7 +196,7 @@ pub fn position_index(direction: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// A view with a square bright region whose first pixel is given.
+    /// An image of 100 cd/m² with one square bright region, whose top-left pixel is `first` and whose side is `patch`.
     fn view(side: usize, first: [usize; 2], patch: usize, lamp: f32) -> Image {
         let inside = |v: usize, from: usize| v >= from && v < from + patch;
         let lit = |x: usize, y: usize| inside(x, first[0]) && inside(y, first[1]);
@@ -205,7 +208,8 @@ mod tests {
         let fov_y = 1.0f64;
         let params = Params { fov_y, threshold: 1000.0 };
         let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
-        // A tenth of the view's side, on the line of sight: ω = 4 asin(a² / (1 + a²)), with a half the side.
+        // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is ω = 4 asin(a² / (1 +
+        // a²)), where a is half its side at distance 1.
         let a = 0.1 * (fov_y / 2.0).tan();
         let omega = 4.0 * (a * a / (1.0 + a * a)).asin();
         let [source] = rating.sources[..] else { panic!("{:?}", rating.sources) };
@@ -213,7 +217,7 @@ mod tests {
         assert!((source.position - 1.0).abs() < 1e-3 && (rating.background - 100.0).abs() < 1e-9);
         let expected = 8.0 * (0.25 / 100.0 * 1e8 * omega).log10();
         assert!((rating.ugr - expected).abs() < 1e-2, "{} {expected}", rating.ugr);
-        // Two such lamps rate 8 log10(2) higher, up to their positions.
+        // Two equal lamps rate 8 log10(2) higher than one, up to the difference of their positions.
         let mut two = view(200, [60, 90], 20, 10_000.0);
         let other = view(200, [120, 90], 20, 10_000.0);
         two.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = a.max(*b));
@@ -228,7 +232,7 @@ mod tests {
         let ugr = |at: [usize; 2]| rate(&view(201, at, 11, 2e4), &params).unwrap().ugr;
         let (ahead, above, beside, below) = (ugr([95, 95]), ugr([95, 15]), ugr([15, 95]), ugr([95, 175]));
         assert!(ahead > above + 3.0 && ahead > beside + 2.0 && ahead > below + 2.0, "{ahead} {above} {beside} {below}");
-        // Guth: at 10° straight up, p = exp((35.2 - 1.22) 0.01 + 21e-3) = 1.434.
+        // Guth's index at 10° straight above the line of sight is exp((35.2 - 1.22) 0.01 + 21e-3) = 1.434.
         let up = position_index(DVec3::new(0.0, 10f64.to_radians().sin(), -10f64.to_radians().cos()));
         assert!((up - (0.3398f64 + 0.021).exp()).abs() < 1e-6, "{up}");
     }

@@ -1,14 +1,15 @@
-//! A dot-matrix font for the numbers and units of a scale bar.
+//! A dot-matrix font for the numbers and units on the scale bar of false-colour images.
 
 use crate::image::Image;
 use glam::Vec3;
 
-/// Width and height of a glyph in dots, and the advance to the next glyph.
+/// Width and height of a glyph in dots, and the distance in dots from one glyph to the next.
 pub const WIDTH: usize = 3;
 pub const HEIGHT: usize = 5;
 pub const ADVANCE: usize = WIDTH + 1;
 
-/// Rows of a glyph from the top, three dots each.
+/// Returns the rows of a glyph from the top. The three low bits of each row are its dots; the leftmost dot is the
+/// highest of them.
 fn rows(letter: char) -> [u8; HEIGHT] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
@@ -34,7 +35,8 @@ fn rows(letter: char) -> [u8; HEIGHT] {
     }
 }
 
-/// Draws a text with its top left corner at `at`, each dot a square of `dot` pixels, clipped to the image.
+/// Draws a text with its top-left corner at `at`. Each dot is a square of `dot` pixels; dots outside the image are
+/// dropped.
 pub fn draw(image: &mut Image, text: &str, at: [usize; 2], dot: usize, ink: Vec3) {
     for (place, letter) in text.chars().enumerate() {
         for (row, bits) in rows(letter).into_iter().enumerate() {

@@ -1,5 +1,5 @@
-//! IES LM-63 files, all editions from 1986 to 2019, with type C photometry (the other types are for floodlights and
-//! car lamps).
+//! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with type C photometry. (Types A and B are for
+//! car lamps and floodlights.)
 
 use super::lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use super::luminaire::Luminaire;
@@ -7,10 +7,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
 
-/// Metres per foot [convention].
+/// Metres per foot. [convention]
 const FEET: f64 = 0.3048;
 
-/// The words of the lines after `TILT=`, each with its line number.
+/// The words after the line `TILT=`, each with its line number.
 struct Words<'a> {
     list: std::vec::IntoIter<(usize, &'a str)>,
     line: usize,
@@ -43,10 +43,10 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads a file from memory.
+/// Reads an IES file held in memory.
 ///
 /// # Errors
-/// `Format`, with the line number, if the file is malformed; `Unsupported` for types A and B.
+/// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of types A and B.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
     let mut lines = text.numbered();
@@ -64,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         words.list("a tilt factor", pairs, 1e9)?;
     }
 
-    // The standard puts ten numbers on one line and three on the next; in practice they are on any lines.
+    // The standard puts ten numbers on one line and three on the next, but files in practice break lines anywhere.
     let lamps = words.within("the number of lamps", 0.0, 1e6)?;
     let (line, word) = words.next("lumens per lamp")?;
     let lumens: f64 = number(line, word, "lumens per lamp")?;
@@ -101,7 +101,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     Ok(luminaire)
 }
 
-/// Reads the keywords up to the TILT line. Returns the number and the value of that line.
+/// Reads the keywords up to the line `TILT=`. Returns the number of that line and the text after `TILT=`.
 fn keywords<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
     luminaire: &mut Luminaire,
@@ -123,7 +123,8 @@ fn keywords<'a>(
     Err(at(last, "the file has no line TILT=: it is not an IES file, or it is truncated"))
 }
 
-/// Expands the planes to the full circle by the file's symmetry.
+/// Expands the stored planes to the full circle, by the symmetry that their range of angles implies. Returns the
+/// angles C in degrees, and the intensities plane by plane.
 fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Result<(Vec<f64>, Vec<f64>)> {
     let (first, last) = (angles[0], angles[angles.len() - 1]);
     if angles.windows(2).any(|w| w[0] >= w[1]) {
@@ -132,7 +133,7 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
     let plane = |i: usize| (angles[i], &candela[i * gammas..][..gammas]);
     let mut all: Vec<(f64, &[f64])> = (0..angles.len()).map(plane).collect();
     let mirror = |all: &mut Vec<(f64, &[f64])>, about: f64| {
-        // A plane on the mirror is its own image; skip images that coincide with an existing plane.
+        // Skip mirror images that coincide with an existing plane, such as a plane on the mirror.
         let images: Vec<_> = all.iter().map(|&(c, values)| ((2.0 * about - c).rem_euclid(360.0), values)).collect();
         let missing: Vec<_> = images.into_iter().filter(|(c, _)| all.iter().all(|(d, _)| d != c)).collect();
         all.extend(missing);
@@ -144,7 +145,7 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
             mirror(&mut all, 180.0);
         }
         (0.0, 180.0) => mirror(&mut all, 180.0),
-        // Symmetric about the plane through 90° and 270°.
+        // From 90° to 270°: the distribution is symmetric about the plane through 90° and 270°.
         (90.0, 270.0) => mirror(&mut all, 90.0),
         (0.0, end) if end > 180.0 && end < 360.0 => {}
         (0.0, 360.0) => {
@@ -177,7 +178,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
         plain(&l.manufacturer)
     );
     let _ = write!(text, "[LUMINAIRE] {}\r\nTILT=NONE\r\n", plain(&l.name));
-    // Absolute photometry is declared by -1 lumens.
+    // A flux of -1 lumens declares absolute photometry.
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { -1.0 };
     let planes = if round { 1 } else { l.planes.len() + 1 };
     let [length, width, height] = l.size;
@@ -193,7 +194,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     Ok(text)
 }
 
-/// Appends numbers, ten per line, so that old programs can read them.
+/// Appends numbers, ten per line so that old programs can read them.
 fn push(text: &mut String, values: &[f64]) {
     for line in values.chunks(10) {
         let words: Vec<String> = line.iter().map(|v| v.to_string()).collect();
@@ -201,7 +202,7 @@ fn push(text: &mut String, values: &[f64]) {
     }
 }
 
-/// Maximum size of a file in bytes.
+/// Maximum size in bytes of an IES file.
 pub const MAX_BYTES: usize = lines::MAX_BYTES;
 
 #[cfg(test)]
@@ -234,7 +235,7 @@ mod tests {
             let again = read(write(&l).unwrap().as_bytes()).unwrap();
             assert_eq!(again, l);
         }
-        // Tilt data are skipped; numbers may be on any lines.
+        // A file with tilt data, which are skipped, and with other line breaks.
         let tilted = QUARTER
             .replace("TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 0.5")
             .replace("0 45 90\n0 45 90", "0\n45 90 0\n45 90");
@@ -257,7 +258,7 @@ mod tests {
         says(&QUARTER.replace("100 80 0", "100 -80 0"), "an intensity is");
         says(&QUARTER.replace("100 80 0", "100 NaN 0"), "an intensity is");
         assert!(read(&[0xff, 0x00, 0x12]).is_err());
-        // Every truncated file is rejected without a panic.
+        // Every truncated file gives an error without a panic.
         for end in 0..QUARTER.len() - 3 {
             assert!(read(&QUARTER.as_bytes()[..end]).is_err(), "{end}");
         }

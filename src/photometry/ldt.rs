@@ -1,5 +1,5 @@
-//! EULUMDAT files (Stockmar 1990): one value per line in a fixed order; intensities in candela per 1000 lumens of the
-//! lamps.
+//! Reads and writes EULUMDAT files (Stockmar 1990). They have one value per line in a fixed order, and intensities in
+//! candela per 1000 lumens of the lamps.
 
 use super::lines::{Lines, MAX_ANGLES, MAX_VALUES, at, count, plain, within};
 use super::luminaire::Luminaire;
@@ -49,7 +49,7 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Rows<'a, I> {
     }
 }
 
-/// Reads a file from memory.
+/// Reads a EULUMDAT file held in memory.
 ///
 /// # Errors
 /// `Format`, with the line number, if the file is malformed.
@@ -70,11 +70,12 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
 
-    // Read the sizes in millimetres of the housing and of the luminous area; only the latter are used.
+    // Read the sizes in millimetres of the housing, which are not used, and of the luminous area.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
     let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
-    // The length runs along the plane C90. A round luminaire has its diameter as length, and width 0.
+    // EULUMDAT states the length along C = 90, so swap the sides. A round luminaire has its diameter as length and a
+    // width of 0; IES marks diameters by a negative sign.
     let size = if width == 0.0 { [-length, -length, height] } else { [width, length, height] }.map(|mm| mm / 1e3);
     rows.skip(2, "the light output ratio")?;
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
@@ -105,7 +106,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     Ok(luminaire)
 }
 
-/// The lamps of a luminaire.
+/// The lamps with which a luminaire was measured.
 struct LampSet {
     lumens: f64,
     watts: f64,
@@ -113,7 +114,8 @@ struct LampSet {
     absolute: bool,
 }
 
-/// Reads the lamp sets; the first is the measured one. A negative number of lamps declares absolute photometry.
+/// Reads the lamp sets and returns the first, with which the luminaire was measured. A negative number of lamps
+/// declares absolute photometry.
 fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) -> Result<LampSet> {
     let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
     let mut first = LampSet { lumens: 0.0, watts: 0.0, absolute: false };
@@ -130,7 +132,7 @@ fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) ->
     Ok(first)
 }
 
-/// Angles and intensities of all planes of the circle. By symmetry, each plane equals a stored plane.
+/// Returns the angles and the intensities of all planes of the circle. By symmetry, each plane equals a stored plane.
 fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let single = symmetry == 1;
     let planes = angles.len();
@@ -147,7 +149,7 @@ fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gam
     (shown, candela)
 }
 
-/// Indices of the planes that a file with the given symmetry stores.
+/// Returns the indices of the planes that a file with the given symmetry stores.
 fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usize>, &'static str> {
     match symmetry {
         0 => Ok((0..planes).collect()),
@@ -159,7 +161,7 @@ fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usiz
     }
 }
 
-/// The stored plane that equals a plane by symmetry.
+/// Returns the index of the stored plane that equals `plane` by symmetry.
 fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
     let about_0 = |p: usize| (planes - p) % planes;
     let about_90 = |p: usize| (planes + planes / 2 - p) % planes;
@@ -176,14 +178,15 @@ fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
     }
 }
 
-/// The luminaire without its light above the horizontal.
+/// Returns the luminaire without its light above the horizontal.
 fn below_horizon(l: &Luminaire) -> Luminaire {
     let is_below = |i: usize| l.gammas[i % l.gammas.len()] <= 90.0;
     let candela = l.candela.iter().enumerate().map(|(i, v)| if is_below(i) { *v } else { 0.0 });
     Luminaire { candela: candela.collect(), ..l.clone() }
 }
 
-/// Writes a luminaire as a file without symmetry, unless it has a single plane.
+/// Writes a luminaire as a EULUMDAT file: with rotational symmetry if it has a single plane, otherwise without
+/// symmetry.
 ///
 /// # Errors
 /// Those of [`Luminaire::check`].
@@ -191,7 +194,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;
     let single = l.planes.len() == 1;
-    // Expand a single plane to 24 planes, as is common for interior luminaires.
+    // For a single plane, list the angles of 24 planes, as is common for interior luminaires.
     let planes: Vec<f64> = if single { (0..24).map(|i| f64::from(i) * 15.0).collect() } else { l.planes.clone() };
     let step = |angles: &[f64]| match angles {
         [a, b, ..] if angles.windows(2).all(|w| (w[1] - w[0] - (b - a)).abs() < 1e-9) => b - a,
@@ -224,7 +227,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     for value in [down, output_ratio, 1.0, 0.0] {
         line(&value);
     }
-    // One lamp set; a negative number of lamps declares absolute photometry.
+    // Write one lamp set; a negative number of lamps declares absolute photometry.
     line(&1);
     line(&if l.lamp_flux > 0.0 { 1 } else { -1 });
     line(&"");
@@ -244,7 +247,8 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
 mod tests {
     use super::*;
 
-    /// A luminaire of `planes` C planes and two angles, with the given intensities of the stored planes at 90 degrees.
+    /// A luminaire of `planes` C planes with vertical angles of 0 and 90 degrees; `values` are the stored intensities
+    /// at 90 degrees.
     fn file(symmetry: usize, planes: usize, values: &[f64]) -> String {
         let mut lines: Vec<String> = ["Works", "3"].map(String::from).into();
         lines.push(symmetry.to_string());
@@ -265,13 +269,13 @@ mod tests {
     fn symmetries_are_unfolded() {
         let side = |symmetry, values: &[f64]| {
             let l = read(file(symmetry, 4, values).as_bytes()).unwrap();
-            // 2000 lm: twice the file's value per 1000 lm.
+            // At 2000 lm, the intensities are twice the file's values per 1000 lm.
             [0.0, 90.0, 180.0, 270.0].map(|c| l.intensity(c, 90.0) / 2.0)
         };
         assert_eq!(side(0, &[1.0, 2.0, 3.0, 4.0]), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(side(1, &[7.0]), [7.0; 4]);
         assert_eq!(side(2, &[1.0, 2.0, 3.0]), [1.0, 2.0, 3.0, 2.0]);
-        // From C270 through C0 to C90.
+        // Symmetry 3 stores the planes from C270 through C0 to C90.
         assert_eq!(side(3, &[4.0, 1.0, 2.0]), [1.0, 2.0, 1.0, 4.0]);
         assert_eq!(side(4, &[1.0, 2.0]), [1.0, 2.0, 1.0, 2.0]);
         let l = read(file(1, 24, &[7.0]).as_bytes()).unwrap();
@@ -320,7 +324,7 @@ mod tests {
         says(&good.replacen("\r\n4\r\n", "\r\n400000000\r\n", 1), "line 4: the number of C planes");
         says(&good.replacen("tube\r\n2000", "tube\r\nmany", 1), "\"many\"");
         says(&good.replacen("Works\r\n3", "Works\r\n9", 1), "line 2: the type is 9");
-        // Every file with missing lines is rejected.
+        // Every file with missing lines gives an error.
         let lines: Vec<&str> = good.lines().collect();
         for end in 0..lines.len() {
             assert!(read(lines[..end].join("\n").as_bytes()).is_err(), "{end}");

@@ -1,15 +1,15 @@
-//! Line-by-line parsing of text files with bounded sizes, and errors that name the line.
+//! Parses IES and EULUMDAT files line by line, with bounded sizes and errors that name the line.
 
 use crate::error::{Error, Result};
 use std::str::FromStr;
 
 /// Maximum size of a file in bytes: more than a distribution with a resolution of a tenth of a degree needs.
 pub const MAX_BYTES: usize = 64 << 20;
-/// Maximum number of angles along either axis of a distribution, and of values in it.
+/// Maximum number of angles along either axis of a distribution, and maximum number of its intensities.
 pub const MAX_ANGLES: usize = 4096;
 pub const MAX_VALUES: usize = 1 << 22;
 
-/// The lines of a file. Files that are not UTF-8 are read as Latin-1.
+/// The lines of a text file. A file that is not UTF-8 is read as Latin-1.
 pub struct Lines {
     text: String,
 }
@@ -31,23 +31,23 @@ impl Lines {
         Ok(Self { text })
     }
 
-    /// The lines, numbered from 1.
+    /// Iterates over the lines, trimmed, with their numbers from 1.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &str)> {
         self.text.lines().map(str::trim).zip(1..).map(|(line, number)| (number, line))
     }
 }
 
-/// An error at a line.
+/// Returns a `Format` error that names a line.
 pub fn at(line: usize, message: impl std::fmt::Display) -> Error {
     Error::format(format!("line {line}: {message}"))
 }
 
-/// Parses a number; a decimal comma counts as a point.
+/// Parses a number; a decimal comma counts as a decimal point.
 pub fn number<T: FromStr>(line: usize, word: &str, what: &str) -> Result<T> {
     word.replace(',', ".").parse().map_err(|_| at(line, format_args!("{what} is {word:?}, which is not a number")))
 }
 
-/// Parses a finite number in a range.
+/// Parses a finite number in `[low, high]`.
 pub fn within(line: usize, word: &str, what: &str, low: f64, high: f64) -> Result<f64> {
     let value: f64 = number(line, word, what)?;
     if value >= low && value <= high {
@@ -57,7 +57,7 @@ pub fn within(line: usize, word: &str, what: &str, low: f64, high: f64) -> Resul
     }
 }
 
-/// Parses a count in a range; files write counts as `3` or `3.0`.
+/// Parses a whole number in `[low, high]`, written as `3` or as `3.0`.
 pub fn count(line: usize, word: &str, what: &str, low: usize, high: usize) -> Result<usize> {
     let value = within(line, word, what, low as f64, high as f64)?;
     if value.fract() == 0.0 {
@@ -67,7 +67,7 @@ pub fn count(line: usize, word: &str, what: &str, low: usize, high: usize) -> Re
     }
 }
 
-/// Text restricted to a single line of a file.
+/// Replaces line breaks and other control characters by blanks, so that a text fits on one line of a file.
 pub fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

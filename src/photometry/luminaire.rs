@@ -1,29 +1,31 @@
-//! A luminaire's luminous intensity distribution in C planes, the content of IES and EULUMDAT files.
+//! A luminaire's luminous intensity distribution in C planes: the content of IES and EULUMDAT files.
 
 use crate::error::{Error, Result};
 
-/// Intensities in C planes (CIE 121): `γ` runs from 0° (straight down) to 180° (straight up), `C` around that axis.
+/// A luminous intensity distribution in C planes (CIE 121). `γ` runs from 0° (straight down) to 180° (straight up),
+/// and `C` turns around the vertical axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Luminaire {
     pub name: String,
     pub manufacturer: String,
     /// Vertical angles γ in degrees, ascending, within `[0, 180]`.
     pub gammas: Vec<f64>,
-    /// Angles C of the planes in degrees, ascending from 0 to below 360: all planes of the circle.
+    /// Angles C of the planes in degrees, ascending from 0 to below 360. They cover the full circle: no symmetry is
+    /// implied.
     pub planes: Vec<f64>,
-    /// Intensity in candela, plane by plane.
+    /// Intensities in candela: for each plane in turn, one per vertical angle.
     pub candela: Vec<f64>,
-    /// Rated flux of the lamps in lumens; 0 if the file has absolute intensities (absolute photometry).
+    /// Rated flux of the lamps in lumens; 0 if the intensities are absolute (absolute photometry).
     pub lamp_flux: f64,
-    /// Electric power in watts including the ballast; 0 if unknown.
+    /// Electric power in watts, including the ballast; 0 if unknown.
     pub watts: f64,
-    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for the diameters
-    /// of round openings, as in IES.
+    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis. As in IES, a negative
+    /// value is the diameter of a round opening.
     pub size: [f64; 3],
 }
 
 impl Luminaire {
-    /// A Lambertian disc or panel that emits a flux downwards: `I = flux / π · cos γ`.
+    /// A Lambertian disc or panel that emits `flux` lumens downwards: `I = flux / π · cos γ`.
     pub fn lambertian(name: &str, flux: f64, size: [f64; 3]) -> Self {
         let gammas: Vec<f64> = (0..=36).map(|i| f64::from(i) * 2.5).collect();
         let top = flux / std::f64::consts::PI;
@@ -40,6 +42,8 @@ impl Luminaire {
         }
     }
 
+    /// Checks the distribution for consistency.
+    ///
     /// # Errors
     /// `Format` if angles are not ascending or out of range, or if values are negative, not finite or of the wrong
     /// number.
@@ -66,8 +70,8 @@ impl Luminaire {
         }
     }
 
-    /// Intensity in candela in a direction given in degrees, interpolated linearly between angles and around the
-    /// circle; 0 outside the measured vertical angles.
+    /// Returns the intensity in candela for the angles `c` and `gamma` in degrees. It is interpolated linearly between
+    /// vertical angles and between planes, and 0 outside the measured vertical angles.
     pub fn intensity(&self, c: f64, gamma: f64) -> f64 {
         let n = self.gammas.len();
         let last = self.gammas[n - 1];
@@ -82,7 +86,7 @@ impl Luminaire {
             let values = &self.candela[plane * n..][..n];
             values[lower] + (values[upper] - values[lower]) * t
         };
-        // Find the planes on both sides; the last plane is followed by the first.
+        // Find the planes on both sides of `c`; the last plane is followed by the first.
         let m = self.planes.len();
         let c = c.rem_euclid(360.0);
         let before = self.planes.partition_point(|p| *p <= c).clamp(1, m) - 1;
@@ -92,7 +96,7 @@ impl Luminaire {
         in_plane(before) + (in_plane(after) - in_plane(before)) * s
     }
 
-    /// The angle γ in degrees beyond which the luminaire emits no light.
+    /// Returns the angle γ in degrees beyond which the luminaire emits no light.
     pub fn widest(&self) -> f64 {
         let n = self.gammas.len();
         let dark = |i: usize| self.candela.iter().skip(i).step_by(n).all(|v| *v == 0.0);
@@ -100,11 +104,11 @@ impl Luminaire {
         self.gammas[first_dark.min(n - 1)]
     }
 
-    /// Luminous flux in lumens: the integral of the intensity over the sphere, which is exact for an intensity that is
-    /// linear between the vertical angles.
+    /// Luminous flux in lumens: the integral of the intensity over the sphere. It is exact if the intensity is linear
+    /// between the vertical angles.
     pub fn flux(&self) -> f64 {
         let (n, m) = (self.gammas.len(), self.planes.len());
-        // The share of the circle that each plane represents.
+        // Share of the circle that each plane represents: half the gaps to its neighbours.
         let share = |plane: usize| {
             let gap = |from: usize, to: usize| match (self.planes[to] - self.planes[from]).rem_euclid(360.0) {
                 0.0 => 360.0,
@@ -128,7 +132,7 @@ impl Luminaire {
     }
 }
 
-/// `∫ I(γ) sin γ dγ` for `I` linear between two angles.
+/// Computes `∫ I(γ) sin γ dγ` between two angles in radians, for `I` linear between them.
 fn zone(intensity: &[f64], [a, b]: [f64; 2]) -> f64 {
     let slope = (intensity[1] - intensity[0]) / (b - a);
     let at = |g: f64, i: f64| slope * g.sin() - i * g.cos();
@@ -142,7 +146,7 @@ mod tests {
 
     #[test]
     fn flux_meets_closed_forms() {
-        // 1 cd everywhere gives 4π lm for any angles.
+        // An intensity of 1 cd in all directions gives 4π lm, for any sampling angles.
         let even = Luminaire {
             gammas: vec![0.0, 17.0, 90.0, 180.0],
             planes: vec![0.0, 10.0, 200.0],
@@ -150,7 +154,7 @@ mod tests {
             ..Luminaire::lambertian("", 0.0, [0.0; 3])
         };
         assert!((even.flux() / (4.0 * PI) - 1.0).abs() < 1e-12);
-        // A Lambertian disc, sampled every 2.5 degrees.
+        // A Lambertian disc sampled every 2.5 degrees.
         let disc = Luminaire::lambertian("disc", 1000.0, [0.0; 3]);
         assert!((disc.flux() / 1000.0 - 1.0).abs() < 1e-3, "{}", disc.flux());
         assert_eq!((disc.widest(), even.widest()), (90.0, 180.0));

@@ -1,16 +1,17 @@
 //! Photometry for lighting design: colour temperature, glare, requirements of standards, and luminaire files.
 //!
 //! [`temperature`] converts between colours and correlated colour temperatures, and finds the blackbody light closest
-//! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] is a measured
-//! luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`]); [`opening`] is
-//! the shape of its luminous area. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`]
-//! shows luminance and illuminance in colours with a scale.
+//! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] holds a
+//! measured luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`])
+//! files. [`opening`] is the shape of its luminous area. [`presets`] lists requirements of EN 12464-1 for common
+//! rooms. [`false_colour`] shows luminance and illuminance by a scale of colours.
 //!
-//! Illuminance itself is computed by `render::illuminance`, and the glare of observers from the luminaires of a scene
-//! by `render::glare`.
+//! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
+//! that the luminaires of a scene cause for observers.
 //!
 //! Not modelled: spectra and colour rendering; maintenance; luminaires with a body or a luminous face. A luminaire
-//! shines from a point, pictures do not show it, and its light within five times its size is wrong.
+//! shines from a point, so it is invisible in renderings, and its light is wrong at distances below five times its
+//! size.
 
 pub mod false_colour;
 pub mod glare;
@@ -29,7 +30,7 @@ use crate::image::colour;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Luminous flux in lumens of a Lambertian emitter of uniform luminance (cd/m² per channel) and given area (m²).
+/// Luminous flux in lumens of a Lambertian emitter of uniform luminance (cd/m² per channel) and `area` in m².
 pub fn flux(radiance: Vec3, area: f64) -> f64 {
     PI * f64::from(colour::luminance(radiance)) * area
 }
@@ -40,7 +41,7 @@ mod tests {
 
     #[test]
     fn flux_and_power_of_a_panel() {
-        // 0.36 m² at 3000 cd/m² emit 3393 lm.
+        // A panel of 0.36 m² with 3000 cd/m² emits 3393 lm.
         let flux = flux(Vec3::splat(3000.0), 0.36);
         assert!((flux - 3392.92).abs() < 0.05, "{flux}");
     }

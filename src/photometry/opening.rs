@@ -1,43 +1,44 @@
-//! The luminous opening of a luminaire: its shape, which LM-63 encodes in the signs of the dimensions, and its area as
-//! seen from a direction, which converts an intensity to a luminance (CIE 117: `L = I / A_p`).
+//! The luminous opening of a luminaire: its shape, which LM-63 encodes in the signs of the dimensions, and its
+//! projected area `A_p`, by which an intensity is divided to obtain a luminance (CIE 117: `L = I / A_p`).
 //!
-//! Points are in the luminaire's own coordinates, in metres from the centre of the opening: x along C = 0, y along
-//! C = 90, z along the axis, towards γ = 0.
+//! Points are in the luminaire's own coordinates, in metres from the centre of the opening: x along C = 0, y along C =
+//! 90, z along the axis towards γ = 0.
 
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
 
-/// Distance in metres within which a point counts as inside an opening. [convention]: no eye is closer to a lamp.
+/// A point within this distance in metres of an opening counts as inside it. [convention]: no eye is closer to a lamp.
 const CONTACT: f64 = 1e-3;
 
-/// The shape of an opening.
+/// The shape of an opening, with sizes in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opening {
-    /// Sides of a box along x, y and z; a rectangle if the last is 0.
+    /// A box with these sides along x, y and z; a rectangle if the last side is 0.
     Box(DVec3),
-    /// A cylinder along coordinate axis `axis`, with diameters along the next two axes; a disc if the length is 0.
+    /// A cylinder along coordinate axis `axis`, with elliptic ends whose diameters lie along the next two axes; a flat
+    /// ellipse if `length` is 0.
     Cylinder { axis: usize, length: f64, diameters: [f64; 2] },
-    /// A ball with this diameter.
+    /// A ball of this diameter.
     Ball(f64),
 }
 
-/// A plane part of the outline of an opening, as seen from a direction.
+/// A flat part of an opening as seen from a direction: a parallelogram or an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub centre: DVec3,
-    /// The sides of a parallelogram, or the diameters of an ellipse.
+    /// The sides of the parallelogram, or the diameters of the ellipse.
     pub sides: [DVec3; 2],
     pub is_round: bool,
 }
 
 impl Face {
-    /// The area as seen from a unit direction.
+    /// Returns the area in m² as seen from a unit direction.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         let share = if self.is_round { FRAC_PI_4 } else { 1.0 };
         self.sides[0].cross(self.sides[1]).dot(direction).abs() * share
     }
 
-    /// Maps the unit square to the face and keeps areas (Shirley and Chiu 1997 for ellipses).
+    /// Maps the unit square to the face such that equal areas stay equal; ellipses by Shirley and Chiu (1997).
     pub fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let (x, y) = match self.is_round {
@@ -51,10 +52,10 @@ impl Face {
 }
 
 impl Opening {
-    /// The opening with the given dimensions along C = 0, along C = 90 and along the axis; a negative dimension is a
-    /// diameter. `None` for a luminaire without area, which is a point.
+    /// The opening with the given dimensions in metres along C = 0, along C = 90 and along the axis. A negative
+    /// dimension is a diameter. `None` for a luminaire without area, which is a point.
     pub fn new([x, y, z]: [f64; 3]) -> Option<Self> {
-        // A round opening may state one of its diameters only.
+        // A round opening may state only one of its diameters.
         let (x, y) = match (x, y) {
             (0.0, d) if d < 0.0 => (d, d),
             (d, 0.0) if d < 0.0 => (d, d),
@@ -72,8 +73,8 @@ impl Opening {
         (sides.iter().all(|s| s.is_finite()) && sides.iter().any(|s| *s > 0.0)).then_some(opening)
     }
 
-    /// The faces that a distant observer in a unit direction sees. The projections of the faces cover the projection of
-    /// the opening exactly once.
+    /// Returns the faces that a distant observer in a unit direction sees. Together their projections cover the
+    /// projection of the opening exactly once.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
             Self::Box(size) => (0..3)
@@ -94,12 +95,12 @@ impl Opening {
         }
     }
 
-    /// The area as seen from a unit direction, in m².
+    /// Returns the area in m² as seen from a unit direction.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         self.faces(direction).iter().map(|face| face.projected_area(direction)).sum()
     }
 
-    /// Whether a point lies inside the opening or touches it.
+    /// Whether a point lies inside the opening or within `CONTACT` of it.
     pub fn contains(&self, point: DVec3) -> bool {
         let within = |p: f64, size: f64| p.abs() <= size / 2.0 + CONTACT;
         match *self {
@@ -114,8 +115,8 @@ impl Opening {
     }
 }
 
-/// The end of a cylinder that faces a direction, and a rectangle with the same projected area as the side of the
-/// cylinder.
+/// Returns the end of a cylinder that faces `direction`, and a rectangle with the same projected area as the
+/// cylinder's side.
 fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec<Face> {
     let [along, first, second] = [axis, (axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
     let end = along * (length / 2.0 * direction[axis].signum());
@@ -123,13 +124,15 @@ fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec
     let (u, v) = (direction.dot(first), direction.dot(second));
     let across = u.hypot(v);
     if length > 0.0 && across > 0.0 {
-        // Width of the ellipse perpendicular to the direction, and its point nearest to the observer.
+        // Compute the width of the elliptic cross section perpendicular to `direction`, and its point nearest to the
+        // observer.
         let (u, v) = (u / across, v / across);
         let width = (a * v).hypot(b * u);
         let reach = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
         let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * reach);
         let tangent = second * u - first * v;
-        // The chord through the centre spans the width; move it to the near side along the direction.
+        // The rectangle has this width and contains the axis; move it along `direction` to the near side of the
+        // cylinder.
         let centre = (first * u + second * v) * nearest.dot(first * u + second * v);
         faces.push(Face { centre, sides: [tangent * width, along * length], is_round: false });
     }
@@ -158,14 +161,14 @@ mod tests {
     #[test]
     fn projected_areas_are_closed_forms() {
         near(seen([1.2, 0.3, 0.0], 30.0, 60.0), 0.36 * 0.5);
-        // From the side of a box along C = 0: the face of width times height.
+        // A box seen from the side along C = 0 shows its face of width times height.
         near(seen([1.2, 0.3, 0.1], 0.0, 90.0), 0.3 * 0.1);
         near(seen([1.2, 0.3, 0.1], 90.0, 90.0), 1.2 * 0.1);
         near(seen([-0.4, -0.4, 0.0], 77.0, 60.0), disc(0.4) * 0.5);
         near(seen([0.0, -0.4, 0.0], 77.0, 0.0), disc(0.4));
         near(seen([-0.4, -0.4, 0.5], 77.0, 90.0), 0.4 * 0.5);
         near(seen([-0.4, -0.4, -0.4], 12.0, 34.0), disc(0.4));
-        // A tube along C = 0: its end, and its side.
+        // A tube along C = 0 shows its end, or its side.
         near(seen([1.2, -0.026, -0.026], 0.0, 90.0), disc(0.026));
         near(seen([1.2, -0.026, -0.026], 90.0, 90.0), 1.2 * 0.026);
         near(seen([1.2, -0.026, -0.026], 90.0, 0.0), 1.2 * 0.026);

@@ -1,27 +1,27 @@
 //! Requirements of EN 12464-1 for common rooms: maintained illuminance, glare, uniformity, colour rendering, and
 //! illuminance of walls and ceilings.
 //!
-//! A short excerpt for design, as quoted publicly by luminaire manufacturers, with the edition of each row. Schools
-//! and libraries: the tables of 2021 as quoted by Glamox. Offices: 500 lx with U0 0.6, and 300 lx with U0 0.4, as
-//! quoted by Trilux, Fagerhult and Performance in Lighting, with walls and ceilings of the 2011 edition. The standard
-//! itself is authoritative.
+//! This is a short excerpt for design, as luminaire manufacturers quote it publicly, with the edition of each row. For
+//! schools and libraries: the tables of 2021 as quoted by Glamox. For offices: 500 lx with U0 0.6, and 300 lx with U0
+//! 0.4, as quoted by Trilux, Fagerhult and Performance in Lighting, with walls and ceilings of the 2011 edition. Only
+//! the standard itself is authoritative.
 
-/// The requirements for a type of place.
+/// The requirements for one type of room or activity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
     pub name: &'static str,
-    /// Year of the edition.
+    /// Year of the standard's edition.
     pub edition: u32,
     /// Minimum mean illuminance of the task area, in lux.
     pub illuminance: f64,
     /// Maximum unified glare rating.
     pub glare: f64,
-    /// Minimum uniformity U0: minimum over mean illuminance of the task area.
+    /// Minimum uniformity U0 of the task area: minimum over mean illuminance.
     pub uniformity: f64,
     /// Minimum colour rendering index.
     pub rendering: f64,
     /// Minimum mean illuminance of walls and of the ceiling, in lux, with a uniformity of [`SURROUND_UNIFORMITY`]; 0
-    /// if not required.
+    /// if there is no requirement.
     pub walls: f64,
     pub ceiling: f64,
 }
@@ -42,7 +42,7 @@ pub const PRESETS: &[Preset] = &[
     preset("library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
 ];
 
-/// Minimum uniformity of walls and ceilings [convention: EN 12464-1].
+/// Minimum uniformity of walls and ceilings. [convention: EN 12464-1]
 pub const SURROUND_UNIFORMITY: f64 = 0.1;
 
 /// A requirement that is not met.
@@ -54,13 +54,13 @@ pub enum Shortfall {
 }
 
 impl Preset {
-    /// The preset with the given name.
+    /// Returns the preset with the given name.
     pub fn find(name: &str) -> Option<&'static Self> {
         PRESETS.iter().find(|p| p.name == name)
     }
 
-    /// The requirements not met by a task area with the given minimum and mean illuminance and glare rating (if
-    /// known).
+    /// Returns the requirements that a task area fails, given its minimum and mean illuminance in lux, and its glare
+    /// rating if known.
     pub fn check(&self, minimum: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
         let bright = mean >= self.illuminance;
         let even = mean > 0.0 && minimum / mean >= self.uniformity;

@@ -1,46 +1,46 @@
-//! Correlated colour temperature: the nearest blackbody, and the distance from it.
+//! Correlated colour temperature of a colour: the temperature of the nearest blackbody, and the distance from it.
 //!
 //! The blackbody locus is Krystek's rational approximation in the CIE 1960 diagram ("An algorithm to calculate
 //! correlated colour temperature", 1985), accurate to 8e-5 from 1000 K to 15000 K. Distances are measured in that
-//! diagram, as in the definition of the correlated temperature (CIE 15). The search is in mired, in which perceptual
-//! steps are nearly uniform.
+//! diagram, as the definition of the correlated colour temperature requires (CIE 15). The search is uniform in mired
+//! (10⁶ / kelvin), in which perceptual steps are nearly uniform.
 
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Range of temperatures in kelvin \[convention\].
+/// Range of temperatures in kelvin. \[convention\]
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
-/// Number of steps of the initial scan, equal in mired. Within two neighbouring steps the distance to the locus has a
-/// single minimum.
+/// Number of steps of the initial scan, equal in mired. Within any two neighbouring steps the distance to the locus
+/// has a single minimum.
 const SCAN: usize = 96;
-/// Golden-section steps, down to rounding.
+/// Number of golden-section steps, after which the interval has shrunk to rounding error.
 const SECTIONS: usize = 60;
 
-/// A colour described by temperature and distance from the blackbody locus.
+/// A colour given by its correlated colour temperature and its distance from the blackbody locus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
-    /// In kelvin, in `[1000, 20000]`; at an end of the range the true temperature may lie beyond.
+    /// Temperature in kelvin, in `[1000, 20000]`. At an end of the range the true temperature may lie beyond.
     pub kelvin: f64,
-    /// Distance from the blackbody locus in the CIE 1960 diagram: positive above it (greenish), negative below
-    /// (pinkish). Beyond ±0.05 the temperature has little meaning.
+    /// Distance from the blackbody locus in the CIE 1960 diagram (Duv): positive above the locus (greenish), negative
+    /// below (pinkish). Beyond ±0.05 the temperature has little meaning.
     pub duv: f64,
 }
 
-/// CIE 1931 chromaticity of a linear RGB colour; `None` for black and invalid colours.
+/// Returns the CIE 1931 chromaticity of a linear RGB colour; `None` for black and invalid colours.
 pub fn chromaticity(rgb: DVec3) -> Option<DVec2> {
     let xyz = to_xyz() * rgb;
     let sum = xyz.element_sum();
     (sum > 0.0 && sum.is_finite()).then(|| DVec2::new(xyz.x, xyz.y) / sum)
 }
 
-/// Correlated temperature of a linear RGB colour; `None` for black and invalid colours.
+/// Returns the correlated colour temperature of a linear RGB colour; `None` for black and invalid colours.
 pub fn of_rgb(rgb: DVec3) -> Option<Temperature> {
     chromaticity(rgb).map(of_chromaticity)
 }
 
-/// Correlated temperature of a CIE 1931 chromaticity.
+/// Returns the correlated colour temperature of a CIE 1931 chromaticity.
 pub fn of_chromaticity(xy: DVec2) -> Temperature {
     let uv = to_1960(xy);
     let mired = search(|mired| locus(1e6 / mired).distance_squared(uv));
@@ -51,45 +51,46 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
     Temperature { kelvin, duv: side * uv.distance(nearest) }
 }
 
-/// CIE 1931 chromaticity of a temperature and a distance from the locus.
+/// Returns the CIE 1931 chromaticity of a temperature and a distance from the locus.
 pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
     let kelvin = temperature.kelvin.clamp(MIN_KELVIN, MAX_KELVIN);
-    // Along the locus, u falls with rising temperature: the upward normal is the rotated tangent.
+    // Along the locus u falls as the temperature rises. Rotate the tangent to obtain the normal that points up.
     let (a, b) = (locus(kelvin * 0.9995), locus(kelvin * 1.0005));
     let tangent = (a - b).normalize();
     let normal = if tangent.x >= 0.0 { tangent.perp() } else { -tangent.perp() };
     from_1960(locus(kelvin) + normal * temperature.duv)
 }
 
-/// Linear RGB of a colour with luminance 1; channels may be negative out of gamut (below about 1900 K).
+/// Returns the linear RGB colour of luminance 1. Channels are negative if the colour is out of gamut (below about 1900
+/// K).
 pub fn to_rgb(temperature: Temperature) -> DVec3 {
     let xy = chromaticity_of(temperature);
     to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)
 }
 
-/// Linear RGB of a blackbody with luminance 1, clipped to the gamut.
+/// Returns the linear RGB colour of a blackbody, clipped to the gamut and scaled to luminance 1.
 pub fn blackbody(kelvin: f64) -> DVec3 {
     let rgb = to_rgb(Temperature { kelvin, duv: 0.0 }).max(DVec3::ZERO);
     rgb / f64::from(colour::luminance(rgb.as_vec3()))
 }
 
-/// The blackbody light that brings a target closest to the wanted radiance.
+/// The blackbody light that brings a target's radiance closest to the wanted radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     pub kelvin: f64,
-    /// Factor ≥ 0 on [`blackbody`] of that temperature. It is the luminance of the emission in cd/m² if the response is
-    /// given per 1 cd/m² of emission.
+    /// Factor ≥ 0 by which to multiply the colour [`blackbody`] of this temperature. If the response is per 1 cd/m² of
+    /// emission, this is the luminance of the emission in cd/m².
     pub luminance: f64,
-    /// The target's mean radiance under this light and the other lights.
+    /// Mean radiance of the target under this light and the other lights, per channel.
     pub achieved: DVec3,
-    /// CIEDE2000 difference between the achieved and the wanted radiance, at the exposure that shows the wanted
-    /// radiance as middle grey.
+    /// CIEDE2000 difference between the achieved and the wanted radiance. Both are exposed so that the wanted radiance
+    /// is a middle grey.
     pub delta_e: f64,
 }
 
-/// Finds temperature and strength of a blackbody light for a target of mean radiance `target`, which receives
-/// `background` from other lights and `response` per unit of emission, all per channel. For each temperature the
-/// optimal strength has a closed form. `None` if nothing responds.
+/// Finds the temperature and strength of the blackbody light that brings a target's mean radiance closest to `target`.
+/// The target receives `background` from other lights, and `response` per unit of emission, all per channel. For each
+/// temperature the optimal strength has a closed form. `None` if no channel responds.
 pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     let wanted = target - background;
     let at = |kelvin: f64| {
@@ -107,7 +108,7 @@ pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     Some(Fit { kelvin, luminance, achieved, delta_e: colour::delta_e_from(target, achieved) })
 }
 
-/// Minimises a function of the mired: a scan, then golden-section search around the minimum.
+/// Returns the mired value that minimises `f`, by a scan and then a golden-section search around its minimum.
 fn search(f: impl Fn(f64) -> f64) -> f64 {
     let (low, high) = (1e6 / MAX_KELVIN, 1e6 / MIN_KELVIN);
     let at = |i: usize| low + (high - low) * i as f64 / SCAN as f64;
@@ -121,7 +122,7 @@ fn search(f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// A point of the blackbody locus in the CIE 1960 diagram.
+/// Returns the point of the blackbody locus in the CIE 1960 diagram at a temperature in kelvin.
 fn locus(t: f64) -> DVec2 {
     let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
         / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);
@@ -146,7 +147,7 @@ fn to_xyz() -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Standard illuminants by their published chromaticities (CIE 15, table T.3).
+    /// Standard illuminants have their published chromaticities (CIE 15, table T.3).
     #[test]
     fn standard_illuminants() {
         for (xy, kelvin, duv) in [
@@ -175,7 +176,7 @@ mod tests {
                 assert!((again.duv - duv).abs() < 1e-5, "{kelvin} {duv}: {again:?}");
             }
         }
-        // Warm light is reddish, cold light is bluish, and its luminance is 1.
+        // Warm light is reddish, cold light is bluish, and the luminance of both is 1.
         let (warm, cold) = (blackbody(2700.0), blackbody(10_000.0));
         assert!(warm.x > 2.0 * warm.z && cold.z > cold.x);
         assert!((colour::luminance(warm.as_vec3()) - 1.0).abs() < 1e-6);
@@ -188,10 +189,10 @@ mod tests {
         let fit = fit(response, background, target).unwrap();
         assert!((fit.kelvin / 3500.0 - 1.0).abs() < 1e-6 && (fit.luminance / 800.0 - 1.0).abs() < 1e-6, "{fit:?}");
         assert!((fit.achieved - target).abs().max_element() < 1e-3 && fit.delta_e < 1e-3, "{fit:?}");
-        // Green is no blackbody colour: the nearest one is returned with its difference.
+        // No blackbody is green: the fit returns the nearest colour and its difference.
         let green = super::fit(DVec3::ONE, DVec3::ZERO, DVec3::new(0.2, 1.0, 0.2)).unwrap();
         assert!(green.delta_e > 10.0 && green.luminance > 0.0, "{green:?}");
-        // Other lights are brighter than the target: the best strength is 0.
+        // If other lights are already brighter than the target, the best strength is 0.
         assert_eq!(super::fit(response, background, DVec3::ZERO).unwrap().luminance, 0.0);
         assert_eq!(super::fit(DVec3::ZERO, background, target), None);
     }

@@ -1,4 +1,4 @@
-//! Curves of error against time, and the allocation of time to several of them.
+//! Curves of error against time, and the allocation of time to several stages along their curves.
 
 use super::Goal;
 
@@ -8,29 +8,32 @@ pub(super) struct Curve {
     /// Minimum and maximum time in seconds that the stage can use; 0 < minimum <= maximum.
     pub min_seconds: f64,
     pub max_seconds: f64,
-    /// Ascending times in seconds, each with the squared error after it. Between two of them the squared error falls
-    /// as a power of the time, whose exponent is clamped to [`POWERS`]. After the last one the exponent of the last
-    /// interval continues, but is at most [`MAX_EXTRAPOLATED`].
+    /// Ascending times in seconds, each with the squared error after this time. Between two points the squared error
+    /// falls as a power of the time, whose exponent is clamped to [`POWERS`]. After the last point the exponent of the
+    /// last interval continues, but is at most [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
-/// Minimum and maximum exponents by which squared errors fall with time: of independent samples, and of scrambled nets
-/// on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth functions") [paper: Owen 1997].
+/// Minimum and maximum exponents with which squared errors fall with time: the minimum holds for independent samples,
+/// the maximum for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth
+/// functions") [paper: Owen 1997].
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation: eventually edges dominate, for which nets gain less [origin not recorded].
+/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, for which nets gain less
+/// [origin not recorded].
 const MAX_EXTRAPOLATED: f64 = 2.0;
 
-/// Growth of a stage's time per allocation step [convention].
+/// Factor by which an allocation step lengthens the time of a stage [convention].
 const STEP: f64 = 1.01;
 
 impl Curve {
-    /// A squared error that falls with time like that of independent samples.
+    /// Returns the curve of a squared error that falls with time as for independent samples; it is `square` after the
+    /// minimum time.
     pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
         let point = |times: f64| [times * min_seconds, square / times];
         Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
     }
 
-    /// The squared error after a time in seconds.
+    /// Returns the squared error after a time in seconds.
     pub fn square(&self, seconds: f64) -> f64 {
         let [first, middle, last] = self.points;
         let ([s, a], [t, b]) = if seconds < middle[0] { (first, middle) } else { (middle, last) };
@@ -43,16 +46,17 @@ impl Curve {
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
 
-    /// The decrease of the squared error per second of a step from `seconds`; 0 at the end of the curve.
+    /// Returns the decrease of the squared error per second in the allocation step from `seconds`; 0 at the end of the
+    /// curve.
     fn gain(&self, seconds: f64) -> f64 {
         let next = (seconds * STEP).min(self.max_seconds);
         if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
     }
 }
 
-/// Seconds for each stage: starts from the minimum of each and gives time in small steps to the stage where it lowers
-/// the sum of squared errors most, until the goal is reached or no stage can use more. Since gains fall along every
-/// curve, no other allocation is better by more than a step.
+/// Returns the seconds for each stage. Each stage starts with its minimum time. Then small steps of time go to the
+/// stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more. Since
+/// gains fall along every curve, no other allocation is better by more than a step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
@@ -89,11 +93,11 @@ mod tests {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
         }
         assert!((curve.square(64.0) - 0.5).abs() < 1e-9 && (curve.square(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9);
-        // Stratified samples can have steeper curves, but not for ever.
+        // Stratified samples can have steeper curves, but the extrapolation is less steep.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
         assert!((steep.square(1.0) - 320.0).abs() < 1e-9 && (steep.square(16.0) - 0.2).abs() < 1e-9);
         assert!((steep.square(64.0) - 0.2 / 16.0).abs() < 1e-9);
-        // Noisy measurements must neither raise the error with time nor lower it without bound.
+        // Noisy measurements must neither let the error rise with time nor let it fall without bound.
         let odd = Curve { points: [[1.0, 1.0], [4.0, 2.0], [16.0, 1e-9]], ..curve };
         assert!(odd.square(1.0) > odd.square(4.0) && odd.square(64.0) > 1e-12);
         assert_eq!(Curve { points: [[1.0, 0.0], [4.0, 0.0], [16.0, 0.0]], ..curve }.square(9.0), 0.0);

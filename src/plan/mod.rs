@@ -50,7 +50,7 @@ pub enum Goal {
 impl Goal {
     pub fn check(self) -> Result<()> {
         match self {
-            // Compare in single precision, as hosts pass it: their 1e-5 is slightly smaller.
+            // Compare in single precision: hosts pass 1e-5 as `f32`, which is slightly smaller than 1e-5 as `f64`.
             Self::Error(error) => check_range("target_error", error as f32, 1e-5, 1.0).map(drop),
             Self::Seconds(seconds) => check_range("seconds", seconds, 1e-3, 1e6).map(drop),
         }
@@ -64,10 +64,10 @@ pub struct Expected {
     pub error: f64,
 }
 
-/// A clock with an arbitrary origin.
+/// A clock: returns the time since an arbitrary origin.
 pub type Clock<'a> = &'a (dyn Fn() -> Duration + Sync);
 
-/// The wall clock.
+/// Returns the wall clock, which starts at 0.
 pub fn wall() -> impl Fn() -> Duration + Sync {
     let start = Instant::now();
     move || start.elapsed()
@@ -80,12 +80,12 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// Maximum cost of a stage that stops at a target error, relative to the expected cost [origin not recorded].
+/// A stage that stops at a target error may cost at most this many times the expected cost [origin not recorded].
 const MAX_COST: f64 = 4.0;
-/// Maximum time of a stage with a time budget, relative to the expected time [origin not recorded].
+/// A stage with a time budget may take at most this many times the expected time [origin not recorded].
 const MAX_OVERTIME: f64 = 1.25;
 
-/// The time budget in milliseconds after which a stage stops that takes longer than expected.
+/// Returns the time budget in milliseconds that stops a stage if it takes much longer than expected.
 fn overtime(expected: Expected) -> u32 {
     (1e3 * MAX_OVERTIME * expected.seconds).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }

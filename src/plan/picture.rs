@@ -1,4 +1,4 @@
-//! The picture: the rendering time for an error, predicted from a few tiles.
+//! Plans the rendering of the picture: predicts the time for an error from a few rendered tiles.
 
 use super::curve::{Curve, allocate};
 use super::{Clock, Expected, Goal, MAX_COST, overtime};
@@ -12,7 +12,8 @@ use crate::scene::Camera;
 const MIN_PATHS: f64 = REPLICATIONS as f64;
 /// Maximum number of paths per pixel [convention].
 const MAX_PATHS: f64 = (1u32 << 20) as f64;
-/// Paths per pixel after which adaptive sampling starts, if there is a target error: as in the renderer [convention].
+/// Number of paths per pixel after which adaptive sampling starts if there is a target error, as in the renderer
+/// [convention].
 const ADAPTIVE_FROM: f64 = pilot::MIN_UNIFORM_PATHS as f64;
 
 /// A planned rendering.
@@ -61,28 +62,31 @@ impl Picture {
         self.pixels * paths * self.pilot.seconds_per_path.max(1e-12)
     }
 
-    /// The error with uniform sampling. The curve is valid for whole nets; other numbers of paths combine several
-    /// nets, whose errors are treated as independent. More paths may therefore even increase the error: a few paths
-    /// beyond a net contribute little but their own error.
+    /// Returns the expected error with uniform sampling. The curve is valid if the paths of each replication (point
+    /// sequence) of a pixel form one whole net, that is, if their number is a power of two. Other numbers of paths
+    /// combine several nets, whose errors are treated as independent. More paths may therefore even increase the
+    /// error: a few paths beyond a whole net contribute little but their own error.
     fn error(&self, paths: u32) -> f64 {
         let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
         let square = |points: f64| replications * curve.square(self.seconds(replications * points));
         nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
-    /// The factor by which adaptive sampling reduces the number of paths for an error. The pilot measures the ideal
-    /// saving; doubling the paths of tiles one by one achieves its square root.
+    /// Returns the factor by which adaptive sampling reduces the number of paths for an error. The pilot measures the
+    /// ideal reduction; doubling the paths of tiles one by one achieves its square root.
     fn saved(&self) -> f64 {
         self.pilot.adaptive_gain.sqrt()
     }
 
-    /// Error against time with uniform sampling.
+    /// Returns the curve of error against time with uniform sampling.
     pub fn curve(&self) -> Curve {
         let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.pilot.squared_errors[i]]);
         Curve { min_seconds: self.seconds(MIN_PATHS), max_seconds: self.seconds(MAX_PATHS), points }
     }
 
-    /// The settings for a time in seconds with uniform sampling, or for the error expected after that time.
+    /// Returns the settings for a time in seconds, which is allocated on the curve of uniform sampling. For a goal in
+    /// seconds, the settings use this time. For an error goal, they aim at the error that the curve has after this
+    /// time.
     pub fn plan(&self, params: &render::Params, goal: Goal, seconds: f64) -> Rendering {
         let plain = render::Params {
             target_error: 0.0,
@@ -113,7 +117,8 @@ impl Picture {
                 uniform(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(ADAPTIVE_FROM as u32))
             }
             Goal::Seconds(_) => {
-                // Use as many paths as the time allows, or fewer that form whole nets.
+                // Candidates are the largest number of paths that the time allows, and that number with its lowest
+                // bits cleared. Use the candidate with the smallest expected error.
                 let max_paths = count(uniform_paths);
                 let whole = (0..max_paths.ilog2())
                     .map(|bits| max_paths >> bits << bits)

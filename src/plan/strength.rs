@@ -1,4 +1,5 @@
-//! The strength of the emission: the solution time for an error, predicted from a few short solutions.
+//! Plans the solution for the strength of the emission: predicts the time for an error from a few short trial
+//! solutions.
 
 use super::curve::Curve;
 use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
@@ -8,28 +9,31 @@ use crate::relight;
 use crate::render::World;
 use glam::Vec3;
 
-/// Paths per trial solution, and number of trials: the standard error that a trial states is itself known to 13 %.
+/// Number of paths per trial solution, and number of trials. Several trials are averaged, because the standard error
+/// that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Separates the trials' random paths from those of the solution.
+/// Seed that separates the trials' random paths from those of the solution.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Radiance in cd/m² far above that of any other light [convention].
 const DOMINANT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution: its first round, and the limit of its parameter [convention].
+/// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
+/// [`relight::Params::paths`] [convention].
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
 /// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
 const HALF_WIDTH: f64 = 2.04;
 
-/// Measured cost and error of the emission's solution.
+/// Measured cost and error of the solution for the emission's strength.
 pub(super) struct Strength {
     seconds_per_path: f64,
-    /// Relative half-width of the confidence interval of a trial.
+    /// Relative half-width of the confidence interval of a trial, as a root mean square over the trials.
     half_width: f64,
 }
 
 impl Strength {
-    /// Runs the trials for an emitting material and the triangles of the target. The target value does not matter
-    /// without other lights; with other lights, the radiance that the emission currently produces is used.
+    /// Runs the trials for an emitting material and the triangles of the target. They solve for the radiance that the
+    /// target currently receives from the emission and all other light; without other light, any target gives the same
+    /// relative error.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,
@@ -61,7 +65,7 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// The error that the solution contributes to a picture of the given contrast, against time.
+    /// Returns the curve of the error that the solution contributes to a picture of the given contrast, against time.
     pub fn curve(&self, contrast: f64) -> Curve {
         let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
         Curve::of_independent(
@@ -71,7 +75,8 @@ impl Strength {
         )
     }
 
-    /// The contribution of a solution with the given interval to the error of a picture.
+    /// Returns how much a solution contributes to the error of a picture, given the relative half-width of the
+    /// solution's interval.
     pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
@@ -80,8 +85,9 @@ impl Strength {
         self.half_width * (f64::from(TRIAL) / paths).sqrt()
     }
 
-    /// The settings for a time in seconds, or for the error expected after that time, and the expectation: its error
-    /// is the relative half-width of the solution's interval.
+    /// Returns the settings, and the expected time and error. For a goal in seconds, the settings use the time
+    /// `seconds`. For an error goal, they aim at the error expected after this time. The error is the relative
+    /// half-width of the solution's interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);

@@ -1,4 +1,4 @@
-//! A stylisation: the most careful settings within a time, or the quickest for an error.
+//! Plans a stylisation: chooses the most careful settings within a time, or the quickest for an error.
 
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
@@ -17,12 +17,13 @@ pub struct Stylisation {
 /// Plans a stylisation. Changes only the numbers of iterations and sweeps in `params`; ignores `input.previous`.
 ///
 /// # Errors
-/// A goal or a setting out of range; those of [`crate::stylize::run`].
+/// A goal or a setting out of range; the errors of [`crate::stylize::run`].
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);
     let mut pilot = PilotRuns::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
-    // Refine the chosen settings at a higher resolution, and repeat if others are then better.
+    // Measure the chosen settings at a higher resolution, and repeat if other settings are then predicted to be
+    // better.
     loop {
         let expected = (0..ladder.len()).map(|i| pilot.predict(i));
         let rungs: Vec<_> = expected.map(|t| Expected { seconds: t.seconds, error: t.energy.sqrt() }).collect();
@@ -35,10 +36,10 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
     }
 }
 
-/// Settings from quick to careful, from the Pareto front in `benches/stylit.rs`, and the index of the settings closest
-/// to the presets.
+/// Returns settings from quick to careful, from the Pareto front in `benches/stylit.rs`, and the index of the
+/// reference settings, those of `Params::fast`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
-    // These modes make a single pass, or none.
+    // These modes make at most one matching pass, so their settings offer no choice.
     if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {
         return (vec![params.clone()], 0);
     }
@@ -61,7 +62,8 @@ fn ladder(params: &Params) -> (Vec<Params>, usize) {
     (rungs.iter().map(rung).collect(), 1)
 }
 
-/// The smallest error within the time, or the shortest time for the error; if none reaches the goal, the nearest.
+/// Returns the index of the settings with the smallest error within the time, or with the shortest time for the error.
+/// If no settings reach the goal, returns the index of the settings that come nearest to it.
 fn chosen(rungs: &[Expected], goal: Goal) -> usize {
     let indices = 0..rungs.len();
     let quickest = |a: &usize, b: &usize| rungs[*a].seconds.total_cmp(&rungs[*b].seconds);

@@ -1,4 +1,5 @@
-//! The stages after the emissive texture in a lighting transfer: the solution of its strength, and the picture.
+//! Plans the stages after the emissive texture in a lighting transfer: the solution for the strength of the emission,
+//! and the picture.
 
 use super::curve::allocate;
 use super::picture::{Picture, Rendering};
@@ -16,11 +17,11 @@ use std::sync::Arc;
 pub struct Lighting {
     pub relight: relight::Params,
     pub render: render::Params,
-    /// Expectation of [`Stage::Relight`]; its error is the relative half-width of the solution's interval.
+    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's interval.
     pub solving: Expected,
-    /// Expectation of [`Stage::Render`]; its error is the picture's sampling error alone.
+    /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,
-    /// Expectation of both stages and the resulting picture.
+    /// Expected time and error of both stages together. The error is that of the resulting picture.
     pub whole: Expected,
 }
 
@@ -41,7 +42,8 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
         Strength::new((&world, lit.placed.material, &triangles), &transfer.params.relight, clock, job.part(0.2, 0.5))?;
     let picture = Picture::new(&world, &camera, &transfer.params.render, clock, job.part(0.5, 1.0))?;
 
-    // Both stages build the scene; allocate the remaining time along their curves.
+    // Both stages build the scene: subtract the building time twice, and allocate the rest along the curves of the
+    // stages.
     let light = match goal {
         Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
         error => error,
@@ -58,7 +60,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     Ok(Lighting { relight, render, solving, rendering, whole })
 }
 
-/// Checks the preconditions of a plan and returns the scene with the lamps to be solved for; takes negligible time.
+/// Checks the preconditions of a plan, which takes negligible time. Returns the scene with the lamps to be solved for.
 pub fn check(transfer: &Transfer, goal: Goal) -> Result<Arc<LitScene>> {
     goal.check()?;
     transfer.params.check(Stage::Relight)?;

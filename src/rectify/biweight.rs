@@ -1,24 +1,26 @@
-//! Expected values of Tukey's biweight for normally distributed residuals `r`: means over the residuals within the
-//! limit of the biweight, which is 1.
+//! Expected values of Tukey's biweight for normally distributed residuals, from which the covariance of a vanishing
+//! point is computed. Residuals are in units of the biweight's limit, and the means are over residuals within the
+//! limit.
 
 use std::sync::LazyLock;
 
-/// Means over normally distributed residuals of known variance, conditional on being within the limit. All three tend
-/// to 1 as the noise vanishes and fall as it grows.
+/// Means over normally distributed residuals `r` of known variance that lie within the limit 1. All three tend to 1 as
+/// the noise vanishes, and fall as it grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
-    /// Mean of `r²`, as a share of the variance.
+    /// Mean of `r²`, divided by the variance.
     pub square: f64,
     /// Mean of `ψ′(r)`, where `ψ(r) = r (1 - r²)²`.
     pub slope: f64,
-    /// Mean of `ψ²(r)`, as a share of the variance.
+    /// Mean of `ψ²(r)`, divided by the variance.
     pub influence: f64,
 }
 
-/// Intervals of the lookup table, uniform in `d / (1 + d)` for a standard deviation `d`.
+/// Number of intervals of the lookup table, which are uniform in `d / (1 + d)` for a standard deviation `d`.
 const INTERVALS: usize = 64;
 
-/// Smallest standard deviation that is integrated, and the number of integration steps [rounding].
+/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated. `STEPS`: number of integration
+/// steps. [rounding]
 const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 

@@ -1,4 +1,4 @@
-//! The camera from its vanishing points: focal length and orthonormal room axes, given the principal point.
+//! Estimates the camera from vanishing points: focal length and orthonormal room axes, given the principal point.
 
 use super::focal::{Expected, USUAL_SPREAD};
 use super::params::Params;
@@ -10,17 +10,19 @@ use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
-/// The error in radians of an axis that is fixed by convention alone [convention].
+/// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
+/// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
 
-/// A camera with the vanishing point of each of its axes.
+/// The estimated camera, with the vanishing point of each room axis.
 pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
     /// The prior of the focal length.
     pub expected: Expected,
-    /// For each input point, the index of the axis it became, if any.
+    /// For each input vanishing point, the index of the room axis to which it was assigned; `None` if it was not
+    /// assigned.
     pub axis_of: Vec<Option<usize>>,
 }
 
@@ -31,7 +33,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop each direction that is far from orthogonal to a direction with better support: it is no room axis.
+    // Drop each direction that is far from orthogonal to a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {
@@ -40,8 +42,8 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
         }
     }
 
-    // Assign the axes: the direction nearest the image's vertical is the vertical, and of the other two the one
-    // nearest the viewing direction is the second horizontal.
+    // Name the axes: the direction nearest the image's vertical becomes the vertical axis. Of the other two, the
+    // direction nearest the viewing direction becomes the second horizontal axis.
     let mut named: [Option<usize>; 3] = [None; 3];
     let take = |from: &mut Vec<usize>, value: &dyn Fn(DVec3) -> f64| {
         let best = (0..from.len())
@@ -84,7 +86,8 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     Oriented { perspective, vanishing_points, squareness, expected, axis_of }
 }
 
-/// The focal length in pixels: the given one, or else an estimate from the points and the prior.
+/// Returns the focal length in pixels and its source: the given focal length, or else an estimate from the vanishing
+/// points and the prior.
 fn focal_length(
     points: &[VanishingPoint],
     principal: DVec2,
@@ -94,8 +97,8 @@ fn focal_length(
     match (given, focal_from_points(points, principal, expected.focal)) {
         (Some(f), _) => (f, FocalSource::Given),
         (None, Some((log_focal, spread))) => {
-            // Combine this estimate with the prior, weighting both by inverse variance; the prior decides only where
-            // the points constrain the focal length weakly.
+            // Combine the estimate with the prior, both weighted by inverse variance. The prior thus decides only
+            // where the points constrain the focal length weakly.
             let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
             let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
             (focal, if a > b { FocalSource::VanishingPoints } else { expected.source })
@@ -104,7 +107,7 @@ fn focal_length(
     }
 }
 
-/// Re-estimates the camera from the vanishing points of its axes, ignoring points without support.
+/// Re-estimates the camera from the vanishing points of its axes, ignoring points that no segment supports.
 pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: Expected) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
@@ -115,8 +118,8 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: 
     Perspective { focal, axes, ..*camera }
 }
 
-/// The relative standard deviation of a focal length that was not given, from the vanishing points of the axes and the
-/// prior together.
+/// Returns the relative standard deviation of an estimated focal length, from the vanishing points of the axes and the
+/// prior for photos in general.
 pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let from_lines =
@@ -124,14 +127,14 @@ pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
     (from_lines.powi(-2) + USUAL_SPREAD.powi(-2)).sqrt().recip()
 }
 
-/// Unit direction in camera space whose vanishing point is the given homogeneous pixel.
+/// Returns the unit direction in camera space whose vanishing point is the given homogeneous pixel.
 pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
-/// The logarithm of the focal length in pixels and its standard deviation, from every pair of points that should be
-/// orthogonal: `(v1 - c) · (v2 - c) + f² w1 w2 = 0` is linear in f², and each pair is weighted by the certainty of its
-/// angle.
+/// Estimates the logarithm of the focal length in pixels, and its standard deviation. Every pair of points that should
+/// be orthogonal gives an equation `(v1 - c) · (v2 - c) + f² w1 w2 = 0`, which is linear in f² and is weighted by the
+/// certainty of the pair's angle. `None` if the points do not determine the focal length.
 fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
     let mut square = start * start;
     let mut deviation = f64::INFINITY;
@@ -163,8 +166,8 @@ fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) ->
         .then(|| (square.ln() / 2.0, deviation.max(1e-9)))
 }
 
-/// The rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, solved by polar
-/// decomposition). Missing directions follow from orthogonality, then from the assumption of an upright camera.
+/// Returns the rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, solved by
+/// polar decomposition). Missing directions follow from orthogonality, then from the assumption of an upright camera.
 fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
     let [a, down, ahead] = directions;
     let down = down.map(|(d, e)| (if d.y < 0.0 { -d } else { d }, e));
@@ -193,9 +196,9 @@ fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
     polar([a, down, ahead])
 }
 
-/// The rotation `M (Mᵀ M)^(-1/2)`, where `M` has the given columns, scaled by their certainties.
+/// Returns the rotation `M (Mᵀ M)^(-1/2)`. The columns of `M` are the given directions, each divided by its error.
 fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
-    // Limit the ratio of weights to 1e4: a larger one would only lose digits.
+    // Limit the ratio of weights to 1e4: a larger ratio would only lose precision.
     let min_error = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
     let scaled = columns.map(|(d, e)| d * (min_error / e.max(min_error)).max(1e-4));
     let gram = std::array::from_fn(|r| std::array::from_fn(|c| scaled[r].dot(scaled[c])));

@@ -1,16 +1,16 @@
-//! Canny's edge detection (1986): thin edges at the maxima of the gradient, followed by hysteresis.
+//! Canny's edge detection (1986): thin edges at the maxima of the gradient magnitude, then hysteresis.
 
 use super::gradient::Gradients;
 use crate::error::Result;
 use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
-/// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: each edge pixel must exceed `WEAK`, and
-/// at least one pixel of each edge `STRONG` [origin not recorded].
+/// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: every pixel of an edge must reach
+/// `WEAK`, and at least one pixel of each edge must reach `STRONG`. [origin not recorded]
 const WEAK: f32 = 0.015;
 const STRONG: f32 = 0.04;
 
-/// Indices of the edge pixels, in rising order.
+/// Returns the indices of the edge pixels in ascending order.
 pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
     let Gradients { width, height, derivative, magnitude } = gradients;
     let (width, height) = (*width, *height);
@@ -20,8 +20,8 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
     let mut state = try_vec(width * height, NONE)?;
     let mut pending: Vec<u32> = Vec::new();
 
-    // Non-maximum suppression: keep pixels whose gradient is largest across the edge, interpolating between the
-    // neighbours on either side.
+    // Non-maximum suppression: keep a pixel if its gradient magnitude exceeds the magnitudes on both sides of it along
+    // the gradient, each interpolated between two neighbours.
     for y in 1..height.saturating_sub(1) {
         job.check()?;
         for x in 1..width.saturating_sub(1) {
@@ -50,7 +50,7 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
             }
         }
     }
-    // Hysteresis: candidates connected to a strong edge are edges too.
+    // Hysteresis: candidates connected to an edge pixel are edge pixels too.
     while let Some(i) = pending.pop() {
         let (x, y) = (i as usize % width, i as usize / width);
         for ny in y - 1..=y + 1 {

@@ -1,11 +1,11 @@
 //! Lens distortion by the plumb-line test (Brown 1971, "Close-range camera calibration"; Devernay and Faugeras 2001,
 //! "Straight lines have to be straight").
 //!
-//! Model: a lens shows at radius r the point that belongs at r (1 - k r² / R²), where R is half the image diagonal. A
-//! straight line then appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes
-//! the centre at distance d, its curvature is `2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the
-//! curve, divided by d, therefore yields one estimate of k per line. A robust mean over the many lines of a room
-//! rejects mouldings and vaults, which are curved themselves.
+//! Model: a lens shows at radius r the point that an ideal lens shows at r (1 - k r² / R²), where R is half the image
+//! diagonal. A straight line then appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the
+//! line passes the centre at distance d, its curvature is `2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient
+//! of the curve, divided by d, therefore yields one estimate of k per line. A robust mean over the many lines of a
+//! room rejects mouldings and vaults, which are curved themselves.
 
 use super::gradient::{Gradients, SIGMA};
 use crate::geometry::Segment;
@@ -23,27 +23,28 @@ pub struct Distortion {
     pub lines: usize,
 }
 
-/// Minimum segment length that is used, and the length at each end that is left out because corners bend edges there,
-/// both in pixels [origin not recorded].
+/// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
+/// corners bend edges there. Both are in pixels. [origin not recorded]
 const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
-/// Pixels on each side of a segment in which its edge is searched for.
+/// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// Minimum share of a segment's length along which its edge must be found [origin not recorded].
+/// The edge must be found along at least this share of a segment's length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of lines for an estimate.
 const MIN_LINES: usize = 12;
-/// Floor of the position error of an edge in pixels, which averaging does not reduce [origin not recorded].
+/// Floor of the position error of an edge in pixels, which averaging does not reduce. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
-/// Maximum root mean square residual, in pixels, of an edge about its parabola [origin not recorded].
+/// Maximum root mean square residual, in pixels, of an edge about its parabola. [origin not recorded]
 const MAX_RESIDUAL: f64 = 0.25;
-/// Limit of Tukey's biweight in standard deviations (95 % efficiency) [convention].
+/// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
-/// Segments per physical line: both sides of a frame, or the pieces of one line [origin not recorded].
+/// Number of segments that belong to one physical line: both sides of a frame, or the pieces of one line.
+/// [origin not recorded]
 const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Error caused by the deviation of real lenses from the model. It is the root mean square of the estimates over views
-/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching
-/// [bench: `tests/real_rectify.rs`].
+/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching.
+/// [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -55,20 +56,20 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
     combine(&estimates)
 }
 
-/// The estimate from one line.
+/// The estimate of k from one line, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
     /// Estimate of k that neglects the term `3 k d² / R²` of the curvature.
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
-    /// Squared distance of the line from the centre: (d / R)².
+    /// Squared distance of the line from the centre, in units of half the diagonal: (d / R)².
     squared_offset: f64,
 }
 
 impl LineEstimate {
-    /// The estimate of k if the term `3 k d² / R²` of the curvature is evaluated at the approximate value `nearly` of
-    /// k.
+    /// Returns the estimate of k in which the term `3 k d² / R²` of the curvature is evaluated at `nearly`, an
+    /// approximate value of k.
     fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
@@ -85,9 +86,9 @@ impl LineEstimate {
     }
 }
 
-/// Positions of the edge along and across a segment, one per pixel of length: each is the maximum of the gradient
-/// across the segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias the
-/// position.
+/// Locates the edge along a segment, once per pixel of length. Each position is the maximum of the gradient across the
+/// segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias it. Returns x
+/// along the segment and y across it; `None` if too little of the edge is found.
 fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     let length = segment.length();
     if length < MIN_LENGTH {
@@ -117,7 +118,7 @@ fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     (places.len() as f64 >= MIN_COVERAGE * steps as f64).then_some(places)
 }
 
-/// Directional derivative of the encoded luma, interpolated between pixels.
+/// Directional derivative of the encoded luma, interpolated between pixels; 0 outside the image.
 fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
     let at = at - 0.5;
     let cell = at.floor();
@@ -136,8 +137,8 @@ fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
     row(first) * (1.0 - f.y) + row(first + gradients.width) * f.y
 }
 
-/// The quadratic coefficient of the least-squares parabola through the points, and its variance, by polynomials that
-/// are orthogonal on the points.
+/// Fits a least-squares parabola to the points, by polynomials that are orthogonal on the points. Returns its
+/// quadratic coefficient and the variance of that coefficient.
 fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     if points.len() < 8 {
@@ -154,16 +155,16 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let ((tilt, _), (bend, square)) = (part(&first), part(&second));
     let residual = |p: &DVec2| p.y - mean.y - tilt * first(p) - bend * second(p);
     let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
-    // Neighbouring samples are correlated by the Gaussian smoothing; this is its correlation length.
+    // Gaussian smoothing correlates neighbouring samples: this is their correlation length in pixels.
     let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
     let variance = (noise + POSITION_FLOOR * POSITION_FLOOR) * shared / square;
     (noise < MAX_RESIDUAL * MAX_RESIDUAL && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
 }
 
-/// Iterations of the M-estimate.
+/// Number of iterations of the M-estimate.
 const ROUNDS: usize = 20;
 
-/// The value of k that most lines support: an M-estimate started at the weighted median.
+/// Returns the value of k that most lines support: an M-estimate started at the weighted median.
 fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     if estimates.len() < MIN_LINES {
         return None;
@@ -174,8 +175,8 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
-/// One step of the M-estimate: the mean of the lines within the biweight limit around `corner`, with an error derived
-/// from their scatter.
+/// One step of the M-estimate: the mean over the lines within the biweight limit around `corner`, with a standard
+/// deviation derived from their scatter.
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);
@@ -204,7 +205,8 @@ mod tests {
     use crate::job::Monitor;
     use crate::rng::Rng;
 
-    /// A boarded wall seen obliquely through a distorting lens, with noise; its lower boards run horizontally.
+    /// A boarded wall seen obliquely through a distorting lens, with noise. The boards in the lower part run
+    /// horizontally.
     fn photo(k: f64, [width, height]: [usize; 2], seed: u64) -> Image {
         let centre = 0.5 * DVec2::new(width as f64, height as f64);
         let diagonal = centre.length();

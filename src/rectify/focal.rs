@@ -3,8 +3,8 @@
 use super::params::Params;
 use crate::geometry::FocalSource;
 
-/// Prior of the focal length over photos of rooms: its typical value as a share of the image width, and the standard
-/// deviation of its logarithm [origin not recorded].
+/// Prior of the focal length over photos of rooms: its median as a share of the image width, and the standard
+/// deviation of its logarithm. [origin not recorded]
 const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 
@@ -17,7 +17,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// The prior from the photo's metadata or, without metadata, from the usual focal length of photos of this width.
+    /// Returns the prior from the photo's metadata or, without metadata, the usual focal length for this width.
     pub(super) fn new(params: &Params, width: usize) -> Self {
         match params.expected_focal {
             Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
@@ -25,7 +25,7 @@ impl Expected {
         }
     }
 
-    /// The prior with a focal length that is longer by the given number of standard deviations.
+    /// Returns the prior with a focal length that is longer by the given number of standard deviations.
     pub fn moved(self, deviations: f64) -> Self {
         Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
     }

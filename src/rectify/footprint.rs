@@ -1,13 +1,14 @@
-//! Footprints of a run of pixels: the position and extent of each pixel in the source.
+//! Computes the footprints of a run of output pixels, for resampling through a homography: the position and extent of
+//! each pixel in the source.
 
 /// Number of neighbouring pixels of a row that are processed together.
 pub const RUN: usize = 128;
 
-/// Number of neighbouring pixels that share the shape of the footprint at their middle; the shape changes more slowly
-/// than the position.
+/// Number of neighbouring pixels that share one footprint shape, which is computed at their middle. The shape changes
+/// more slowly than the position.
 const SHARED: usize = 8;
 
-/// Bound of the derivatives; larger ones occur only at the horizon [rounding].
+/// Bound of the derivatives of the map; larger derivatives occur only at the horizon. [rounding]
 const MAX_DERIVATIVE: f32 = 1e8;
 
 /// Source positions of a run of pixels, each with its footprint: the sheared rectangle with the same second moments as
@@ -17,13 +18,13 @@ pub struct Footprints {
     pub is_seen: [bool; RUN],
     pub x: [f64; RUN],
     pub y: [f64; RUN],
-    /// Length of the sides parallel to x.
+    /// Length, in source pixels, of the two sides parallel to x.
     pub width: [f32; RUN],
-    /// Distance between these sides along y.
+    /// Distance, in source pixels, between the two sides parallel to x.
     pub height: [f32; RUN],
-    /// Shift of the centre along x per pixel along y.
+    /// Distance by which the rows of the rectangle shift along x per source pixel along y.
     pub shear: [f32; RUN],
-    /// Squared major axis of the pixel's ellipse, before it is widened to at least 1.
+    /// Squared major axis of the pixel's ellipse in the source, before it is widened to at least 1.
     pub longest: [f32; RUN],
 }
 
@@ -39,8 +40,9 @@ impl Footprints {
     };
 }
 
-/// Computes the footprints of the pixels of a row from `first` on. `map` is the homography to the source, column by
-/// column; `front` is the sign of the third coordinate in front of the camera; `size` is the size of the source.
+/// Computes the footprints of a run of pixels that begins at column `first` of a row. `map` is the homography to the
+/// source, column by column; `front` is the sign of the third coordinate in front of the camera; `size` is the size of
+/// the source.
 #[inline(always)]
 pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usize, to: &mut Footprints) {
     let y = row as f64 + 0.5;
@@ -90,8 +92,9 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
     }
 }
 
-/// The shortest side, the greatest width and the greatest height of the visible footprints. All sides are
-/// non-negative, so their bit patterns compare as the values do, and integer comparisons vectorise.
+/// Returns the shortest side, the greatest width and the greatest height of the visible footprints; `None` if no
+/// footprint is visible. All sides are non-negative, so their bit patterns compare as their values do, and integer
+/// comparisons vectorise.
 #[inline(always)]
 pub fn extent(of: &Footprints) -> Option<[f32; 3]> {
     let (mut shortest, mut widest, mut highest) = (u32::MAX, 0, 0);

@@ -1,4 +1,4 @@
-//! Weighted sums of the taps of a run of pixels.
+//! Sums the weighted source samples (taps) of a run of pixels, the last step of resampling.
 
 use super::footprint::RUN;
 use super::lanes::{GreyLanes, PixelLanes, RgbLanes, TAPS};
@@ -7,11 +7,11 @@ use crate::image::Image;
 use crate::simd::Level;
 use glam::Vec4;
 
-/// Up to three channels of each pixel; the remaining lanes are undefined.
+/// The sum for each pixel of a run: up to three channels; the remaining lanes are undefined.
 pub type Sums = [Vec4; RUN];
 
-/// Adds the weighted taps of each pixel to the sums: those of all channels if the image has one or three channels,
-/// otherwise those of the given channel only.
+/// Adds the weighted taps of each pixel to the sums. If the image has one or three channels, sums all channels;
+/// otherwise sums only the given channel.
 #[inline(always)]
 pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
     match (source.channels, level) {
@@ -61,8 +61,8 @@ fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_shea
         if !taps.is_inside[i] {
             continue;
         }
-        // Prefetch the pixel below in the next row: maps seldom rotate much, and the hardware prefetcher does not
-        // predict this.
+        // Prefetch the two source rows below the taps, which the next row of output pixels probably reads: maps seldom
+        // rotate much, and the hardware prefetcher does not predict these reads.
         let below = samples.as_ptr().wrapping_add(taps.start[0][i] + TAPS * stride);
         F::prefetch(below);
         F::prefetch(below.wrapping_add(stride));
@@ -88,7 +88,7 @@ fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_shea
     }
 }
 
-/// Clamps `value` to the range of the samples, so that a lamp has no dark ring of negative light; NaN stays NaN.
+/// Clamps `value` to the range of the samples, so that a bright lamp has no dark ring around it; NaN stays NaN.
 #[inline(always)]
 fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
     let raised = Vec4::select(value.cmplt(low), low, value);
@@ -116,8 +116,8 @@ fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: 
     }
 }
 
-/// Writes the mean over the `parts` of each footprint: all channels of an image with three, otherwise only the given
-/// channel.
+/// Divides the sums by the number of `parts` of each footprint and writes them to `out`. With three channels, writes
+/// all channels; otherwise writes only the given channel.
 #[inline(always)]
 pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;

@@ -1,4 +1,5 @@
-//! Image gradients: luma in a perceptual encoding, Gaussian smoothing, Scharr derivatives.
+//! Image gradients, from which lines are detected: luma in a perceptual encoding, Gaussian smoothing, Scharr
+//! derivatives.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,15 +7,15 @@ use crate::image::{Image, colour, pyramid};
 use crate::job::Job;
 
 /// Standard deviation of the Gaussian in pixels: large enough to suppress JPEG blocks and sensor noise, small enough
-/// to keep thin lines [bench lines].
+/// to keep thin lines. [bench lines]
 pub const SIGMA: f32 = 1.2;
 
-/// Offset inside the square root that encodes luma: it limits the slope near black, as the linear toe of sRGB does
-/// [origin not recorded].
+/// Offset inside the square root that encodes luma. It limits the slope of the encoding near black, as the linear toe
+/// of sRGB does. [origin not recorded]
 const TOE: f32 = 0.003;
 
-/// Upper bound of encoded luminance relative to white. Brighter pixels are lamps; only their outlines matter here
-/// [origin not recorded].
+/// Upper bound of the luminance relative to white, applied before the encoding. Brighter pixels are lamps, of which
+/// only the outlines matter here. [origin not recorded]
 const CLIP: f32 = 4.0;
 
 /// Gradients of a photo; they are zero near pixels that are not finite.
@@ -26,8 +27,8 @@ pub struct Gradients {
     pub magnitude: Vec<f32>,
 }
 
-/// Luma encoded with a square root and scaled so that the photo's white (95th percentile) is 1; NaN where the photo is
-/// not finite.
+/// Computes luma: the luminance relative to the photo's white (its 95th percentile), encoded by a square root. The
+/// result is NaN where the photo is not finite.
 pub fn encoded_luma(photo: &Image, job: Job) -> Result<Image> {
     let mut luma = Image::new(photo.width, photo.height, 1)?;
     exec::for_rows(&mut luma.data, photo.width, job, |y, row| {
@@ -50,7 +51,7 @@ pub fn encoded_luma(photo: &Image, job: Job) -> Result<Image> {
     Ok(luma)
 }
 
-/// Gradients of the smoothed luma; 0 on the outermost pixels.
+/// Computes the gradients of the smoothed luma; they are 0 on the outermost pixels.
 pub fn gradients(luma: &Image, job: Job) -> Result<Gradients> {
     let (width, height) = (luma.width, luma.height);
     let smooth = pyramid::blur(luma, SIGMA, job.part(0.0, 0.5))?;
@@ -62,7 +63,7 @@ pub fn gradients(luma: &Image, job: Job) -> Result<Gradients> {
         }
         let (above, here, below) = (smooth.row(y - 1), smooth.row(y), smooth.row(y + 1));
         for x in 1..width - 1 {
-            // Scharr's kernel: the 3 × 3 derivative kernel with the most isotropic direction.
+            // Apply Scharr's kernel, the 3 × 3 derivative kernel whose gradient directions are the most isotropic.
             let (l, r) = (x - 1, x + 1);
             let dx = 3.0 * (above[r] - above[l] + below[r] - below[l]) + 10.0 * (here[r] - here[l]);
             let dy = 3.0 * (below[l] - above[l] + below[r] - above[r]) + 10.0 * (below[x] - above[x]);

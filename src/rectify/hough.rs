@@ -1,6 +1,6 @@
 //! The paper's line detector (§5.1): a Hough transform in which each edge pixel votes only for lines perpendicular to
-//! its gradient, within a few degrees. The maxima of the accumulator are the lines; each is cut into the pieces that
-//! edge pixels cover.
+//! its gradient, within a few degrees. The maxima of the accumulator are the lines; each line is cut into the pieces
+//! that edge pixels cover.
 
 use super::gradient::Gradients;
 use crate::error::Result;
@@ -10,19 +10,19 @@ use crate::job::Job;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Angles of the accumulator over half a turn: one every half degree.
+/// Number of angle cells of the accumulator over half a turn: one per half degree.
 const ANGLES: usize = 360;
 
-/// Minimum votes of a maximum, as a share of the image's shorter side, and the maximum number of lines returned
-/// [origin not recorded].
+/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side. `MAX_LINES`: maximum
+/// number of lines returned. [origin not recorded]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 
-/// Half-size, in angle and distance cells, of the neighbourhood for non-maximum suppression.
+/// Half-size, in angle cells and distance cells, of the neighbourhood for non-maximum suppression.
 const SUPPRESSED: (usize, usize) = (4, 4);
 
-/// Maximum distance of an edge pixel from its line, and maximum gap bridged within a piece, both in pixels [origin not
-/// recorded].
+/// `MAX_DISTANCE`: maximum distance of an edge pixel from its line. `MAX_GAP`: maximum gap that a piece of a line
+/// bridges. Both are in pixels. [origin not recorded]
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
 
@@ -34,7 +34,8 @@ pub struct Peak {
     pub votes: u32,
 }
 
-/// The lines with the most votes, best first.
+/// Returns the maxima of the accumulator, most votes first. Each edge pixel votes for the angles within `band` radians
+/// of its gradient direction.
 pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Result<Vec<Peak>> {
     let (width, height) = (gradients.width, gradients.height);
     let centre = DVec2::new(width as f64, height as f64) / 2.0;
@@ -57,7 +58,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
         }
     }
 
-    // Find the maxima over their neighbourhoods. The accumulator wraps around in angle with the sign of rho flipped.
+    // Find the local maxima. The accumulator wraps around in angle with the sign of rho flipped.
     let min_votes = ((MIN_VOTES * width.min(height) as f64) as u32).max(8);
     let mut found: Vec<(u32, usize, usize)> = Vec::new();
     for k in 0..ANGLES {
@@ -77,7 +78,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
                     let Some(&other) = (0..rows as isize).contains(&nr).then(|| &votes[nk * rows + nr as usize]) else {
                         return true;
                     };
-                    // Break ties in favour of the first in memory.
+                    // Break ties in favour of the cell with the lower index.
                     other < v || (other == v && nk * rows + nr as usize >= k * rows + r)
                 })
             });
@@ -96,8 +97,8 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
     Ok(found.into_iter().map(peak).collect())
 }
 
-/// The pieces of the lines that edge pixels of similar gradient direction cover, each refitted by least squares. An
-/// edge pixel belongs to the strongest line that covers it.
+/// Cuts each line into the pieces that edge pixels of similar gradient direction cover, and refits each piece by least
+/// squares. An edge pixel that lies on several lines counts for the line with the most votes.
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
     let min_agreement = (2.0 * band).max(5f64.to_radians()).cos();
@@ -135,7 +136,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
     Ok(segments)
 }
 
-/// The whole visible part of each line, as in the paper.
+/// Returns the whole visible part of each line, as the paper uses it.
 pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
     let size = DVec2::new(gradients.width as f64, gradients.height as f64);
     let line = |peak: &Peak| {
@@ -150,8 +151,8 @@ fn position(width: usize, index: u32) -> DVec2 {
     DVec2::new((index as usize % width) as f64 + 0.5, (index as usize / width) as f64 + 0.5)
 }
 
-/// Sub-pixel position of an edge pixel: the vertex of the parabola through three magnitudes along the image axis
-/// nearest to its gradient.
+/// Returns the sub-pixel position of an edge pixel: the vertex of the parabola through three gradient magnitudes along
+/// the image axis nearest to the gradient direction.
 fn refined_position(gradients: &Gradients, index: u32) -> DVec2 {
     let i = index as usize;
     let [dx, dy] = gradients.derivative[i];
@@ -164,7 +165,7 @@ fn refined_position(gradients: &Gradients, index: u32) -> DVec2 {
     position(gradients.width, index) + axis * offset
 }
 
-/// Total least squares through points in order along a line.
+/// Fits a segment to points by total least squares. The points are sorted along the line.
 fn fit(points: &[DVec2]) -> Segment {
     let centre = points.iter().sum::<DVec2>() / points.len() as f64;
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);

@@ -30,14 +30,14 @@ pub trait PixelLanes: Copy {
     fn add(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    /// The sum over the four pixels for each channel; the remaining lanes are undefined. The remaining lanes of the
-    /// next two functions are undefined too.
+    /// Sums the four pixels for each channel. The lanes beyond the channels are undefined, here and in the next two
+    /// functions.
     fn sum(self) -> Vec4;
     fn min_over_pixels(self) -> Vec4;
     fn max_over_pixels(self) -> Vec4;
 }
 
-/// One channel.
+/// Four pixels of one channel, in one register.
 #[derive(Clone, Copy)]
 pub struct GreyLanes(Vec4);
 
@@ -105,7 +105,7 @@ impl PixelLanes for GreyLanes {
     }
 }
 
-/// Three channels in three registers of four.
+/// Four pixels of three interleaved channels, in three registers of four lanes.
 #[derive(Clone, Copy)]
 pub struct RgbLanes([Vec4; 3]);
 
@@ -198,7 +198,7 @@ mod avx512 {
 
     // SAFETY of all blocks below: the processor supports AVX-512, as required above.
 
-    /// Combines the first pixel with the third and the second with the fourth, then the two results.
+    /// Combines the first pixel with the third and the second with the fourth, then combines the two results.
     macro_rules! fold {
         ($of:expr, $eight:ident, $four:ident) => {
             unsafe {

@@ -1,6 +1,6 @@
-//! Three orthogonal vanishing points and a possibly unknown focal length, jointly: candidate points from pairs of
-//! lines, triplets from pairs of candidates or from a candidate and a line, then a joint refinement of rotation and
-//! focal length.
+//! Searches for three orthogonal vanishing points jointly with the focal length, if it is unknown. Pairs of lines
+//! yield candidate points; pairs of candidates, or a candidate and a line, yield triplets of points. The best triplets
+//! are then refined: rotation and focal length together.
 
 use super::sphere::{WeightedLine, project, refine, unproject};
 use crate::error::Result;
@@ -10,32 +10,34 @@ use crate::job::Job;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Focal lengths that are tried besides those that pairs of candidates imply, in units of half the longer image side:
-/// angles of view from 20 to 110 degrees [origin not recorded].
+/// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
+/// image side: angles of view from 20 to 110 degrees. [origin not recorded]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
 /// Prior of the focal length in units of half the longer image side (0.85 of the width), and the standard deviation of
-/// its logarithm [origin not recorded].
+/// its logarithm. [origin not recorded]
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Share of the total weight that a focal length one standard deviation from the prior must gain to be preferred
-/// [origin not recorded].
+/// Penalty of a focal length that deviates by one standard deviation from the prior, as a share of the total weight of
+/// lines. A triplet with this focal length is preferred only if it explains that much more weight.
+/// [origin not recorded]
 const FOCAL_COST: f64 = 0.004;
 
-/// Numbers of pairs of lines drawn, of candidates kept, of lines paired with each candidate, of triplets rescored, and
-/// of triplets refined.
+/// Numbers of line pairs drawn, of candidates kept, of lines paired with each candidate, of triplets scored a second
+/// time, and of triplets refined.
 const PAIRS: usize = 800;
 const CANDIDATES: usize = 8;
 const PARTNERS: usize = 40;
 const SEMIFINALISTS: usize = 256;
 const FINALISTS: usize = 12;
 
-/// Number of longest lines on which hypotheses (`FEW`) and semifinalists (`MANY`) are scored.
+/// Number of longest lines on which all hypotheses (`FEW`) and the semifinalists (`MANY`) are scored.
 const FEW: usize = 64;
 const MANY: usize = 200;
 
-/// An orthogonal triplet: camera-space directions as columns, and the focal length in frame units.
+/// An orthogonal triplet: camera-space directions as columns, the focal length in frame units (half the longer image
+/// side), and the score of the triplet.
 #[derive(Clone, Copy, Debug)]
 pub struct Triplet {
     pub axes: DMat3,
@@ -43,11 +45,12 @@ pub struct Triplet {
     pub score: f64,
 }
 
-/// The best triplet; `None` if no two distinct lines intersect. Lines must be sorted by falling length.
+/// Finds the best triplet; `None` if no two distinct lines intersect. The lines must be sorted by falling length.
 pub fn search(lines: &[WeightedLine], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
     let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
     let hypotheses = hypotheses(lines, &candidates, focal);
-    // Score all hypotheses on a few lines, the better ones on more, and after refinement the best on all lines.
+    // Score all hypotheses on a few lines, rescore the better ones on more lines, and score the finalists on all
+    // lines.
     let few = ranked(lines, FEW, hypotheses, job.part(0.3, 0.6))?;
     let ranked = ranked(lines, MANY, few.into_iter().take(SEMIFINALISTS).collect(), job.part(0.6, 0.7))?;
     let mut finalists: Vec<Triplet> = Vec::new();
@@ -72,13 +75,13 @@ fn ranked(lines: &[WeightedLine], longest: usize, triplets: Vec<Triplet>, job: J
     Ok(ranked.into_iter().map(|(_, triplet)| triplet).collect())
 }
 
-/// The direction that agrees with the largest weight of lines.
+/// Returns the vanishing direction with which the largest weight of lines agrees; `None` if no two lines intersect.
 pub fn strongest(lines: &[WeightedLine], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
     Ok(candidates(lines, focal, 1, seed, job)?.first().map(|&p| unproject(p, focal)))
 }
 
-/// Vanishing points of single pairs of lines, each refined, best first. Each further point is scored mainly on the
-/// lines that the points before it leave unexplained.
+/// Intersects random pairs of lines and returns the vanishing points with which the most lines agree, refined, best
+/// first. Each further point is scored mainly on the lines that the earlier points leave unexplained.
 fn candidates(lines: &[WeightedLine], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
     let cumulative: Vec<f64> = lines
         .iter()
@@ -137,7 +140,8 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
         }
     };
     for (i, &p) in candidates.iter().enumerate() {
-        // Two candidates: their orthogonality determines the focal length, unless one is nearly at infinity.
+        // Pair two candidates: their orthogonality determines the focal length, unless one of them is nearly at
+        // infinity.
         for &q in &candidates[i + 1..] {
             let square = -(p.x * q.x + p.y * q.y) / (p.z * q.z);
             let implied = square.max(0.0).sqrt();
@@ -151,10 +155,10 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
                 }
             }
         }
-        // A single candidate, in case all lines are parallel.
+        // Use the candidate alone, in case all lines are parallel.
         let alone = unproject(p, focals[focals.len() / 2]);
         push(alone, alone.any_orthonormal_vector(), focals[focals.len() / 2]);
-        // A candidate and a long line that does not run towards it.
+        // Pair the candidate with a long line that does not run towards it.
         for partner in lines.iter().filter(|e| e.agreement(p) == 0.0).take(PARTNERS) {
             for &f in focals {
                 let l = partner.line.line;
@@ -166,8 +170,8 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
     out
 }
 
-/// The weight of the lines that the triplet explains as a share of all weight, minus the penalty of the focal-length
-/// prior.
+/// Returns the weight of the lines that the triplet explains as a share of the total weight, minus the penalty of an
+/// unusual focal length.
 fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
     let points = [0, 1, 2].map(|k| project(triplet.axes.col(k), triplet.focal));
     let (mut explained, mut total) = (0.0, 0.0);
@@ -204,8 +208,8 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
             else {
                 continue;
             };
-            // The sine is l · p divided by the distance of p from the midpoint of the line, with p = (dx, dy, dz / f);
-            // take its derivative.
+            // The residual is the sine of the angle between the line and the direction from its midpoint to p: l · p
+            // divided by the distance of p from the midpoint, with p = (dx, dy, dz / f). Compute its derivative.
             let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
             let distance = (p.truncate() - e.line.centre * p.z).length();
             if distance < 1e-9 {
@@ -225,7 +229,8 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
                 right[r] -= weight * derivative[r] * sine;
             }
         }
-        // Add the prior of the focal length as a weak observation, or a given focal length as a firm one.
+        // Add the prior of the focal length as a weak observation. A given focal length stays fixed by a large
+        // diagonal term.
         let firmness = if focal.is_some() { 1e12 } else { 0.01 / (USUAL_SPREAD * USUAL_SPREAD) } * scale;
         normal[3][3] += firmness;
         if focal.is_none() {

@@ -31,7 +31,7 @@ impl Line {
         line.is_finite().then_some(Self { centre, direction, half: length / 2.0, line })
     }
 
-    /// Sine of the angle between the segment and the line from its midpoint to `p`; 0 where they coincide.
+    /// Sine of the angle between the segment and the line from its midpoint to `p`; 0 if `p` is the midpoint.
     pub fn sine(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.centre * p.z;
         let distance = away.length();
@@ -50,12 +50,12 @@ impl Line {
         if across == 0.0 {
             return 0.0;
         }
-        // A division by zero yields infinity, so the other distance is the smaller.
+        // If `p` makes a denominator zero, the division yields infinity and `min` selects the other distance.
         (across / p.z.abs()).min(self.half * across / self.direction.dot(away).abs())
     }
 }
 
-/// The part of a segment's line inside the image; `s` in the paper.
+/// Clips the line through a segment to the image: `s` in the paper. `None` if the line misses the image.
 pub fn visible(segment: &Segment, width: f64, height: f64) -> Option<Segment> {
     let line = Line::new(segment)?;
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -86,14 +86,14 @@ mod tests {
     #[test]
     fn distances_meet_their_closed_forms() {
         let l = line([0.0, 0.0], [2.0, 0.0]);
-        // P at (4, 4): the line from C = (1, 0) to it has the slope 4/3.
+        // The line from the midpoint C = (1, 0) to P = (4, 4) has the slope 4/3.
         let p = DVec3::new(4.0, 4.0, 1.0);
         assert!((l.sine(p) - 0.8).abs() < 1e-15);
         assert!((l.endpoint_distance(p) - 0.8).abs() < 1e-15);
         assert!((l.printed_distance(p) - 4.0 / 3.0).abs() < 1e-15);
-        // Within the segment's extent, the naive distance is the smaller.
+        // Near the middle of the segment, the naive distance is the smaller.
         assert!((l.printed_distance(DVec3::new(1.1, 0.3, 1.0)) - 0.3).abs() < 1e-15);
-        // Homogeneous scale and sign do not matter.
+        // The sine does not depend on the scale and sign of the homogeneous point.
         assert_eq!(l.sine(p), l.sine(p * -2.0));
     }
 
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(l.printed_distance(DVec3::Y), f64::INFINITY);
         assert_eq!(l.printed_distance(DVec3::new(1.0, 1.0, 1.0)), 0.0);
         assert_eq!(l.sine(DVec3::new(1.0, 1.0, 1.0)), 0.0);
-        // 1e12 px away, one unit off the line's direction per 1e6: a slope of 1e-6.
+        // A point 1e12 px away, which the midpoint of a segment of half-length 1 sees at a slope of 1e-6.
         assert!((l.endpoint_distance(DVec3::new(1e12, 1e6, 1.0)) - 1e-6).abs() < 1e-12);
     }
 

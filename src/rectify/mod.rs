@@ -1,5 +1,5 @@
-//! Rectification: edges, lines, vanishing points, a homography, and an unwarped texture ("Lighting Style Transfer",
-//! §5).
+//! Rectification ("Lighting Style Transfer", §5): finds the edges, lines and vanishing points of a photo, derives the
+//! camera from them, and resamples a plane of the room to a fronto-parallel texture through a homography.
 //!
 //! ```text
 //! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View ◀─ distortion ◀─ segments
@@ -9,22 +9,23 @@
 //! View + masks of plane and lamps ─▶ shapes ─▶ View
 //! ```
 //!
-//! The paper's method (gradient-restricted Hough lines and successive RANSAC groups) is available as printed:
-//! [`Params::printed`]. The default differs from the paper's method where measurements favoured another choice. The
-//! default uses segments with end points instead of infinite lines; it searches for three orthogonal directions and the
-//! unknown focal length jointly, then refines each direction freely on the sphere. The paper maps a rectangle of any
-//! shape onto the quadrilateral; here the focal length gives the plane its true aspect ratio.
+//! [`Params::printed`] selects the paper's method as printed: gradient-restricted Hough lines and successive RANSAC
+//! groups. The default differs from it where measurements favoured another choice. The default uses segments with end
+//! points instead of infinite lines. It searches for three orthogonal directions jointly with the unknown focal
+//! length, then refines each direction on the sphere with its own lines. The paper maps a rectangle of any aspect
+//! ratio onto the quadrilateral; here the focal length gives the plane its true aspect ratio.
 //!
-//! Known weaknesses. Stated errors assume five segments per independent observation and an error floor of 0.2°, both
-//! calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the stated error, as
-//! expected, but one in fourteen exceeds twice the stated error. Lines found on a floor by chance can displace a
-//! direction that few lines support; the stated error of the direction does not show this. Short segments share a bias
-//! of about 0.01 rad on re-projected photos; its cause is unknown. Where lines are few and noisy for their length, the
-//! stated errors of directions are up to an eighth too small: the mean square of the ratio of true to stated error is
-//! 1.3 with 14 lines per axis and a pixel of noise, and 1.0 to 1.15 with more lines or less noise.
+//! Known weaknesses. The reported standard deviations assume five segments per independent observation and an error
+//! floor of 0.2°, both calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the
+//! reported error, as expected, but one in fourteen exceeds twice the reported error. Lines found on a floor by chance
+//! can displace a direction that few lines support; the reported error of the direction does not show this. Short
+//! segments share a bias of about 0.01 rad on re-projected photos; its cause is unknown. Where lines are few and noisy
+//! for their length, the reported errors of directions are up to an eighth too small: the mean square of the ratio of
+//! true to reported error is 1.3 with 14 lines per axis and a pixel of noise, and 1.0 to 1.15 with more lines or less
+//! noise.
 //!
-//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixels that are not
-//! square; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
+//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
+//! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 
 mod biweight;
@@ -69,25 +70,25 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Longest side, in pixels, of the image in which lines are detected. Larger photos are reduced first: lenses and
-/// walls deviate from straight lines by more than the precision lost.
+/// Longest side, in pixels, of the image in which lines are detected. Larger photos are first reduced to this size.
+/// The precision lost is smaller than the deviation of real lenses and walls from straight lines.
 const DETECTION_SIDE: usize = 1600;
 
 /// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// Segments, each with the index of the room axis it runs along, if any.
+    /// The segments, each with the index of the room axis along which it runs; `None` if it runs along no axis.
     pub segments: Vec<(Segment, Option<usize>)>,
-    /// One vanishing point for each column of `perspective.axes`.
+    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
     /// For each axis, how far the angle between the two other axes deviates from a right angle, estimated from the
-    /// lines of these two axes alone. Absent if one of the two has no lines.
+    /// lines of these two axes alone. `None` if one of the two has no lines.
     pub squareness: [Option<Squareness>; 3],
-    /// Distortion of straight lines by the lens; absent if the photo has too few lines, or if only segments were
-    /// given.
+    /// Lens distortion, from the curvature of edges that should be straight; `None` if the photo has too few lines, or
+    /// if only segments were given.
     pub distortion: Option<Distortion>,
-    /// The prior of the focal length: from the metadata, or from photos in general.
+    /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
     pub expected_focal: Expected,
 }
 
@@ -101,12 +102,12 @@ pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     Ok(View { distortion, ..view })
 }
 
-/// The straight edges of a photo, in its pixels.
+/// Finds the straight edges of a photo, in pixels of the photo.
 pub fn find_segments(photo: &Image, params: &Params, job: Job) -> Result<Vec<Segment>> {
     find_lines(photo, params, job).map(|lines| lines.segments)
 }
 
-/// The straight edges of a photo, in its pixels, and the lens distortion that their curvature implies.
+/// The straight edges of a photo, in pixels, and the lens distortion that their curvature implies.
 struct Lines {
     segments: Vec<Segment>,
     distortion: Option<Distortion>,
@@ -147,7 +148,8 @@ fn lines_at_full_size(photo: &Image, centre: DVec2, params: &Params, job: Job) -
     Ok(Lines { segments, distortion })
 }
 
-/// Does the work of [`find_view`] on segments detected elsewhere.
+/// Finds the vanishing points and the camera from segments that the caller detected, as [`find_view`] does from a
+/// photo. The `distortion` of the result is `None`.
 pub fn view_from_segments(
     segments: &[Segment],
     width: usize,
@@ -171,14 +173,15 @@ pub fn view_from_segments(
     })
 }
 
-/// A plane of the photo in fronto-parallel view, rotated so that right and down are nearly those of the photo.
+/// A plane of the photo, resampled to fronto-parallel view. The x and y axes of the texture run nearly right and down
+/// in the photo.
 #[derive(Clone, Debug)]
 pub struct Unwarped {
     /// Linear RGB.
     pub image: Image,
-    /// 1 where the photo shows the plane, else 0.
+    /// One channel: 1 where the mask marks the plane and the photo is finite, else 0.
     pub valid: Image,
-    /// From unwarped pixels to photo pixels.
+    /// Maps unwarped pixels to photo pixels.
     pub to_photo: Homography,
     /// Size of an unwarped pixel divided by the distance between camera and plane: multiply by that distance to get
     /// metres.

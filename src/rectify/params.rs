@@ -6,27 +6,30 @@ use glam::DVec2;
 /// How lines are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineDetector {
-    /// Regions of similar gradient direction, with sub-pixel end points.
+    /// Segments with sub-pixel end points, fitted to regions of similar gradient direction (LSD).
     Regions,
-    /// The paper's gradient-restricted Hough transform of Canny edges; its lines are trimmed to the edges they cover.
+    /// The paper's gradient-restricted Hough transform of Canny edges. With [`Metric::Segment`], each line is cut into
+    /// the pieces that edge pixels cover; with [`Metric::VisibleLine`], it is kept in its whole visible length.
     Hough,
 }
 
 /// How vanishing points are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
-    /// Three orthogonal directions and the focal length jointly; then each direction is refined freely.
+    /// Three orthogonal directions, found jointly with the focal length. Each direction is then refined with its own
+    /// lines; right angles are only a prior of this refinement.
     Manhattan,
-    /// The paper's search: one group of lines after the other.
+    /// The paper's search: RANSAC finds one group of converging lines after another.
     Successive,
 }
 
 /// Distance between a vanishing point and a line in [`Search::Successive`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
-    /// The paper's measure on the detected segment, in homogeneous form: finite at infinity.
+    /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point.
+    /// It is finite for points at infinity.
     Segment,
-    /// As printed: `min(d_naive, d_vanishing)` on the whole visible line (Eq. 2).
+    /// The paper's metric as printed (Eq. 2): `min(d_naive, d_vanishing)` of the whole visible line.
     VisibleLine,
 }
 
@@ -35,18 +38,18 @@ pub struct Params {
     pub detector: LineDetector,
     pub search: Search,
     pub metric: Metric,
-    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in `(0, pi /
-    /// 2]`; default 2.5° [paper §5.1].
+    /// Half-width, in radians, of the range of angles for which an edge pixel votes in the Hough transform, centred on
+    /// its gradient direction; in `(0, pi / 2]`, default 2.5°. [paper §5.1]
     pub hough_band: f64,
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
     /// Focal length in pixels from the photo's metadata, and its standard deviation; both > 0. If `focal` is absent,
-    /// this value is used as one more observation beside the lines. If this value is absent too, the prior of the focal
-    /// length is 0.85 of the image width, with a wide spread.
+    /// this value is used as one more observation beside the lines. If this value is absent too, the prior of the
+    /// focal length is 0.85 of the image width, with a wide spread.
     pub expected_focal: Option<[f64; 2]>,
     /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
-    /// In cropped photos and photos taken with a shifted lens, the principal point lies elsewhere, possibly outside the
-    /// image.
+    /// In cropped photos and photos taken with a shifted lens, the principal point lies elsewhere, possibly outside
+    /// the image.
     pub principal: Option<DVec2>,
     pub seed: u64,
 }
@@ -97,12 +100,13 @@ impl Params {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnwarpParams {
-    /// The two room axes that span the plane; chosen by the lines inside the mask if absent.
+    /// The two room axes that span the plane; if `None`, the mask and the lines inside it decide.
     pub axes: Option<[usize; 2]>,
-    /// Maximum length of the longer side of the unwarped image in pixels, in `[16, 16384]`; smaller if the resolution
-    /// of the photo is lower.
+    /// Maximum length of the longer side of the unwarped image in pixels, in `[16, 16384]`. The image is smaller if
+    /// the photo resolves the plane less.
     pub max_side: usize,
-    /// Maximum magnification of the photo, > 0; parts of the plane farther away are cut off.
+    /// Maximum magnification of a photo pixel relative to the best-resolved part of the plane, > 0. Parts of the plane
+    /// where photo pixels would be magnified more are cut off.
     pub max_magnification: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The plane of the room that a mask shows, and the coordinates on it.
+//! Determines which of the room's three plane orientations a mask marks, and defines coordinates on that plane.
 
 use super::View;
 use crate::error::{Error, Result};
@@ -10,8 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// Minimum median, over the pixels of the mask, of the sine of the angle between the plane and the viewing ray
-/// [origin not recorded].
+/// Minimum sine of the angle between the plane and the viewing ray, as a median over the pixels of the mask.
+/// [origin not recorded]
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
@@ -26,12 +26,13 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// From plane coordinates to homogeneous pixels, the third coordinate positive in front of the camera.
+    /// Maps plane coordinates to homogeneous pixels; the third coordinate is positive in front of the camera.
     pub fn to_photo(&self) -> Homography {
         Homography(self.perspective.intrinsics() * DMat3::from_cols(self.right, self.down, self.normal))
     }
 
-    /// The intersection of the ray through a pixel with the plane; `None` at the plane's horizon and beyond.
+    /// Intersects the ray through a pixel with the plane. Returns plane coordinates; `None` at the plane's horizon and
+    /// beyond.
     pub fn meet(&self, pixel: DVec2) -> Option<DVec2> {
         let ray = self.perspective.ray(pixel);
         let depth = self.normal.dot(ray);
@@ -45,7 +46,7 @@ impl Plane {
     }
 }
 
-/// Centres of the pixels whose mask value is at least one half.
+/// Returns the centres of the pixels whose mask value is at least one half, evenly subsampled to [`MAX_PIXELS`].
 pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
     let is_marked = |i: &usize| mask.data[i * mask.channels] >= 0.5;
     let marked = try_collect((0..mask.width * mask.height).filter(is_marked).map(|i| i as u32))?;
@@ -58,7 +59,8 @@ pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
     try_collect(marked.into_iter().step_by(step).map(|i| mask.centre_of(i as usize)))
 }
 
-/// The plane along the given axes, or along the two axes that fit the mask best.
+/// Returns the plane along the given axes, or along the two axes that fit the mask best. Fails if the camera sees the
+/// plane edge-on.
 pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 2]>) -> Result<Plane> {
     let pair = match axes {
         Some([a, b]) if a < 3 && b < 3 && a != b => [a, b],
@@ -83,31 +85,31 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
     Ok(plane)
 }
 
-/// The plane of two axes on the side of the camera where most of the pixels lie, with its coordinates rotated and
-/// flipped to agree with the photo's right and down.
+/// Returns the plane of two axes on the side of the camera where most of the pixels lie. Its coordinates are rotated
+/// and flipped so that they run right and down in the photo.
 fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Plane {
     let normal = perspective.axes.col(3 - i - j);
     let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
     let normal = if 2 * ahead >= pixels.len() { normal } else { -normal };
     let seen = || pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0);
     let centre = seen().sum::<DVec2>() / seen().count().max(1) as f64;
-    // The direction of an axis in the photo near the centre of the mask.
+    // The direction in which an axis runs in the photo at the centre of the mask.
     let runs = |axis: usize| {
         let v = perspective.vanishing_point(axis);
         (v.truncate() - centre * v.z).normalize_or_zero()
     };
     let i = if runs(i).x.abs() >= runs(j).x.abs() { i } else { j };
     let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
-    // Avoid a mirror image: seen from the camera, right, down and away are right-handed.
+    // Avoid a mirror image: right, down and away from the camera form a right-handed system.
     let down = normal.cross(right);
     Plane { right, down, normal, perspective: *perspective }
 }
 
-/// The two axes whose plane fits the mask best: the mask lies on one side of the plane's horizon, and the lines inside
-/// the mask run along both axes and not along the third axis. A mask entirely above the horizon is a ceiling, unless
-/// the lines contradict it.
+/// Finds the two axes whose plane fits the mask best: the mask lies on one side of the plane's horizon, and the lines
+/// inside the mask run along both axes and not along the third axis. A mask entirely above the horizon counts as a
+/// ceiling, unless the lines contradict it.
 fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
-    // Length of the segments inside the mask along each axis.
+    // Add up, for each axis, the lengths of its segments inside the mask.
     let inside = |p: DVec2| {
         p.x >= 0.0
             && p.y >= 0.0
@@ -131,7 +133,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let share_ahead = ahead / pixels.len() as f64;
         let one_sided = (2.0 * share_ahead - 1.0).abs();
         let lines = 1.0 - share[third] + share[i].min(share[j]);
-        // The vertical axis points down: no pixel of a ceiling lies in front of the camera along it.
+        // The vertical axis points down, and every ray from the camera to the ceiling points up.
         let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };

@@ -1,15 +1,16 @@
-//! The largest quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3): a rectangle in
-//! plane coordinates on the camera's side of the horizon, excluding parts with too large a magnification.
+//! Finds the best quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3). In plane
+//! coordinates it is a rectangle; it lies on the camera's side of the horizon and excludes parts of the plane with too
+//! large a magnification.
 
 use super::plane::Plane;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect};
 use glam::DVec2;
 
-/// Cells along each side of the grid on which the rectangle is searched for.
+/// Number of grid cells along each side of the area in which the rectangle is searched for.
 const GRID: usize = 96;
 /// Cost of a cell outside the mask relative to the gain of a cell inside it. The cost is low because later stages
-/// ignore holes, whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
+/// ignore holes, whereas a lamp at the rim is lost if the rim is cut off. [origin not recorded]
 const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.
@@ -17,15 +18,16 @@ const HOLE: f64 = 0.25;
 pub struct Rectangle {
     pub low: DVec2,
     pub high: DVec2,
-    /// Side, in plane units, of the square that a photo pixel covers on the plane where the photo shows the plane in
-    /// most detail (the 2 % quantile over the mask).
+    /// Side, in plane units, of the square that a photo pixel covers on the best-resolved part of the plane (the 2 %
+    /// quantile over the pixels of the mask).
     pub densest: f64,
 }
 
-/// The rectangle with the highest score: the number of marked cells in the rectangle minus `HOLE` times the number of
-/// unmarked cells.
+/// Finds the rectangle with the highest score: the number of its cells that the mask marks, minus `HOLE` times the
+/// number of its other cells.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
-    // Keep the pixels on the camera's side of the horizon, with the size each covers on the plane.
+    // Keep the pixels on the camera's side of the horizon, each with the size of the square that it covers on the
+    // plane.
     let mut seen = try_collect(pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))))?;
     if seen.is_empty() {
         return Err(Error::degenerate("the mask lies beyond the plane's horizon: choose other axes"));
@@ -40,7 +42,7 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
     let (low, high) = (low - rim, high + rim);
 
-    // Score each cell: gain 1 if it shows the plane, lose `HOLE` if it does not; exclude cells behind the camera.
+    // Score each cell: +1 if it shows the plane, `-HOLE` if it does not; exclude cells behind the camera.
     let cell = (high - low) / GRID as f64;
     let to_photo = plane.to_photo();
     let mut gain = vec![[0.0f64; GRID]; GRID];
@@ -71,8 +73,8 @@ pub fn marks(mask: &Image, p: DVec2) -> bool {
     p.x >= 0.0 && p.y >= 0.0 && p.x <= mask.width as f64 && p.y <= mask.height as f64 && mask.sample(p.x, p.y, 0) >= 0.5
 }
 
-/// The block of cells with the greatest sum, given by its first cell and the cell past its last (Kadane's algorithm
-/// over every range of rows).
+/// Finds the block of cells with the greatest sum of gains (Kadane's algorithm over every range of rows). Returns its
+/// first cell and the cell past its last.
 fn densest_block(gain: &[[f64; GRID]]) -> ([usize; 2], [usize; 2]) {
     let mut best = (f64::NEG_INFINITY, [0, 0], [GRID, GRID]);
     for top in 0..GRID {

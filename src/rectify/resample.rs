@@ -17,11 +17,12 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of parts of a footprint; footprints that need more parts use a coarser level. At the coarsest level,
-/// this is the maximum number of parts along a side.
+/// Maximum number of parts of a footprint; footprints that need more parts use a coarser pyramid level. On the
+/// coarsest level, this is the maximum number of parts along each side.
 const MAX_PARTS: usize = 16;
 
-/// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.
+/// Number of rows per band, the unit of work. The first row of each band is examined to find the number of pyramid
+/// levels needed.
 const BAND: usize = 8;
 
 /// Resamples the source to an image of the given size: the pixel at `p` shows the source at `to_source(p)`. Footprints
@@ -62,20 +63,20 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
     Ok(out)
 }
 
-/// The mapping from pixels to the source.
+/// The map from output pixels to the source image.
 struct Map {
-    /// Column by column.
+    /// The homography from pixels to the source, column by column.
     to_source: [f64; 9],
     /// The sign of the third coordinate in front of the camera: the sign at the image centre, which is assumed to be
     /// visible.
     front: f64,
-    /// Size of the source, and width of the image.
+    /// Size of the source (`size`), and width of the output image (`width`), in pixels.
     size: [f64; 2],
     width: usize,
 }
 
 widest! {
-    /// The coarsest pyramid level that a row needs.
+    /// Returns the coarsest pyramid level that a row needs.
     fn highest_level(map: &Map, row: usize) -> usize {
         let mut footprints = Footprints::EMPTY;
         let mut highest = 0;
@@ -122,7 +123,8 @@ struct Sampling {
     parts: [usize; 2],
 }
 
-/// `None` if no pixel is visible.
+/// Chooses the finest pyramid level on which the taps cover the shortest side and at most [`MAX_PARTS`] parts cover
+/// every footprint. `None` if no pixel is visible.
 #[inline(always)]
 fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;

@@ -8,19 +8,22 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Weakest gradient that is used, in encoded luma per pixel: an edge of about 9 of 255 grey levels [bench vp].
+/// Minimum gradient magnitude of the pixels used, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
+/// [bench vp]
 const MIN_GRADIENT: f32 = 0.01;
 
-/// Half-angle within which a pixel joins a region, π / 8 [convention: LSD].
+/// Maximum angle, in radians, between the gradient of a pixel and the mean gradient direction of the region that the
+/// pixel joins: π / 8. [convention: LSD]
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 
-/// Length in pixels at each end of a region that the fit leaves out [origin not recorded].
+/// Length, in pixels, that the line fit leaves out at each end of a region. [origin not recorded]
 const TRIM: f64 = 2.0;
 
-/// Minimum share of a region's bounding rectangle that its pixels cover; regions of noise have gaps [bench lines].
+/// Minimum share of a region's bounding rectangle that the region's pixels cover. Regions that arise from noise have
+/// gaps and cover less. [bench lines]
 const MIN_DENSITY: f64 = 0.6;
 
-/// The straight edges of a photo: statistically significant regions of similar gradient direction.
+/// Finds the straight edges of a photo: statistically significant regions of similar gradient direction.
 pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     let Gradients { width, height, magnitude, .. } = gradients;
     let seeds = by_falling_magnitude(magnitude)?;
@@ -46,8 +49,9 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     Ok(segments)
 }
 
-/// Indices of the pixels whose gradient is not too weak, strongest first, by a counting sort. The classes of the sort
-/// are so narrow that two pixels of an edge rarely share a class. Pixels of one class stay in row order.
+/// Returns the indices of the pixels whose gradient magnitude is at least `MIN_GRADIENT`, strongest first. A counting
+/// sort orders them; its classes are so narrow that two pixels of an edge rarely share a class. Pixels of one class
+/// stay in row-major order.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
     let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
@@ -88,12 +92,12 @@ impl Pixel {
 
 struct Grower<'a> {
     gradients: &'a Gradients,
-    /// Pixels that belong to a region already, and pixels whose gradient is too weak, including the image border.
+    /// Whether a pixel already belongs to a region or its gradient is too weak, as on the image border.
     used: Vec<bool>,
     region: Vec<Pixel>,
 }
 
-/// A region with its bounding rectangle.
+/// A region's segment, its number of pixels, and the width of its bounding rectangle across the segment.
 struct Found {
     segment: Segment,
     pixels: usize,
@@ -105,8 +109,8 @@ impl Found {
         self.pixels as f64 / (self.segment.length() * self.width).max(1.0)
     }
 
-    /// Minus the logarithm of the probability that at least this many pixels of the rectangle agree by chance
-    /// (Chernoff's bound of the binomial tail).
+    /// Minus the logarithm of the probability that at least as many pixels of the rectangle agree in direction by
+    /// chance (Chernoff's bound of the binomial tail).
     fn log_surprise(&self) -> f64 {
         let share = self.density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
@@ -116,8 +120,8 @@ impl Found {
 }
 
 impl Grower<'_> {
-    /// The region around a seed. If it is not dense enough, first tighten the tolerance, then cut off pixels far from
-    /// the seed.
+    /// Grows the region around a seed and fits a segment to it. If the region is not dense enough, first tightens the
+    /// tolerance of the gradient direction, then cuts off pixels far from the seed.
     fn straight_region(&mut self, seed: u32) -> Option<Found> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;
@@ -185,9 +189,9 @@ impl Grower<'_> {
         }
     }
 
-    /// Fits a line by total least squares, weighting each pixel by its gradient, which locates an edge to a fraction
-    /// of a pixel. Excludes the ends, where corners bend the gradient. `None` for regions of too few pixels to have a
-    /// direction.
+    /// Fits a line by total least squares, weighting each pixel by its gradient magnitude, which locates an edge to a
+    /// fraction of a pixel. Excludes the ends, where corners bend the gradient. Returns `None` if the region has too
+    /// few pixels to have a direction, or is wider than it is long.
     fn fit(&self) -> Option<Found> {
         if self.region.len() < 8 {
             return None;
@@ -206,7 +210,8 @@ impl Grower<'_> {
         (segment.length() > found.width).then_some(found)
     }
 
-    /// Centroid and principal direction of the pixels that satisfy a condition.
+    /// Returns the centroid and the principal direction of the pixels that satisfy `admits`, weighted by gradient
+    /// magnitude.
     fn axis(&self, admits: impl Fn(DVec2) -> bool) -> Option<(DVec2, DVec2)> {
         let origin = self.region.first()?.centre();
         let (mut mass, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);
@@ -228,7 +233,8 @@ impl Grower<'_> {
         (mass > 0.0).then(|| (origin + mean, DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))))
     }
 
-    /// Minimum and maximum coordinates of the region along a direction and across it.
+    /// Returns the minimum and maximum coordinates of the region relative to `centre`: x along the direction, y across
+    /// it.
     fn extent(&self, centre: DVec2, direction: DVec2) -> (DVec2, DVec2) {
         self.region.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
             let d = p.centre() - centre;

@@ -1,6 +1,7 @@
-//! One vanishing point on the Gaussian sphere: agreement with lines, refinement and covariance.
+//! Refines one vanishing point on the Gaussian sphere, and measures its agreement with lines and its covariance.
 //!
-//! The paper optimises `alpha = 1 - 1 / (rho + 1)`. On the sphere, points at infinity are ordinary points, and the
+//! The paper ("Lighting Style Transfer", §5.2) optimises `alpha = 1 - 1 / (rho + 1)` instead, where rho is the
+//! distance of the point from the principal point. On the sphere, points at infinity are ordinary points, and the
 //! coordinates are well conditioned at every point.
 
 use super::biweight::Biweight;
@@ -8,38 +9,39 @@ use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
-/// side: about 2 pixels in an image of 640 pixels [origin not recorded].
+/// Maximum distance of a segment's endpoints from the line through its midpoint and its vanishing point, in units of
+/// half the image's longer side: about 2 pixels in an image of 640 pixels. [origin not recorded]
 const ENDPOINT_LIMIT: f64 = 0.006;
 
-/// Largest sine of the angle between a segment and the line to its vanishing point: a second limit, which matters for
-/// short segments [origin not recorded].
+/// Maximum sine of the angle between a segment and the line through its midpoint and its vanishing point. This second
+/// limit matters for short segments. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
-/// Squared distance between a point and the midpoint of a line below which they coincide up to rounding [rounding].
+/// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.
+/// [rounding]
 const COINCIDENT: f64 = 1e-18;
 
-/// Prior of the endpoint noise, in units of half the image's longer side, and the number of segments that the prior
-/// counts as [origin not recorded].
+/// Prior standard deviation of the endpoint noise, in units of half the image's longer side, and the number of
+/// segments to which the prior is equivalent. [origin not recorded]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
 /// Number of segments that count as one independent observation: both sides of a bar, the pieces of one edge and rows
-/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants
-/// [bench vp].
+/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants.
+/// [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
-/// `NOISE_ROUNDS` is the number of iterations that alternately estimate the endpoint noise and the share of the noise
-/// that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share; `MIN_SLOPE` is the minimum of
-/// the biweight's expected slope. Below these minima, the noise exceeds the limit and cannot be estimated. `MIN_SLOPE`
-/// is the smallest value that loses no vanishing point of the development sets, in which short lines are more precise
-/// than their residuals suggest [bench vp].
+/// Limits of the estimate of the endpoint noise. The estimate alternates `NOISE_ROUNDS` times between the noise and
+/// the share of the noise that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share, and
+/// `MIN_SLOPE` the minimum of the biweight's expected slope: below them, the noise exceeds the limit and cannot be
+/// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
+/// lines are more precise than their residuals suggest. [bench vp]
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
 
-/// Standard deviation in radians of the error that all lines of a direction share, so that more lines do not reduce it:
-/// errors of the lens, of stitching and of the room's construction [bench vp].
+/// Standard deviation, in radians, of the error that all lines of a direction share: errors of the lens, of stitching
+/// and of the room's construction. Averaging over more lines does not reduce it. [bench vp]
 pub const STRAIGHTNESS: f64 = 0.0035;
 
 /// Image coordinates relative to the principal point, in units of half the longer image side.
@@ -54,7 +56,8 @@ impl Frame {
         Self { principal, scale: width.max(height) as f64 / 2.0 }
     }
 
-    /// Segments as weighted lines, each with its index; segments of zero length are left out.
+    /// Converts segments to weighted lines of the frame, each with the index of its segment. Leaves out segments of
+    /// zero length and segments that are not finite.
     pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
@@ -78,7 +81,7 @@ impl Frame {
 pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
-    /// Factor from a squared sine to a squared residual whose limit is 1.
+    /// Squared residual divided by squared sine; a line belongs to a point if its squared residual is at most 1.
     pub stiffness: f64,
 }
 
@@ -88,8 +91,8 @@ impl WeightedLine {
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
-    /// Squared residual; a line with a residual above 1 does not belong to the point. A line whose midpoint coincides
-    /// with the point has the residual 0.
+    /// Returns the squared residual of the line for a vanishing point; the line does not belong to the point if it is
+    /// above 1. A line whose midpoint coincides with the point has the residual 0.
     pub fn residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
@@ -97,14 +100,15 @@ impl WeightedLine {
         if distance > COINCIDENT { self.stiffness * across * across / distance } else { 0.0 }
     }
 
-    /// Degree of agreement in `[0, 1]`.
+    /// Returns how well the line agrees with a vanishing point, in `[0, 1]`; 0 if the line does not belong to the
+    /// point.
     pub fn agreement(&self, p: DVec3) -> f64 {
         (1.0 - self.residual(p)).max(0.0)
     }
 }
 
-/// Maps a camera-space direction to its vanishing point in homogeneous frame coordinates; [`unproject`] is the inverse.
-/// `focal` is in frame units.
+/// Maps a camera-space direction to its vanishing point in homogeneous frame coordinates; [`unproject`] is the
+/// inverse. `focal` is in frame units.
 pub fn project(direction: DVec3, focal: f64) -> DVec3 {
     direction.truncate().extend(direction.z / focal)
 }
@@ -118,7 +122,7 @@ pub fn unproject(p: DVec3, focal: f64) -> DVec3 {
 pub struct Refined {
     /// Unit direction in camera space.
     pub direction: DVec3,
-    /// Covariance of that direction in radians squared; zero along the direction.
+    /// Covariance of `direction` in radians squared; its variance along `direction` is zero.
     pub covariance: DMat3,
 }
 
@@ -129,13 +133,13 @@ impl Refined {
     }
 }
 
-/// The square root of the trace of a direction's covariance, at most a right angle.
+/// Returns the square root of the trace of a direction's covariance, at most a right angle (in radians).
 pub fn deviation(covariance: &DMat3) -> f64 {
     let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
     trace.sqrt().min(std::f64::consts::FRAC_PI_2)
 }
 
-/// The isotropic covariance of a direction with the given standard deviation.
+/// Returns the isotropic covariance of a direction with the given standard deviation in radians.
 pub fn round_covariance(direction: DVec3, error: f64) -> DMat3 {
     (DMat3::IDENTITY - outer(direction, direction)) * (0.5 * error * error)
 }
@@ -145,27 +149,27 @@ pub fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// A prior that expects a right angle between a direction and the direction `to`; the angle has the given variance.
+/// The prior that a direction is at a right angle to the direction `to`; `variance` is the variance of the angle.
 #[derive(Clone, Copy, Debug)]
 pub struct RightAngle {
     pub to: DVec3,
     pub variance: f64,
 }
 
-/// The direction that fits the given lines best, from a nearby start: iteratively reweighted least squares of the sine
-/// between each line and the line to the point. Tukey's biweight rejects lines beyond its limit. `None` if fewer than
-/// two distinct lines remain.
+/// Finds the direction that fits the given lines best, from a nearby start, by iteratively reweighted least squares.
+/// The residual of a line is the sine of the angle between the line and the direction from its midpoint to the
+/// vanishing point. Tukey's biweight rejects lines beyond its limit. `None` if fewer than two distinct lines remain.
 pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refined> {
     let direction = iterate(lines, start, focal, ZERO_MATRIX)?;
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
-/// Like [`refine`], with expected right angles as priors. The covariance that the lines give at the start determines
-/// the weight of the lines relative to the priors.
+/// Like [`refine`], with priors on right angles. The weight of the lines relative to the priors follows from the
+/// covariance that the lines give at the start.
 pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
-    // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
-    // unit.
+    // Up to a factor, the normal matrix of the lines is the inverse of their covariance. Scale the priors by this
+    // factor.
     let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
     let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {
@@ -188,7 +192,7 @@ fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3
     Some(direction)
 }
 
-/// The zero matrix: a system without priors [convention].
+/// The zero matrix, for a least-squares problem without priors. [convention]
 const ZERO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
 
 fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
@@ -200,11 +204,11 @@ fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
     }
 }
 
-/// One row of the least-squares problem.
+/// One row of the least-squares problem, which belongs to one line.
 struct Row {
-    /// Derivative of the line's sine with respect to the direction.
+    /// Derivative of `sine` with respect to the direction.
     gradient: DVec3,
-    /// Weight of the line at zero residual, and after the biweight.
+    /// Weight of the line at zero residual (`base_weight`), and after multiplication by the biweight (`weight`).
     base_weight: f64,
     weight: f64,
     /// Variance of the sine under unit endpoint noise: the variance of the segment's direction, plus the variance of
@@ -259,7 +263,7 @@ struct Covariance {
     inverse_trace: f64,
 }
 
-/// Variance of the endpoint noise, estimated from the residuals of the lines within the limit.
+/// Estimates the variance of the endpoint noise from the residuals of the lines within the biweight's limit.
 fn endpoint_noise(rows: &[Row]) -> f64 {
     let count = rows.len() as f64;
     let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
@@ -267,7 +271,7 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
     // correspond to two observations.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
-    // Correct for the residuals that the limit truncates.
+    // Correct for the residuals that the biweight's limit cuts off.
     let mut noise = seen;
     for _ in 0..NOISE_ROUNDS {
         let shown =
@@ -277,10 +281,11 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
     noise
 }
 
-/// The sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust Statistics", 1981, §6.3),
-/// with `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g` its gradient. ψ′ and ψ²
-/// are replaced by their expectations under independent endpoint noise of the estimated size: the sample values of few
-/// lines vary too much, and the lines of largest weight have the smallest residuals because of their weight.
+/// Computes the covariance by the sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust
+/// Statistics", 1981, §6.3), with `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g`
+/// its gradient. ψ′ and ψ² are replaced by their expectations under independent endpoint noise of the estimated size:
+/// the sample values of few lines vary too much, and the lines of largest weight have the smallest residuals because
+/// of their weight.
 fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Covariance> {
     let (e1, e2) = direction.any_orthonormal_pair();
     let rows: Vec<Row> = lines.iter().filter_map(|e| row(e, direction, focal)).collect();
@@ -304,7 +309,7 @@ fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Co
         return None;
     }
     let inverse = [n[2] / determinant, -n[1] / determinant, n[0] / determinant];
-    // A⁻¹ B, where A is `n` and B is `m`; the lines below multiply by the second A⁻¹.
+    // Multiply A⁻¹ by B, where A is `n` and B is `m`. The statements below multiply by the second A⁻¹.
     let product = [
         inverse[0] * m[0] + inverse[1] * m[1],
         inverse[0] * m[1] + inverse[1] * m[2],

@@ -1,26 +1,26 @@
 //! Measures how far the angles between the room's directions deviate from right angles, where each direction is
 //! estimated from its own lines alone.
 //!
-//! Deviations reveal walls that are not at right angles, non-square pixels and a wrong principal point. Some photos
-//! cannot reveal non-square pixels: where two directions run parallel to the image sides, any pixel aspect ratio agrees
-//! with the lines.
+//! Deviations reveal walls that are not at right angles, non-square pixels and a wrong principal point. Non-square
+//! pixels stay hidden in photos where two directions run parallel to the image sides: any pixel aspect ratio then
+//! agrees with the lines.
 
 use super::focal::Expected;
 use super::sphere::Refined;
 use glam::DVec3;
 
-/// Deviation from a right angle of the angle between two directions.
+/// How far the angle between two directions deviates from a right angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Squareness {
-    /// In radians; > 0 where the angle between the axes is obtuse.
+    /// Deviation in radians: > 0 where the angle between the axes is obtuse.
     pub angle: f64,
-    /// Standard deviation.
+    /// Standard deviation of `angle`, in radians.
     pub error: f64,
 }
 
-/// The angle between two of the three directions, at the focal length with which they were estimated.
+/// The angle between two of the three directions, at the focal length with which the directions were estimated.
 struct Pair {
-    /// Index of the third direction.
+    /// Index of the third direction, which is not part of the pair.
     beside: usize,
     /// Cosine of the angle between the two directions, and its derivative with respect to the logarithm of the focal
     /// length.
@@ -38,16 +38,16 @@ impl Pair {
         Self { beside, cosine, slope, variance: along(a, q) + along(b, p) }
     }
 
-    /// The constraint that a right angle of the pair sets on the logarithm of the focal length: its information
-    /// (inverse variance), and the information times the required change.
+    /// The constraint on the logarithm of the focal length if the pair is at a right angle: the information (inverse
+    /// variance), and the information times the change of the logarithm that makes the angle right.
     fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]
     }
 }
 
-/// For each axis, how far the angle between the two other axes deviates from a right angle; `None` if one of these two
-/// is unknown. Each direction must point the same way as its axis.
+/// Returns for each axis how far the angle between the two other axes deviates from a right angle; `None` if one of
+/// the two is unknown. Each direction must point the same way as its axis.
 ///
 /// `focal` is the focal length in pixels with which the directions were estimated. Unless the user gave it, each angle
 /// is evaluated at the focal length expected from the other angles and the prior.

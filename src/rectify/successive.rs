@@ -1,5 +1,5 @@
-//! The paper's search (§5.2): RANSAC finds one group of converging lines after another among the remaining lines, and
-//! optimises each point over `(alpha, theta)`.
+//! The paper's search for vanishing points (§5.2): RANSAC finds one group of converging lines after another among the
+//! remaining lines, and optimises each vanishing point over `(alpha, theta)`.
 
 use super::metric::{Line, visible};
 use super::params::{Metric, Params};
@@ -11,10 +11,10 @@ use crate::job::Job;
 use crate::rng::Rng;
 use glam::{DVec2, DVec3};
 
-/// Pairs of lines drawn for each point.
+/// Number of line pairs drawn per vanishing point.
 const DRAWS: usize = 600;
 
-/// At most `count` vanishing points in homogeneous pixels, in the order of detection.
+/// Finds at most `count` vanishing points, in homogeneous pixels and in the order of detection.
 pub fn search(
     frame: &Frame,
     segments: &[Segment],
@@ -32,7 +32,8 @@ pub fn search(
             Metric::VisibleLine => visible(s, w, h).and_then(|s| Line::new(&s)),
         })
         .collect();
-    // Inlier limits in pixels of an image 640 pixels wide, the best in measurements on labelled photos [bench vp].
+    // Inlier limits, in pixels of an image whose longer side is 640 pixels: the best values on labelled photos.
+    // [bench vp]
     let limit = w.max(h) / 640.0 * if params.metric == Metric::Segment { 1.5 } else { 8.0 };
     let distance = |line: &Line, p: DVec3| match params.metric {
         Metric::Segment => line.endpoint_distance(p),
@@ -44,7 +45,7 @@ pub fn search(
         if lines.len() < 2 {
             break;
         }
-        // Draw pairs of lines and keep the intersection that agrees with the most lines.
+        // Draw pairs of lines and keep the intersection with which the most lines agree.
         let votes = exec::map(DRAWS, job.part(round as f64 / count as f64, (round + 1) as f64 / count as f64), |k| {
             let mut rng = Rng::new(params.seed, &[round as u64, k as u64]);
             let (a, b) = (lines[rng.below(lines.len())].line, lines[rng.below(lines.len())].line);
@@ -66,21 +67,23 @@ pub fn search(
     Ok(found)
 }
 
-/// The homogeneous point at `(alpha, theta)` about an origin: `rho = alpha / (1 - alpha)`, so that `alpha = 1` is at
-/// infinity.
+/// Returns the homogeneous point with the polar coordinates `rho = alpha / (1 - alpha)` and `theta` about an origin;
+/// `alpha = 1` is at infinity.
 pub fn from_alpha(alpha: f64, theta: f64, origin: DVec2) -> DVec3 {
     let w = 1.0 - alpha;
     (DVec2::from_angle(theta) * alpha + origin * w).extend(w)
 }
 
-/// `alpha = 1 - 1 / (rho + 1)` and the polar angle of a homogeneous point.
+/// Returns the polar coordinates of a homogeneous point about an origin: `alpha = 1 - 1 / (rho + 1)` and the angle
+/// `theta`.
 pub fn to_alpha(p: DVec3, origin: DVec2) -> (f64, f64) {
     let away = (p.truncate() - origin * p.z) * if p.z < 0.0 { -1.0 } else { 1.0 };
     let rho = away.length();
     (rho / (rho + p.z.abs()), away.to_angle())
 }
 
-/// Pattern search over `(alpha, theta)`; steps of alpha shrink towards 1, where steps of rho grow.
+/// Minimises the loss by a pattern search over `(alpha, theta)`. The steps of alpha shrink towards 1, because the
+/// distance rho grows without bound there.
 fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
     let (mut alpha, mut theta) = to_alpha(start, origin);
     let mut best = loss(start);

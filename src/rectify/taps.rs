@@ -1,47 +1,47 @@
-//! The 4 × 4 source samples (taps) around each pixel of a run, and their filter weights.
+//! Computes the 4 × 4 source samples (taps) around each pixel of a run, and their filter weights.
 //!
 //! Where the source is magnified, the weights are those of bicubic interpolation (Catmull-Rom). Where it is minified,
-//! each sample is weighted by the share of the footprint that covers it, row by row, since the footprint is a sheared
-//! rectangle. For a footprint of one pixel both filters agree except for the sharpening terms of the cubic, which fade
-//! out in between.
+//! each sample is weighted by the share of the footprint that the sample covers, row by row, since the footprint is a
+//! sheared rectangle. For a footprint of one pixel the two filters differ only by the sharpening terms of the cubic,
+//! which fade out as the footprint grows beyond one pixel.
 
 use super::footprint::{Footprints, RUN};
 use super::lanes::{MAX_READ, TAPS};
 use crate::image::Image;
 
-/// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1` [convention].
+/// Longest side of a rectangle that the taps cover whatever its sub-pixel position: `TAPS - 1`. [convention]
 pub const MAX_SIDE: f32 = 3.0;
 
-/// Range of the squared major axis of a pixel's footprint, in source pixels, over which the cubic filter fades out:
-/// full weight up to `SHARP`, no weight from `SOFT` on [origin not recorded].
+/// The cubic filter fades out over this range of the squared major axis of a pixel's footprint, in source pixels: it
+/// has full weight up to `SHARP` and no weight from `SOFT` on. [origin not recorded]
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 
 /// One of the equal parts into which every footprint of a run is divided.
 #[derive(Clone, Copy)]
 pub struct Part {
-    /// Index of the part along x and y, and the number of parts along x and y.
+    /// Index of the part along x and y (`at`), and the number of parts along x and y (`of`).
     pub at: [usize; 2],
     pub of: [usize; 2],
-    /// Pixels of the pyramid level in use per pixel of the source.
+    /// Number of pixels of the pyramid level in use per source pixel, along a side: 1 on the finest level.
     pub scale: f32,
 }
 
 pub struct Taps {
-    /// Index of the first of the four rows, and the first column of each row.
+    /// Index of the first of the four rows of taps (`line`), and of the first column of taps in each row (`column`).
     pub line: [i32; RUN],
     pub column: [[i32; RUN]; TAPS],
     /// Offset of each row's first sample in the image data; valid if the row lies inside the image.
     pub start: [[usize; RUN]; TAPS],
     /// The filter weights. Without shear the filter is separable: `down` holds the weights of the rows, and `across`
-    /// those of the columns, equal for all rows. If `is_sheared`, `across` holds the weights of all 16 taps, row by
-    /// row, and `down` is not used.
+    /// holds the weights of the columns, which are equal in all rows. If `is_sheared`, `across` holds the weights of
+    /// all 16 taps, row by row, and `down` is not used.
     pub down: [[f32; TAPS]; RUN],
     pub across: [[[f32; TAPS]; RUN]; TAPS],
     /// Whether the pixel is visible and all its taps lie inside the source.
     pub is_inside: [bool; RUN],
     pub is_sheared: bool,
-    /// Whether some weights are negative.
+    /// Whether the filter includes the sharpening terms of the cubic, so that some weights are negative.
     pub is_sharp: bool,
 }
 
@@ -57,19 +57,21 @@ impl Taps {
         is_sharp: false,
     };
 
-    /// The weight of column `k` in row `j` of pixel `i`.
+    /// Returns the weight of the tap in column `k` of row `j` of pixel `i`.
     pub fn weight(&self, i: usize, j: usize, k: usize) -> f32 {
         if self.is_sheared { self.across[j][i][k] } else { self.down[i][j] * self.across[0][i][k] }
     }
 }
 
-/// Length of overlap between a sample of unit width and an interval of the given length whose centre is `offset` away.
+/// Length of the overlap between a sample of unit width and an interval of the given length, whose centre lies
+/// `offset` away from the sample.
 #[inline(always)]
 fn overlap(offset: f32, length: f32) -> f32 {
     (0.5 * length + 0.5 - offset.abs()).max(0.0).min(length.min(1.0))
 }
 
-/// The difference between Catmull-Rom and linear weights at fraction `t` of the way from the second tap to the third.
+/// Difference between the weights of Catmull-Rom and linear interpolation at fraction `t` of the way from the second
+/// tap to the third.
 #[inline(always)]
 fn sharpening(t: f32) -> [f32; TAPS] {
     let u = 1.0 - t;
@@ -77,18 +79,18 @@ fn sharpening(t: f32) -> [f32; TAPS] {
     [first, last - 2.0 * first, first - 2.0 * last, last]
 }
 
-/// The filter that a run uses.
+/// The filter that a run of pixels uses.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
-    /// Cubic weights alone: every footprint is within one source pixel.
+    /// Cubic weights alone: no footprint of the run is larger than one source pixel.
     Cubic,
     /// Overlap weights plus the faded sharpening terms of the cubic.
     Fading,
     Overlap,
 }
 
-/// Computes weights along one direction; `at` is the distance of the footprint's centre beyond the centre of the
-/// second tap.
+/// Computes the filter weights along x or y. `at` is the position of the footprint's centre relative to the second
+/// tap.
 #[inline(always)]
 fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Filter, to: &mut [[f32; RUN]; TAPS]) {
     let [first, second, third, fourth] = to;
@@ -118,17 +120,17 @@ fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Fil
     }
 }
 
-/// Converts a whole number to an integer by an addition that shifts it into the low bits: unlike a cast, this
-/// vectorises.
+/// Converts a whole number to an integer. Adds a constant that shifts the number into the low bits of the mantissa:
+/// unlike a cast, this vectorises.
 #[inline(always)]
 fn integer(whole: f64) -> i32 {
     (whole + 1.5 * (1u64 << 52) as f64).to_bits() as i32
 }
 
-/// As [`integer`], in single precision; the value is clamped to ±4 million.
+/// Like [`integer`], in single precision; the value is clamped to ±4 million.
 #[inline(always)]
 fn integer_of_single(whole: f32) -> i32 {
-    /// Adding this constant moves a whole number into the low bits of the mantissa [rounding].
+    /// Adding this constant moves a whole number into the low bits of the mantissa. [rounding]
     const SHIFT: f32 = 12_582_912.0;
     (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }
@@ -195,11 +197,12 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
     mark_inside(footprints, source, taps);
 }
 
-/// Marks the pixels that are visible and whose taps all lie inside the source.
+/// Marks the pixels that are visible and whose taps all lie inside the source (`is_inside`).
 #[inline(always)]
 fn mark_inside(footprints: &Footprints, source: &Image, taps: &mut Taps) {
-    // First columns grow or shrink monotonically from row to row, so checking the first row and the last suffices. A
-    // load of three channels reads past the fourth pixel; in the last row that must stay inside the image.
+    // The first column grows or shrinks monotonically from row to row, so checking the first row and the last
+    // suffices. A load of three channels reads past the fourth pixel; in the last row of the image, this read must
+    // stay inside the data.
     let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
     let beyond = if source.channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {
@@ -210,7 +213,7 @@ fn mark_inside(footprints: &Footprints, source: &Image, taps: &mut Taps) {
     }
 }
 
-/// Transposes weights computed tap by tap into four weights per pixel.
+/// Transposes weights stored per tap into four weights per pixel.
 #[inline(always)]
 fn side_by_side(weight: impl Fn(usize, usize) -> f32, to: &mut [[f32; TAPS]; RUN]) {
     for (i, to) in to.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Tests of the whole stage on rooms and planes with known cameras.
+//! Tests of rectification as a whole, on rooms and planes seen by known cameras.
 
 use super::sphere::STRAIGHTNESS;
 use super::vanishing::from_segments;
@@ -72,24 +72,26 @@ fn exact_segments_give_exact_vanishing_points_and_the_camera() {
 
 #[test]
 fn errors_under_noise_are_as_stated() {
-    // From noise that leaves the weights unchanged to noise that the inlier limit largely truncates.
+    // The noise ranges from values that hardly change the weights to values that the inlier limit largely truncates.
     for (noise, per_axis) in [(0.25, 14), (0.5, 40), (1.0, 14), (1.0, 40)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..40 {
             let truth = camera(0.5, 0.3, 0.05, 700.0);
             let params = Params { focal: Some(700.0), seed, ..Params::default() };
-            // Repeat each segment five times: stated errors assume five segments per independent observation.
+            // Repeat each segment five times: the reported errors assume five segments per independent observation.
             let segments = room(&truth, [per_axis; 3], noise, seed).repeat(5);
             let view = view_of(&segments, &params).unwrap();
             for v in &view.vanishing_points {
                 let found = direction_of(&truth, v.point);
                 let error = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
-                // The generated edges are perfectly straight: remove the allowance for crooked ones.
+                // The generated edges are perfectly straight: subtract the allowance for crooked edges from the
+                // reported variance.
                 sum += error * error / (v.error * v.error - STRAIGHTNESS * STRAIGHTNESS);
                 count += 1.0;
             }
         }
-        // The mean of 120 squared ratios, each with 1 to 2 degrees of freedom: standard deviation 0.09 to 0.13.
+        // This is the mean of 120 squared ratios, each with 1 to 2 degrees of freedom; its standard deviation is 0.09
+        // to 0.13.
         let ratio = sum / count;
         println!("noise of {noise} pixels, {per_axis} lines an axis: {ratio:.2}");
         assert!((0.6..1.4).contains(&ratio), "{noise}, {per_axis}: {ratio}");
@@ -145,7 +147,7 @@ fn the_files_focal_length_decides_where_lines_do_not() {
 
 #[test]
 fn one_family_gives_its_point_wherever_it_is() {
-    // Inside the image, on its border, and ever farther outside.
+    // Put the point inside the image, on its border, and ever farther outside.
     let border = 400.0 / 0.4f64.cos();
     for far in [300.0, border, 5e3, 1e6, 1e12, f64::INFINITY] {
         let along = DVec2::from_angle(0.4);
@@ -177,7 +179,8 @@ fn two_families_give_the_third() {
 
 #[test]
 fn families_that_no_camera_could_see_at_right_angles_still_give_orthogonal_axes() {
-    // Vanishing points on one side of the centre: for any focal length their rays meet at less than a right angle.
+    // Both vanishing points lie on one side of the centre: for any focal length their rays meet at less than a right
+    // angle.
     let points = [DVec2::new(1500.0, 320.0), DVec2::new(2500.0, 350.0)];
     let segments: Vec<Segment> = (0..80)
         .map(|i| {
@@ -278,7 +281,7 @@ fn ceiling(camera: &Perspective) -> Image {
     .unwrap()
 }
 
-/// True coordinates on that ceiling of a photo point.
+/// Returns the true coordinates of a photo point on the plane of [`ceiling`].
 fn on_ceiling(camera: &Perspective, p: DVec2) -> DVec2 {
     let ray = camera.axes.transpose() * camera.ray(p);
     DVec2::new(ray.x, ray.z) / -ray.y
@@ -294,7 +297,7 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
     let view = view_of(&room(&truth, [30, 30, 30], 0.0, 4), &Params::default()).unwrap();
     assert!((view.perspective.focal / 560.0 - 1.0).abs() < 0.02, "{}", view.perspective.focal);
     let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap();
-    // The sides of the rectangle in true units: the plane's distance is 1, so the pixel size is known too.
+    // Compare the sides of the rectangle in true units. The plane's distance is 1, so the pixel size is known too.
     let corner = flat.corners.map(|c| on_ceiling(&truth, c));
     let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
     let (w, h) = (flat.image.width as f64, flat.image.height as f64);
@@ -303,8 +306,8 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
     assert!((across.length() / down.length() * h / w - 1.0).abs() < 0.01);
     assert!(across.normalize().dot(down.normalize()).abs() < 0.01);
     assert!(flat.aspect_confidence > 0.8);
-    // Valid texels lie on the camera's side and show the lamps at their true positions. Weight each texel by the photo
-    // area it shows: many distant texels share a pixel.
+    // Valid texels lie on the camera's side of the horizon and show the lamps at their true positions. Weight each
+    // texel by the photo area it shows, since many distant texels share a photo pixel.
     let mut agree = (0.0, 0.0);
     for y in 0..flat.image.height {
         for x in 0..flat.image.width {
@@ -323,7 +326,7 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
         }
     }
     assert!(agree.1 > 10_000.0 && agree.0 > 0.95 * agree.1, "{agree:?}");
-    // The homography from the corners, as in the paper, is the same map.
+    // The homography computed from the corners, as in the paper, is the same map.
     let rectangle = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
     let paper = Homography::from_corners(rectangle, flat.corners).unwrap();
     let p = DVec2::new(0.3 * w, 0.7 * h);
@@ -339,7 +342,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
     for focal in [Some(560.0), None] {
         let mut shares = Vec::new();
         for seed in 0..60 {
-            // Repeat each segment five times: stated errors assume five segments per independent observation.
+            // Repeat each segment five times: the reported errors assume five segments per independent observation.
             let segments = room(&truth, [14, 14, 14], 1.0, seed).repeat(5);
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
             let flat = unwarp(&photo, &view, &mask, &params, Monitor::default().job()).unwrap();
@@ -347,7 +350,8 @@ fn expected_corner_errors_hold_over_noisy_lines() {
             let found = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
             let (found, exact) =
                 (centred(found), centred(flat.corners.map(|c| on_ceiling(&truth, c) / flat.pixel_size)));
-            // The naming and orientation of axes follow the photo: use the true axes nearest to them.
+            // Which axis is right and which is down follows from the photo: compare with the nearest pair of true
+            // axes.
             let turns = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
                 .into_iter()
                 .flat_map(|u| [(u, u.perp()), (u, -u.perp())])
@@ -360,13 +364,13 @@ fn expected_corner_errors_hold_over_noisy_lines() {
         let at = |p: f64| shares[(p * shares.len() as f64) as usize];
         let mean_square = shares.iter().map(|s| s * s).sum::<f64>() / shares.len() as f64;
         println!("{focal:?}: mean square {mean_square:.2}, half below {:.2}, 95 % below {:.2}", at(0.5), at(0.95));
-        // Expected errors are root mean squares. There are four times 60 corners, and the four of one view are
-        // correlated: the standard deviation is 0.12.
+        // Expected errors are root mean squares. The test averages over 60 views of four corners each, and the four
+        // corners of one view are correlated: the standard deviation of the mean is 0.12.
         assert!((0.7..1.4).contains(&mean_square) && at(0.95) < 2.3);
     }
 }
 
-/// Points relative to their mean.
+/// Returns the points relative to their mean.
 fn centred(points: [DVec2; 4]) -> [DVec2; 4] {
     let mean = points.iter().sum::<DVec2>() / 4.0;
     points.map(|p| p - mean)
@@ -427,7 +431,7 @@ fn images_without_lines_are_refused_and_never_crash() {
             let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Degenerate);
         }
-        // Noise; binary noise; saturation in all but a corner; every third pixel not finite.
+        // Images of noise, of binary noise, with all but a corner saturated, and with every third pixel not finite.
         let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
         for image in [
             Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),
@@ -462,7 +466,7 @@ fn planes_that_cannot_be_unwarped_say_why() {
     ] {
         assert_eq!(run(&mask(&|_, y| y < 200), bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
-    // A single marked pixel, and ceilings that touch the horizon and extend past it.
+    // A single marked pixel can be unwarped, and so can ceilings that touch the horizon or extend past it.
     assert!(run(&mask(&|x, y| x == 400 && y == 10), horizontal.clone()).is_ok());
     for lowest in [300, 400] {
         let across = run(&mask(&|_, y| y < lowest), horizontal.clone()).unwrap();
@@ -470,7 +474,8 @@ fn planes_that_cannot_be_unwarped_say_why() {
     }
 }
 
-/// A room whose horizontal directions are not at a right angle, seen with non-square pixels.
+/// Segments of a room whose horizontal axes deviate from a right angle by `skew`, seen with non-square pixels (aspect
+/// ratio `tall`).
 fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> Vec<Segment> {
     let turned = Perspective { axes: truth.axes * DMat3::from_rotation_y(skew), ..*truth };
     let mut segments = room(truth, [0, 40, 40], noise, seed);
@@ -483,24 +488,26 @@ fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> V
 
 #[test]
 fn right_angles_are_measured_within_the_stated_error() {
-    // Without a given focal length, the stated errors are conservative: an error of one direction changes its angle
-    // and the focal length that the others imply in the same sense, which the estimate ignores.
+    // If no focal length is given, the reported errors are conservative. An error of one direction affects both an
+    // angle and the focal length at which the angle is evaluated; these effects are correlated, which the estimate
+    // ignores.
     for (focal, range) in [(Some(700.0), 0.6..1.4), (None, 0.2..1.4)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..60 {
             let truth = camera(0.5, 0.3, 0.05, 700.0);
-            // Repeat each segment five times: stated errors assume five segments per independent observation.
+            // Repeat each segment five times: the reported errors assume five segments per independent observation.
             let segments = skewed(&truth, 0.0, 1.0, 0.5, 2 * seed).repeat(5);
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
             for found in view.squareness {
                 let found = found.unwrap();
-                // The generated edges are perfectly straight, which removes half of two directions' allowance from the
-                // angle between them.
+                // The generated edges are perfectly straight: subtract the allowance for crooked edges. Half of the
+                // allowance of each of the two directions applies to the angle between them.
                 sum += found.angle * found.angle / (found.error * found.error - STRAIGHTNESS * STRAIGHTNESS);
                 count += 1.0;
             }
         }
-        // Squares of 180 ratios, three for each of 60 independent views: the standard deviation is 0.11 to 0.18.
+        // This is the mean of 180 squared ratios, three for each of 60 independent views; its standard deviation is
+        // 0.11 to 0.18.
         let ratio = sum / count;
         println!("focal length {focal:?}: {ratio:.2}");
         assert!(range.contains(&ratio), "{focal:?}: {ratio}");
@@ -516,7 +523,8 @@ fn walls_at_other_angles_and_pixels_that_are_not_square_show() {
         println!("{:.4?} {ratios:.1?}", view.squareness.map(|s| s.map(|s| (s.angle, s.error))));
         (view, ratios)
     };
-    // The vertical axis lies between the two that are not at right angles.
+    // Entry 1, of the vertical axis, measures the angle between the two horizontal axes, which is not a right angle
+    // here.
     let skew = 8f64.to_radians();
     for side in [-1.0, 1.0] {
         let (view, ratios) = worst(&skewed(&truth, side * skew, 1.0, 0.3, 7), Some(700.0));
@@ -526,7 +534,7 @@ fn walls_at_other_angles_and_pixels_that_are_not_square_show() {
     }
     let (_, ratios) = worst(&skewed(&truth, 0.0, 1.25, 0.3, 9), Some(700.0));
     assert!(ratios.iter().any(|r| r.abs() > 3.0), "{ratios:?}");
-    // A single pair of axes reveals nothing unless the focal length is given.
+    // With a single pair of axes, a deviation from a right angle is visible only if the focal length is given.
     let pair: Vec<Segment> = room(&truth, [0, 40, 40], 0.3, 5);
     let [unknown, given] = [None, Some(700.0)].map(|focal| worst(&pair, focal).0.squareness[0].unwrap());
     assert!(unknown.error > 5.0 * given.error && given.angle.abs() < 3.0 * given.error, "{unknown:?} {given:?}");

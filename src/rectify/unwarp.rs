@@ -1,5 +1,5 @@
-//! Texture unwarping (§5.3): the homography of the plane from the room axes and the focal length, which gives the true
-//! aspect ratio, and the expected error of the homography.
+//! Texture unwarping (§5.3). The room axes and the focal length give the homography of the plane with its true aspect
+//! ratio; their errors give the expected error of the corners.
 
 use super::camera::{self, FREE_ERROR};
 use super::plane::{Plane, choose, marked_pixels};
@@ -21,12 +21,12 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     job.check()?;
     job.report(0.1);
 
-    // The best-resolved part of the photo decides the size of a pixel, unless the image would become too large.
+    // The best-resolved part of the photo determines the pixel size, unless the image would become too large.
     let size = rectangle.high - rectangle.low;
     let pixel_size = rectangle.densest.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);
     let (width, height) = (side(size.x), side(size.y));
-    // Keep pixels square; distribute the rounding of the size over both ends.
+    // Keep pixels square; distribute the rounding of the size over opposite sides.
     let spare = size - DVec2::new(width as f64, height as f64) * pixel_size;
     let to_plane = DMat3::from_translation(rectangle.low + spare / 2.0) * DMat3::from_scale(DVec2::splat(pixel_size));
     let to_photo = Homography(plane.to_photo().0 * to_plane).rescaled();
@@ -62,7 +62,7 @@ struct Uncertainty {
 }
 
 /// Propagates the covariances of the vanishing points and the uncertainty of the focal length to the rectified
-/// corners, to first order: perturb each input slightly and re-estimate the camera (focal length and axes) from the
+/// corners, to first order: perturbs each input slightly and re-estimates the camera (focal length and axes) from the
 /// perturbed inputs.
 fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64) -> Uncertainty {
     let camera = &view.perspective;
@@ -105,21 +105,21 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio [convention].
+    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Step of the finite differences as a share of a standard deviation [rounding].
+/// Step of the finite differences as a share of a standard deviation. [rounding]
 const SMALL: f64 = 1e-3;
 
-/// Vectors whose outer products sum to the covariance.
+/// Returns vectors whose outer products sum to the covariance matrix.
 fn deviations(covariance: &DMat3) -> [DVec3; 3] {
     let rows = covariance.to_cols_array_2d();
     let (values, vectors) = symmetric_eigen::<3>(rows);
     std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
 }
 
-/// Plane coordinates of photo points relative to their mean; the translation does not matter.
+/// Returns the plane coordinates of four photo points relative to their mean, because a translation is not an error.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     let inverse = plane.to_photo().inverse();
     let at = corners.map(|c| inverse.apply(c));
@@ -128,7 +128,7 @@ fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
 }
 
 impl Plane {
-    /// The plane as seen after the camera's axes rotated and its focal length changed.
+    /// Returns the plane after the camera's axes rotate by `turn` and its focal length becomes `focal`.
     fn seen_by(&self, turn: DMat3, focal: f64) -> Self {
         Self {
             right: turn * self.right,

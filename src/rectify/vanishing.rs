@@ -1,5 +1,5 @@
-//! Vanishing points from line segments (§5.2): up to three directions, orthogonal in the Manhattan search, each then
-//! refined freely with its own covariance.
+//! Finds vanishing points from line segments (§5.2): up to three orthogonal room directions and, if more are asked
+//! for, further directions. Each is refined with the lines assigned to it, and has a covariance.
 
 use super::params::{Params, Search};
 use super::sphere::{
@@ -11,14 +11,16 @@ use crate::geometry::Segment;
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Maximum number of lines used to search and refine; further (shorter) lines are only assigned.
+/// Maximum number of lines from which vanishing points are found. Any further lines are shorter and are only assigned
+/// to the points found.
 const MAX_LINES: usize = 2500;
 
-/// Directions with a larger error, in radians, are rejected [origin not recorded].
+/// Maximum standard deviation of a direction in radians; directions with a larger one are rejected.
+/// [origin not recorded]
 const MAX_ERROR: f64 = 0.2;
 
-/// Prior standard deviations: of the angle between two room directions, whose mean is a right angle, in radians, and of
-/// the logarithm of the focal length during their refinement [bench vp].
+/// Standard deviations of the priors under which directions are refined: of the angle between two room directions
+/// about a right angle, in radians, and of the logarithm of the focal length. [bench vp]
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
@@ -28,29 +30,31 @@ pub struct VanishingPoint {
     pub point: DVec3,
     /// Number of segments that run to the point; 0 if the point was derived from the other two.
     pub support: usize,
-    /// Standard deviation of its direction in camera space, in radians.
+    /// Standard deviation of the point's direction in camera space, in radians.
     pub error: f64,
-    /// Covariance of that direction in radians squared; its trace is the square of `error`. Lines that meet far away
-    /// constrain the direction across them better than along them.
+    /// Covariance of the point's direction in camera space, in radians squared; its trace is the square of `error`. If
+    /// the lines meet far away, the direction is known better across the lines than along them.
     pub covariance: DMat3,
 }
 
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// At most the first three are nearly orthogonal; these are sorted by falling support.
+    /// With the Manhattan search, the points of the (up to three) orthogonal directions come first. Within them, and
+    /// within the further points, the total weight of the lines that run to a point decreases.
     pub points: Vec<VanishingPoint>,
-    /// For each segment, the index of the point it runs to.
+    /// For each segment, the index of the point it runs to; `None` if it runs to no point.
     pub members: Vec<Option<usize>>,
-    /// Each direction estimated from its own lines without priors on right angles, for a camera with the focal length
-    /// `focal`.
+    /// For each point, the direction in camera space estimated from its own lines, without priors on right angles, for
+    /// a camera with the focal length `focal`.
     pub(super) free: Vec<Refined>,
-    /// Focal length in pixels for which the points are most nearly orthogonal; a weak guess if there is one finite
-    /// point only.
+    /// Focal length, in pixels, with which the directions were estimated: the given one, if any. Otherwise the
+    /// Manhattan search chooses the focal length for which the points are most nearly orthogonal (a weak guess if only
+    /// one point is finite), and the successive search uses the usual focal length.
     pub focal: f64,
 }
 
-/// A direction refined with priors on right angles to the others (`expected`), and without (`free`).
+/// A direction refined with priors on right angles to the other directions (`expected`), and without them (`free`).
 #[derive(Clone, Copy)]
 struct Found {
     expected: Refined,
@@ -88,7 +92,8 @@ pub fn from_segments(
 
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let (mut members, support) = assign(&weighted_lines, &points, segments.len());
-    // Keep points with at least two lines; sort by falling support within the orthogonal three.
+    // Keep points with at least two lines. The first three points, which the Manhattan search makes orthogonal, stay
+    // ahead of the others; within both groups, sort by falling weight of lines.
     let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
     order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
     order.truncate(count);
@@ -128,7 +133,7 @@ fn orthogonal_and_further(
     };
     let focal = triplet.focal;
     let mut found = refine_freely(lines, &[0, 1, 2].map(|k| triplet.axes.col(k)), focal);
-    // Find further directions from the lines that run along none of the three.
+    // Find further directions from the lines that run towards none of the directions found so far.
     while found.len() < count && !found.is_empty() {
         let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
         let rest: Vec<WeightedLine> =
@@ -140,7 +145,7 @@ fn orthogonal_and_further(
     Ok((found, focal))
 }
 
-/// A direction with the covariance that its lines give it.
+/// Returns the direction unchanged, with the covariance that the lines imply.
 fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
@@ -148,8 +153,8 @@ fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
     Found { expected: point, free: point }
 }
 
-/// Assigns every segment to the point it agrees with best. Returns the assignment, and the number and the total weight
-/// of the lines of each point.
+/// Assigns every segment to the point it agrees with best. Returns the index of the point for each segment, and the
+/// number and the total weight of the lines of each point.
 fn assign(lines: &[(usize, WeightedLine)], points: &[DVec3], count: usize) -> (Vec<Option<usize>>, Vec<(usize, f64)>) {
     let mut members = vec![None; count];
     let mut support = vec![(0usize, 0.0f64); points.len()];
@@ -164,9 +169,9 @@ fn assign(lines: &[(usize, WeightedLine)], points: &[DVec3], count: usize) -> (V
 }
 
 /// Refines each direction with the lines that agree with it better than with the other directions. Then refines each
-/// direction once more with priors that expect right angles to the other directions; these priors help where a
-/// direction has few lines. Drops directions that fewer than two lines determine, directions with an error above
-/// `MAX_ERROR`, and directions that drift into another direction.
+/// direction once more with the prior that it is at right angles to the other directions, which helps if a direction
+/// has few lines. Drops directions that fewer than two lines determine, directions with an error above `MAX_ERROR`,
+/// and directions that have drifted into another direction.
 fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
@@ -200,7 +205,7 @@ fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Foun
     kept
 }
 
-/// For each direction, the lines that agree with it better than with any other.
+/// Returns for each direction the lines that agree with it better than with any other direction.
 fn nearest(lines: &[WeightedLine], directions: &[Refined], focal: f64) -> Vec<Vec<WeightedLine>> {
     let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
     let mut groups = vec![Vec::new(); points.len()];
@@ -214,7 +219,7 @@ fn nearest(lines: &[WeightedLine], directions: &[Refined], focal: f64) -> Vec<Ve
 }
 
 impl Params {
-    /// The principal point in pixels.
+    /// Returns the principal point in pixels: the given one, or else the image centre.
     pub fn principal(&self, width: usize, height: usize) -> DVec2 {
         self.principal.unwrap_or(DVec2::new(width as f64, height as f64) / 2.0)
     }

@@ -1,4 +1,4 @@
-//! Reasons to doubt a camera and an unwarped plane.
+//! Warnings about a camera and about an unwarped plane that may be wrong.
 
 use super::camera::focal_spread;
 use super::focal::USUAL_SPREAD;
@@ -8,8 +8,8 @@ use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Relative standard deviation above which a focal length counts as assumed: the lines then determine it no better
-/// than the prior of photos in general. [convention]
+/// A focal length counts as assumed if its relative standard deviation is at least this: the lines then determine it
+/// no better than the prior for photos in general. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// Maximum standard deviation of a room axis in radians. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
@@ -18,21 +18,20 @@ pub const MAX_DIRECTION_ERROR: f64 = 0.035;
 const MAX_DISTORTION: f64 = 0.02;
 /// Maximum deviation of the angles between room axes from a right angle, in radians. [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
-/// Number of standard deviations from which a measured figure is significant. [convention]
+/// A measured value is significant if it exceeds this number of standard deviations. [convention]
 const SIGNIFICANT: f64 = 3.0;
 
-/// Magnification of the photo above which the position of a lamp's edge is uncertain. [judged on 38 photos]
+/// Above this magnification of the photo, the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
-/// Maximum share of the plane whose magnification exceeds `SHARP_MAGNIFICATION`. [judged on 38 photos]
+/// Maximum share of the plane that may be magnified by more than `SHARP_MAGNIFICATION`. [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// Minimum median, over the plane, of the sine of the angle between the plane and the viewing ray.
-/// [judged on 38 photos]
+/// Minimum sine of the angle between the plane and the viewing ray, as a median over the plane. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
-/// Number of sampled pixels of the unwarped plane along each side.
+/// Number of pixels sampled along each side of the unwarped plane.
 const GRID: usize = 96;
 
 impl View {
-    /// Reasons to doubt the camera.
+    /// Returns warnings about a camera that may be wrong.
     pub fn warnings(&self) -> Vec<Warning> {
         let all = [self.focal_assumed(), self.uncertain(), self.distorted(), self.not_square()];
         all.into_iter().flatten().collect()
@@ -94,20 +93,20 @@ impl View {
 struct Footprint {
     /// Centre of the footprint in pixels of the photo.
     place: DVec2,
-    /// Unwarped pixels per photo pixel along a side: the root of the ratio of areas.
+    /// Unwarped pixels per photo pixel along a side: the square root of the ratio of areas.
     magnification: f64,
     /// Sine of the angle between the plane and the viewing ray, from the axis ratio of the footprint.
     incidence: f64,
 }
 
 impl Unwarped {
-    /// Reasons to doubt the unwarped plane.
+    /// Returns warnings about an unwarped plane that may be wrong.
     pub fn warnings(&self) -> Vec<Warning> {
         let footprints = self.footprints();
         [magnified(&footprints), near_horizon(&footprints)].into_iter().flatten().collect()
     }
 
-    /// Footprints of valid pixels on a regular grid over the plane.
+    /// Computes the footprints of valid pixels on a regular grid over the plane.
     fn footprints(&self) -> Vec<Footprint> {
         let (width, height) = (self.valid.width, self.valid.height);
         let steps = |size: usize| (0..size).step_by(size.div_ceil(GRID).max(1));
@@ -120,7 +119,7 @@ impl Unwarped {
         let [right, down] = [0, 1].map(|k| self.to_photo.0.col(k));
         let seen = self.to_photo.apply_homogeneous(pixel);
         let place = seen.truncate() / seen.z;
-        // The Jacobian of the map, and the axes of the ellipse onto which it maps a pixel.
+        // Compute the Jacobian of the map, and the axes of the ellipse onto which the map takes a pixel.
         let jacobian = DMat2::from_cols(
             (right.truncate() - place * right.z) / seen.z,
             (down.truncate() - place * down.z) / seen.z,

@@ -1,5 +1,6 @@
-//! Band-limited look-ups of a repeating texture with their derivatives: cubic B-splines on the levels of a pyramid,
-//! interpolated linearly between levels. Unlike texels and bilinear filters, they are differentiable everywhere.
+//! Band-limited look-ups of a repeating texture with their derivatives, for the gradient descent of a placement: cubic
+//! B-splines on the levels of a pyramid, interpolated linearly between levels. Unlike nearest and bilinear look-ups,
+//! they are differentiable everywhere.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -16,7 +17,7 @@ struct Level {
     texels: Vec<DVec3>,
 }
 
-/// A filtered value with its partial derivatives by texture coordinates and by pyramid level.
+/// A filtered value with its partial derivatives with respect to texture coordinates and pyramid level.
 #[derive(Clone, Copy)]
 pub(super) struct TextureSample {
     pub value: DVec3,
@@ -26,7 +27,7 @@ pub(super) struct TextureSample {
 }
 
 impl Pyramid {
-    /// Negative values are clamped to 0.
+    /// Builds all levels down to a single texel. Negative values are clamped to 0.
     pub fn new(image: &Image, job: Job) -> Result<Self> {
         let mut image = image.to_rgb()?;
         image.data.iter_mut().for_each(|v| *v = v.max(0.0));
@@ -38,7 +39,7 @@ impl Pyramid {
         Ok(Self { levels })
     }
 
-    /// The texture at `uv`, filtered so that a texel of level 0 grows to `2^level` times its side.
+    /// Looks up the texture at `uv`, filtered as if a texel of level 0 had `2^level` times its side.
     pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
         let last = (self.levels.len() - 1) as f64;
         let clamped = level.clamp(0.0, last);
@@ -84,7 +85,7 @@ impl Level {
     }
 }
 
-/// The four texels under a cubic B-spline, with its weights and their derivatives by the coordinate.
+/// The four texels under a cubic B-spline, with their weights and the derivatives of the weights by the coordinate.
 struct Taps {
     texels: [usize; 4],
     weights: [f64; 4],

@@ -1,11 +1,12 @@
-//! Bins of light by source: one for the whole emission, one per lamp, or one per cell of the emissive surface.
+//! Sorts light into bins by its source: one bin for the whole emission, one per lamp, or one per cell of the emissive
+//! surface.
 
 use super::lamps::Lamps;
 use crate::render::{LightSource, PathSink, World};
 use glam::{DVec3, Vec2, Vec3};
 
 pub(super) struct Bins<'a> {
-    /// For each mesh, whether it belongs to the emission to solve for.
+    /// For each mesh, whether it has the emissive material to solve for.
     of_emitter: Vec<bool>,
     division: Division<'a>,
 }
@@ -32,7 +33,7 @@ impl<'a> Bins<'a> {
         }
     }
 
-    /// The bin of a light source, if it has one.
+    /// Returns the bin of a light source; `None` if the source counts as background.
     #[inline]
     fn find(&self, source: LightSource) -> Option<usize> {
         let (mesh, triangle, uv) = match (source, &self.division) {
@@ -51,7 +52,7 @@ impl<'a> Bins<'a> {
     }
 }
 
-/// The cell at texture coordinates.
+/// Returns the index of the cell that contains the texture coordinates.
 #[inline]
 fn cell(uv: Vec2, width: usize, height: usize) -> usize {
     let at = |t: f32, n: usize| ((t.rem_euclid(1.0) * n as f32) as usize).min(n - 1);
@@ -67,7 +68,7 @@ pub(super) struct Sorter<'a> {
 }
 
 impl<'a> Sorter<'a> {
-    /// `factor` converts incident light to the quantity to match.
+    /// `factor` converts incident light to the quantity that is to match the photo.
     pub fn new(bins: &'a Bins<'a>, factor: Vec3, sums: &'a mut [DVec3], others: &'a mut DVec3) -> Self {
         Self { bins, factor, sums, others }
     }

@@ -1,11 +1,11 @@
 //! Bounded least squares for few equations and any number of unknowns.
 //!
-//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique even
-//! for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
-//! equations in `z` as there are rows. These equations state that the gradient of a convex, piecewise quadratic
-//! function of `z` is zero. Newton's method with an exact line search minimises this function in a few steps. Each step
-//! solves for the unknowns between their bounds: this is the primal-dual active set method (Hintermüller, Ito and
-//! Kunisch 2002), applied to the dual problem, which has few unknowns.
+//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique
+//! even for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: a system
+//! in `z` with one equation per row of `A`. It states that the gradient of a convex, piecewise quadratic function of
+//! `z` is zero. Newton's method with an exact line search minimises this function in a few steps. Each step solves for
+//! the unknowns between their bounds: this is the primal-dual active set method (Hintermüller, Ito and Kunisch 2002),
+//! applied to the dual problem, which has few unknowns.
 
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
@@ -22,11 +22,12 @@ pub(super) struct Problem<'a> {
     pub upper: &'a [f64],
 }
 
-/// Largest number of Newton steps; all but the last few change the active set. [convention]
+/// Maximum number of Newton steps; all but the last few change the set of unknowns at their bounds. [convention]
 const MAX_STEPS: usize = 200;
-/// Residual relative to the right-hand side that counts as zero. [rounding]
+/// A gradient counts as zero if its norm, relative to the right-hand side, is at most this. [rounding]
 const CONVERGED: f64 = 1e-12;
-/// Residual that is accepted after the last step, when an unknown at its bound keeps changing state. [rounding]
+/// After the last step, a gradient of this relative norm is accepted, since an unknown at its bound may keep changing
+/// state. [rounding]
 const CONVERGED_AT_BOUND: f64 = 1e-8;
 
 /// The state of an unknown.
@@ -38,6 +39,8 @@ enum State {
 }
 
 impl Problem<'_> {
+    /// Returns the solution `x`.
+    ///
     /// # Errors
     /// `Internal` if the method does not converge, which cannot happen in theory.
     pub fn solve(&self) -> Result<Vec<f64>> {
@@ -68,7 +71,7 @@ impl Problem<'_> {
         Err(Error::new(ErrorKind::Internal, "the powers of the groups did not settle"))
     }
 
-    /// The states of the unknowns.
+    /// Returns the state of each unknown at the dual point `z`.
     fn states(&self, z: &[f64]) -> Vec<State> {
         let state = |(x, u): (f64, &f64)| match x {
             x if x <= 0.0 => State::AtLower,
@@ -83,7 +86,7 @@ impl Problem<'_> {
         &self.matrix[i * n..(i + 1) * n]
     }
 
-    /// `p + Aᵀ z`
+    /// The unknowns before they are clipped to their bounds: `p + Aᵀ z`.
     fn unclipped(&self, z: &[f64]) -> Vec<f64> {
         let mut x = self.preferred.to_vec();
         for (i, &z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
@@ -98,13 +101,14 @@ impl Problem<'_> {
         x
     }
 
-    /// `λ z + A x(z) − b`
+    /// The gradient of the dual function at `z`: `λ z + A x(z) − b`.
     fn gradient(&self, lambda: f64, z: &[f64]) -> Vec<f64> {
         let x = self.clipped(z);
         (0..self.right.len()).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
     }
 
-    /// `−(λ I + Σ a aᵀ)⁻¹ g`, where the sum is over the unknowns between their bounds.
+    /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where the sum is over the unknowns between their
+    /// bounds.
     fn newton_step(&self, lambda: f64, states: &[State], gradient: &[f64]) -> Vec<f64> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
@@ -121,8 +125,8 @@ impl Problem<'_> {
         step
     }
 
-    /// The minimum along the step: the derivative is piecewise linear, and its slope changes where an unknown leaves a
-    /// bound or reaches one.
+    /// Returns the position of the minimum along the step, in `[0, 1]`. The derivative along the step is piecewise
+    /// linear, and its slope changes where an unknown leaves a bound or reaches one.
     fn line_search(&self, lambda: f64, z: &[f64], step: &[f64], gradient: &[f64]) -> f64 {
         let along = {
             let mut along = vec![0.0; self.preferred.len()];
@@ -164,7 +168,7 @@ fn solve_cholesky(a: &mut [f64], x: &mut [f64]) {
     for i in 0..m {
         for k in 0..=i {
             let rest = a[i * m + k] - dot(&a[i * m..i * m + k], &a[k * m..k * m + k]);
-            // Bound small pivots away from zero against rounding.
+            // Bound small pivots from below: rounding could make them zero or negative.
             a[i * m + k] = if i == k { rest.max(f64::EPSILON * a[i * m + i]).sqrt() } else { rest / a[k * m + k] };
         }
     }
@@ -182,7 +186,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// `regularisation` is relative to the mean square of a row.
+    /// Solves a problem whose `regularisation` is given relative to the mean square of a row.
     fn solve(
         rows: usize,
         matrix: &[f64],
@@ -205,7 +209,7 @@ mod tests {
         // Identical unknowns get equal shares beyond their preferred values.
         let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
-        // The first unknown is bounded by 1, so the second gives the rest.
+        // The first unknown is bounded by 1, so the second unknown contributes the remaining 5.
         let x = solve(1, &[1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0], &[1.0, FREE]);
         assert!(x[0] == 1.0 && (x[1] - 5.0).abs() < 1e-7, "{x:?}");
         // A negative solution is clipped to 0.
@@ -243,7 +247,7 @@ mod tests {
                 let slope: f64 =
                     (0..m).map(|i| matrix[i * n + j] * (dot(&matrix[i * n..][..n], &x) - right[i])).sum::<f64>()
                         + lambda * (x[j] - preferred[j]);
-                // Relative to the terms that cancel.
+                // The tolerance is relative to the terms that cancel in the slope.
                 let small = 1e-6 * (lambda + norm(&right));
                 let fits = match x[j] {
                     v if v == upper[j] => slope <= small,

@@ -11,15 +11,17 @@ pub(super) struct Bounds<const N: usize> {
     pub period: [f64; N],
 }
 
-/// Largest number of steps. [origin not recorded]
+/// Maximum number of steps. [origin not recorded]
 const MAX_STEPS: usize = 60;
-/// Largest number of halvings of a step. [convention]
+/// Maximum number of halvings of a step. [convention]
 const MAX_HALVINGS: usize = 30;
-/// Smallest accepted decrease relative to the linear prediction (Armijo condition). [convention]
+/// A step is accepted if the function decreases by at least this share of the linear prediction (Armijo condition).
+/// [convention]
 const ARMIJO: f64 = 1e-4;
-/// Length of the first step. [origin not recorded]
+/// Length of the first step, in the units of the variables. [origin not recorded]
 const FIRST_STEP: f64 = 0.05;
-/// Relative decrease below which the search ends. [origin not recorded]
+/// The search ends when a step decreases the function by at most this share of the function's value. [origin not
+/// recorded]
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {
@@ -31,12 +33,12 @@ impl<const N: usize> Bounds<N> {
         std::array::from_fn(|i| if self.is_open(i) { x[i] } else { x[i].clamp(self.min[i], self.max[i]) })
     }
 
-    /// The point at relative positions `share` in the ranges of the variables.
+    /// Interpolates between the bounds of each variable: `share` is 0 at the minimum and 1 at the maximum.
     pub fn between(&self, share: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// The point moved by whole periods into the bounds; the function has the same value there.
+    /// Moves the point by whole periods into the bounds; the function has the same value there.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }
@@ -50,7 +52,7 @@ impl<const N: usize> Bounds<N> {
     }
 }
 
-/// Minimises from `x`; `f` returns the value and its gradient. Ends early if the job is cancelled.
+/// Minimises `f` from the point `x`; `f` returns the value and its gradient. Ends early if the job is cancelled.
 pub(super) fn run<const N: usize>(
     bounds: &Bounds<N>,
     mut x: [f64; N],
@@ -107,7 +109,7 @@ fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, step_taken: &[f64
     if !(curvature > 1e-12 * dot(step_taken, step_taken).sqrt() * dot(gradient_change, gradient_change).sqrt()) {
         return;
     }
-    // Initialise with the observed curvature in all directions.
+    // Initialise the inverse Hessian with the curvature observed along the step, for all directions.
     let scale = curvature / dot(gradient_change, gradient_change);
     let h = inverse.get_or_insert(std::array::from_fn(|i| std::array::from_fn(|j| if i == j { scale } else { 0.0 })));
     let along: [f64; N] = std::array::from_fn(|i| dot(&h[i], gradient_change));

@@ -10,21 +10,22 @@ pub(super) fn mean(values: &[f64; BATCHES]) -> f64 {
     values.iter().sum::<f64>() / BATCHES as f64
 }
 
-/// Standard error of the mean.
+/// Standard error of the mean over the batches.
 pub(super) fn standard_error(values: &[f64; BATCHES]) -> f64 {
     let centre = mean(values);
     let n = BATCHES as f64;
     (values.iter().map(|v| (v - centre) * (v - centre)).sum::<f64>() / (n - 1.0) / n).sqrt()
 }
 
-/// The mean without one batch.
+/// Returns the mean over all batches except one; `part` is the value of that batch.
 pub(super) fn without(mean: f64, part: f64) -> f64 {
     let n = BATCHES as f64;
     (n * mean - part) / (n - 1.0)
 }
 
-/// The jackknife over batches (Efron 1982, §2): pseudo-values from the result of all batches and the results without
-/// each batch. Their mean is the result without its bias of order 1/n, and their variance gives its standard error.
+/// Computes the pseudo-values of the jackknife over batches (Efron 1982, §2) from the result of all batches and the
+/// results without each batch. The mean of the pseudo-values is the result without its bias of order 1/n, and their
+/// variance gives its standard error.
 pub(super) fn pseudo_values(whole: f64, without: &[f64; BATCHES]) -> [f64; BATCHES] {
     let n = BATCHES as f64;
     without.map(|w| n * whole - (n - 1.0) * w)

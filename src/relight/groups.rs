@@ -1,14 +1,16 @@
-//! Powers of groups of lamps that best meet several goals, within bounds.
+//! Solves for the powers of groups of lamps that best meet several lighting goals, within bounds.
 //!
 //! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which determines
-//! the powers that the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without
-//! regularisation). With one group and one goal, the solution is the closed form of [`super::run`].
+//! channels, plus a small regularisation. For each goal, `w` is the weight, `b` the radiance from all other light, `r`
+//! the response to a group, `t` the target and `s` the target's brightness. The regularisation pulls towards equal
+//! powers, which determines powers that the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises
+//! the same sum without regularisation). With one group and one goal, the solution is the closed form of
+//! [`super::run`].
 //!
-//! A goal may be a limit, which counts only where it is violated ([`Constraint`]).
+//! A goal may be a lower or upper limit; its residual then counts only where the limit is violated ([`Constraint`]).
 //!
-//! Each residual belongs to a goal and is a mean over many paths. Single texels are never compared: their noise would
-//! bias the powers towards dark.
+//! Each residual belongs to a goal and is a mean over many paths. Single texels are never compared with the photo:
+//! their noise would bias the powers towards dark.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
@@ -24,31 +26,32 @@ use glam::DVec3;
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
-/// Largest number of dimming levels. \[convention\]
+/// Maximum number of dimming levels. \[convention\]
 pub const MAX_LEVELS: usize = 4096;
 
-/// Which changes of a group are allowed.
+/// Whether the colour of a group may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
-    /// One power for all channels.
+    /// One power for all channels: the colour stays.
     Common,
-    /// A power for each channel.
+    /// One power per channel: the colour may change.
     PerChannel,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupParams {
     pub colour: Colour,
-    /// Largest multiplier of each group, ≥ 0, may be infinite; empty for no bounds.
+    /// Maximum multiplier of each group's emission, ≥ 0, may be infinite; empty for no bounds.
     pub max_scale: Vec<f64>,
-    /// Available multipliers, each ≥ 0, at most [`MAX_LEVELS`]; empty for continuous dimming. Groups get the levels
-    /// that together best meet the goals ([`super::steps`]). Their intervals include the distance to the continuous
-    /// powers.
+    /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`]; empty for continuous dimming. Groups
+    /// get the levels that together best meet the goals ([`super::steps`]). Their confidence intervals then include
+    /// the difference from the continuous powers.
     pub levels: Vec<f64>,
-    /// Weight of the regularisation towards equal lamps, in `[1e-9, 1e3]`: small values meet the goals, large values
-    /// keep the lamps equal.
+    /// Weight of the regularisation towards equal powers, in `[1e-9, 1e3]`: with a small weight the powers meet the
+    /// goals, with a large weight they stay equal.
     pub regularisation: f64,
-    /// Largest relative miss with which a goal counts as met, in `[1e-6, 1]`; the noise is added to it.
+    /// A goal counts as met if it misses its target by at most this share of the target's brightest channel, plus the
+    /// noise; in `[1e-6, 1]`.
     pub tolerance: f64,
 }
 
@@ -67,7 +70,7 @@ impl Default for GroupParams {
 /// The result for one goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Mean radiance, in cd/m² per channel.
+    /// Mean radiance of the goal's surface or grid, in cd/m² per channel.
     pub achieved: DVec3,
     /// Half-widths of the 95 % confidence intervals of `achieved`, for fixed powers.
     pub half_width: DVec3,
@@ -81,15 +84,16 @@ pub struct GroupSolution {
     /// Half-widths of the 95 % confidence intervals of `scale`, including rounding to levels; 0 at a bound.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
-    /// Why goals are missed, if any are; the powers are then the best within the bounds.
+    /// The reason why goals are missed; `None` if all are met. If goals are missed, the powers are the best within the
+    /// bounds.
     pub unreachable: Option<String>,
 }
 
 /// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]),
 /// traced for the same goals; only the targets and weights of the goals may differ.
 ///
-/// # Errors
-/// `Unreachable` if no goal gets light from any group; parameters out of range; cancelled.
+/// Returns an `Unreachable` error if no goal gets light from any group. Also fails if parameters are out of range or
+/// the job is cancelled.
 pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams, job: Job) -> Result<GroupSolution> {
     check(responses, goals, params)?;
     let system = System { responses, goals, params };
@@ -130,9 +134,9 @@ impl Powers {
         }
     }
 
-    /// Half-widths of 95 % intervals, from the powers without each batch: the jackknife of
+    /// Returns half-widths of 95 % confidence intervals, given the powers without each batch: the jackknife of
     /// [`super::estimate::pseudo_values`] for all groups at once. Pseudo-values spread `n - 1` times as far as the
-    /// results they come from.
+    /// results from which they are computed.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {
@@ -199,7 +203,7 @@ struct System<'a> {
     params: &'a GroupParams,
 }
 
-/// The system of equations of the goals, row by row.
+/// The equations of all goals: one row per residual.
 #[derive(Default)]
 struct Equations {
     groups: usize,
@@ -210,7 +214,7 @@ struct Equations {
 
 impl Equations {
     fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
-        // Regularise towards the best powers that are equal for all lamps.
+        // Regularise towards the best power that all lamps have in common.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
         let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
@@ -219,15 +223,15 @@ impl Equations {
     }
 }
 
-/// Mean responses.
+/// Responses and backgrounds, averaged over batches.
 struct Measured {
-    /// For each goal the response to each group.
+    /// For each goal, the response to each group.
     rows: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
 }
 
 impl System<'_> {
-    /// Means over all batches.
+    /// Averages over all batches.
     fn means(&self, job: Job) -> Result<Measured> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
@@ -248,9 +252,9 @@ impl System<'_> {
         })
     }
 
-    /// Means over all batches but one.
+    /// Averages over all batches but one.
     fn means_without(&self, all: &Measured, batch: usize) -> Measured {
-        // Clamp to 0: the remainder may be negative by rounding.
+        // Clamp to 0, because rounding may make the remainder negative.
         let rest = |mean: &DVec3, part: DVec3| {
             let n = BATCHES as f64;
             ((*mean * n - part) / (n - 1.0)).max(DVec3::ZERO)
@@ -270,7 +274,7 @@ impl System<'_> {
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
-    /// The powers after rounding to the available dimming levels.
+    /// Rounds the powers to the available dimming levels.
     fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();
@@ -280,11 +284,11 @@ impl System<'_> {
             let Equations { matrix, right, constraints, .. } = &self.equations(measured, channels);
             Ok(Terms { matrix, right, constraints }.round(&x, &levels, &upper))
         };
-        // `round` returns no errors.
+        // `by_channels` cannot fail here, because `round` never does.
         self.by_channels(round).map_or_else(|_| whole.to_vec(), |powers| powers.colours())
     }
 
-    /// Largest power of each group.
+    /// Returns the maximum power of each group.
     fn upper(&self) -> Vec<f64> {
         if self.params.max_scale.is_empty() {
             vec![f64::INFINITY; self.responses.lamps()]
@@ -293,7 +297,7 @@ impl System<'_> {
         }
     }
 
-    /// Solves for all channels together, or for each channel, and collects the powers.
+    /// Calls `solve` once for all channels together, or once for each channel, and collects the powers.
     fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Powers> {
         let channels: &[&[usize]] = match self.params.colour {
             Colour::Common => &[&[0, 1, 2]],
@@ -302,7 +306,7 @@ impl System<'_> {
         channels.iter().map(|channels| solve(channels)).collect::<Result<_>>().map(Powers)
     }
 
-    /// The equations of all goals in some channels.
+    /// Sets up the equations of all goals for the given channels.
     fn equations(&self, measured: &Measured, channels: &[usize]) -> Equations {
         let mut equations = Equations { groups: self.responses.lamps(), ..Equations::default() };
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
@@ -311,7 +315,8 @@ impl System<'_> {
                 Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.constraint[c])).collect(),
                 Aspect::Luminance => vec![(LUMINANCE, goal.constraint[0])],
             };
-            // A goal of darkness has no brightness of its own: relate its residual to the light of all lamps.
+            // A goal of zero radiance has no brightness to divide by: divide its residual by the radiance under all
+            // lamps instead.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
@@ -353,7 +358,7 @@ impl System<'_> {
         Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
 
-    /// The reason why goals are missed, if any are.
+    /// Explains why goals are missed; `None` if all are met.
     fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
         let missed: Vec<usize> = (0..outcomes.len())
             .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].status.iter().any(|r| *r != TargetStatus::Met))

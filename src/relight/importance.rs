@@ -1,12 +1,13 @@
-//! The importance map: how much each point of the emissive surface contributes to the target.
+//! The importance map: how much each point of the emissive surface contributes to the mean radiance of the target
+//! surface.
 //!
-//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the
-//! target, in a scene with uniform emission on the surface, estimate the integrals of `I` over the cells of the
-//! surface's texture coordinates once. After that, any texture at any scale, rotation and offset costs one dot
-//! product, without tracing.
+//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`, where `I` is the
+//! importance. The texture space of the emissive surface is divided into cells. The integral of `I` over each cell is
+//! estimated once, with paths that start at the target while the surface emits uniformly. After that, the response to
+//! any texture at any scale, rotation and offset is a dot product, without tracing.
 //!
-//! Cells limit the bandwidth: within a cell, `I` is taken as constant. In matt surroundings `I` is smooth, and the
-//! error is proportional to the squared size of a cell; [`Importance::respond`] estimates it.
+//! Cells limit the resolution: within a cell, `I` is taken as constant. Among matt surfaces `I` is smooth, and the
+//! error is proportional to the squared size of a cell; [`Importance::respond`] estimates this error.
 
 use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
@@ -31,7 +32,7 @@ pub struct MapParams {
     /// Number of cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
-    /// Stopping conditions, for the interval of the response to uniform emission; `quantity` is ignored.
+    /// Stopping conditions. The target error applies to the response to uniform emission. `quantity` is ignored.
     pub tracing: Params,
 }
 
@@ -41,14 +42,14 @@ impl Default for MapParams {
     }
 }
 
-/// The importance map, in independent batches.
+/// The importance map, estimated in independent batches.
 #[derive(Clone, Debug)]
 pub struct Importance {
     width: usize,
     height: usize,
     /// For each batch and each cell, row by row: the target's mean radiance if only this cell emits, with 1 cd/m².
     batches: Vec<Vec<DVec3>>,
-    /// For each batch the target's mean radiance under all other light.
+    /// For each batch, the target's mean radiance under all light except the emission of the surface.
     background: Vec<DVec3>,
     /// Number of paths traced.
     pub paths: u32,
@@ -59,25 +60,27 @@ pub struct Importance {
 pub struct Response {
     /// Mean radiance of the target in cd/m² per channel, for texture values in cd/m².
     pub light: Estimate,
-    /// Change of the result if the cells had twice the side, noise included. Where `I` is smooth, the error of the
-    /// result is a third of this change.
+    /// Result with cells of twice the side, minus this result; it includes noise. Where `I` is smooth, this difference
+    /// is three times the error of the result.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
 }
 
-/// The mean importance map.
+/// The importance map, averaged over the batches.
 pub(super) struct Cells {
     pub width: usize,
     pub height: usize,
     pub importance: Vec<DVec3>,
 }
 
-/// Largest number of cells along each side: such a map takes 200 MB. [convention]
+/// Maximum number of cells along each side; a map of this size takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells along that side if this is
-/// less (but never less than 4); at most 64. With too few look-ups, texels cut by cell borders would get wrong weights,
-/// with a bias for periodic patterns. [origin not recorded]
+/// The emission of a cell is averaged over a grid of texture look-ups. Along each side of the cell, the number of
+/// look-ups is the number of texels that the side covers, within a minimum and a maximum. The maximum is
+/// `MAX_LOOK_UPS`. The minimum is `LOOK_UPS_ACROSS` divided by the number of cells along that side of the map, but
+/// between 4 and `MIN_LOOK_UPS`. With fewer look-ups, texels that cell borders cut would get wrong weights, which
+/// biases periodic patterns. [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;
@@ -132,7 +135,7 @@ impl Importance {
         (self.width, self.height)
     }
 
-    /// The mean map over all batches, reduced to at most `max_cells` cells along each side by adding cells.
+    /// Returns the mean map over all batches, reduced to at most `max_cells` cells along each side by adding up cells.
     pub(super) fn cells(&self, max_cells: usize) -> Cells {
         let (width, height) = (self.width.min(max_cells), self.height.min(max_cells));
         let mut importance = vec![DVec3::ZERO; width * height];
@@ -145,7 +148,7 @@ impl Importance {
         Cells { width, height, importance }
     }
 
-    /// The target's mean radiance under all other light.
+    /// The target's mean radiance under all light except the emission of the surface.
     pub(super) fn background(&self) -> DVec3 {
         self.background.iter().sum::<DVec3>() / BATCHES as f64
     }
@@ -166,9 +169,9 @@ impl Importance {
         Ok(image)
     }
 
-    /// The response of the target to a texture on the surface, in the unit of the texture's values. `placement`
-    /// transforms the surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps
-    /// according to its mode.
+    /// Computes the response of the target to a texture on the surface, in the unit of the texture's values.
+    /// `placement` transforms the surface's texture coordinates to those of the texture (as `KHR_texture_transform`).
+    /// Outside the unit square, the texture's wrap mode applies.
     ///
     /// # Errors
     /// A placement that is not finite; cancelled.
@@ -180,7 +183,7 @@ impl Importance {
         Ok(Response { light, band_error: self.coarse(&emission) - light.mean, measured })
     }
 
-    /// The scale of a texture at which the target is met. Replaces the tracing of [`super::run`].
+    /// Solves for the scale of a texture at which the target is met. Needs no tracing, unlike [`super::run`].
     ///
     /// # Errors
     /// `Unreachable`, as in [`super::run`].
@@ -193,12 +196,12 @@ impl Importance {
         solve::run(&measured, target.as_dvec3(), [Constraint::Exactly; 3])
     }
 
-    /// Mean emission of each cell.
+    /// Computes the mean emission of each cell.
     fn emission(&self, texture: &Texture, placement: &Mat3, job: Job) -> Result<Vec<DVec3>> {
         if !placement.is_finite() {
             return Err(Error::argument(format!("placement is {placement}; it must be finite")));
         }
-        // Look up at least as many points as a cell covers texels, along each side of the transformed cell.
+        // Look up about as many points along each side of a cell as the transformed cell covers texels.
         let cell = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
         let along = |side: Vec2, cells: usize| {
@@ -225,7 +228,7 @@ impl Importance {
         Ok(rows.into_iter().flatten().collect())
     }
 
-    /// The response with cells of twice the side.
+    /// Computes the response with cells of twice the side.
     fn coarse(&self, emission: &[DVec3]) -> DVec3 {
         let mut total = DVec3::ZERO;
         for y in (0..self.height).step_by(2) {
@@ -246,7 +249,7 @@ impl Importance {
     }
 }
 
-/// The scene with uniform emission on the emissive surfaces: a white texture with one texel per cell.
+/// Returns the scene with uniform emission on the emissive surfaces: a white texture with one texel per cell.
 fn evenly_lit(scene: &Arc<Scene>, emitter: usize, params: &MapParams) -> Result<Scene> {
     if emitter >= scene.materials.len() {
         return Err(Error::argument(format!(

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lamps {
     count: usize,
-    /// For each texel or triangle, the number of its lamp plus one, or 0.
+    /// For each texel or triangle, the number of its lamp plus one; 0 outside the lamps.
     labels: Vec<u32>,
     division: Division,
     /// Centre of each lamp: texture coordinates with z = 0, or metres.
@@ -20,21 +20,22 @@ pub struct Lamps {
     sizes: Vec<f32>,
 }
 
-/// Relative gap in area, from one lamp to the next larger one, that separates two types. [origin not recorded]
+/// Lamps are sorted by area; a new type begins where the area grows by more than this share from one lamp to the next.
+/// [origin not recorded]
 const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Division {
-    /// A label per texel; the texture repeats.
+    /// A label per texel. Texture coordinates outside the unit square repeat the texture.
     Texels { width: usize, height: usize },
-    /// A label per triangle; `first` has the index of each mesh's first triangle.
+    /// A label per triangle; `first` holds the label index of each mesh's first triangle.
     Triangles { first: Vec<usize> },
     /// The punctual lights of the scene; no labels.
     Lights,
 }
 
 impl Lamps {
-    /// Lamps from a label image: each texel has the number of its lamp plus one, or 0.
+    /// Makes lamps from a label image: each texel holds the number of its lamp plus one, or 0 outside the lamps.
     ///
     /// # Errors
     /// `InvalidArgument` if the number of labels is not `width × height`, or no texel is labelled.
@@ -54,13 +55,13 @@ impl Lamps {
         Self::numbered(width, height, labels, count)
     }
 
-    /// Lamps from a texture: every 8-connected patch of emissive texels is a lamp.
+    /// Makes lamps from a texture: every 8-connected patch of emissive texels is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
         let Regions { labels, count } = Regions::of(texture)?;
         Self::numbered(texture.width, texture.height, labels, count)
     }
 
-    /// Lamps from labels between 0 and `count`.
+    /// Makes lamps from labels between 0 and `count`.
     fn numbered(width: usize, height: usize, labels: Vec<u32>, count: usize) -> Result<Self> {
         let mut sums = try_vec(count, (DVec2::ZERO, 0.0f64))?;
         for (y, row) in labels.chunks_exact(width).enumerate() {
@@ -76,7 +77,7 @@ impl Lamps {
         Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
-    /// Lamps from meshes: every piece of the emissive meshes that is connected by shared vertices is a lamp.
+    /// Makes lamps from meshes: every piece of the emissive meshes that is connected by shared vertices is a lamp.
     pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let mut labels = try_vec(triangles, 0u32)?;
@@ -113,7 +114,7 @@ impl Lamps {
         Self { count: centres.len(), labels, division: Division::Triangles { first }, centres, sizes }.checked()
     }
 
-    /// Lamps from punctual lights: each of them is a lamp; surfaces are not.
+    /// Makes each punctual light of the scene a lamp; surfaces do not count as lamps.
     pub fn of_lights(scene: &Scene) -> Result<Self> {
         let place = |light: &PunctualLight| match *light {
             PunctualLight::Point { position, .. }
@@ -149,17 +150,17 @@ impl Lamps {
         &self.centres
     }
 
-    /// A single group of all lamps.
+    /// Puts all lamps into a single group. Returns the group of each lamp and the number of groups.
     pub fn together(&self) -> (Vec<u32>, usize) {
         (vec![0; self.count], 1)
     }
 
-    /// A group for each lamp.
+    /// Puts each lamp into a group of its own. Returns the group of each lamp and the number of groups.
     pub fn each(&self) -> (Vec<u32>, usize) {
         ((0..self.count as u32).collect(), self.count)
     }
 
-    /// A texture with each lamp multiplied by its own scale; texels outside the lamps stay unchanged.
+    /// Returns the texture with each lamp multiplied by its own scale; texels outside the lamps stay unchanged.
     ///
     /// # Errors
     /// `InvalidArgument` unless the lamps are regions of a texture of this size and there is a scale for each of them.
@@ -190,8 +191,8 @@ impl Lamps {
         self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
     }
 
-    /// Sorts the lamps by `number` and groups them: a new group begins where `leaps` holds between two successive
-    /// lamps.
+    /// Sorts the lamps by `number` and groups them. A new group begins where `leaps` is true for the numbers of two
+    /// successive lamps.
     fn chained(&self, number: impl Fn(usize) -> f32, leaps: impl Fn(f32, f32) -> bool) -> (Vec<u32>, usize) {
         let mut order: Vec<usize> = (0..self.count).collect();
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)).then(a.cmp(&b)));
@@ -203,14 +204,14 @@ impl Lamps {
         (groups, group as usize + 1)
     }
 
-    /// Groups lamps by type: surfaces of about equal area; punctual lights of one kind; luminaires of one
-    /// distribution. Groups are numbered from the smallest lamps on.
+    /// Groups lamps by type: surfaces of about equal area, punctual lights of one kind, and luminaires of one
+    /// distribution. The groups are numbered by increasing area or kind.
     pub fn types(&self) -> (Vec<u32>, usize) {
         let gap = if self.division == Division::Lights { 0.0 } else { TYPE_GAP };
         self.chained(|i| self.sizes[i], |a, b| b > a * (1.0 + gap))
     }
 
-    /// The lamp of a punctual light.
+    /// Returns the lamp of a punctual light; `None` if the lamps are surfaces.
     #[inline]
     pub(super) fn find_light(&self, index: u32) -> Option<usize> {
         (self.division == Division::Lights).then_some(index as usize)
@@ -220,7 +221,7 @@ impl Lamps {
     pub(super) fn find(&self, mesh: u32, triangle: u32, uv: Vec2) -> Option<usize> {
         let label = match &self.division {
             Division::Texels { width, height } => {
-                // Look up texels like the texture itself (`scene::texture`).
+                // Look up texels as the texture itself does (`scene::texture`).
                 let at = |t: f32, n: usize| ((t * n as f32).floor() as i64).rem_euclid(n as i64) as usize;
                 self.labels[at(uv.y, *height) * width + at(uv.x, *width)]
             }
@@ -231,7 +232,7 @@ impl Lamps {
     }
 }
 
-/// Connected vertices (union-find, Tarjan 1975, with path halving).
+/// The connected pieces of a mesh: a union-find forest over its vertices (Tarjan 1975, with path halving).
 struct Pieces(Vec<u32>);
 
 impl Pieces {
@@ -264,7 +265,7 @@ mod tests {
 
     #[test]
     fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
-        // Two regions; one of them is connected only at a corner.
+        // The picture has two regions. One of them consists of two texels that touch only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
         let lamps = Lamps::of_texture(&image).unwrap();
@@ -275,7 +276,8 @@ mod tests {
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
         assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
-        // Lamps of equal area are one type, so are areas of four and five texels, but not two and three.
+        // Lamps of equal area are of one type. Areas of four and five texels are also of one type, but areas of two
+        // and three texels are not.
         assert_eq!(lamps.types(), (vec![0, 0], 1));
         let labels = vec![1, 1, 0, 2, 2, 2, 0, 3, 3];
         assert_eq!(Lamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));

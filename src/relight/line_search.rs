@@ -1,18 +1,18 @@
 //! Exact line search for a convex, piecewise quadratic function: the zero of its derivative, which is piecewise linear
 //! and non-decreasing.
 
-/// The derivative along a step, on [0, 1].
+/// The derivative of the function along a step, whose positions run from 0 to 1.
 pub(super) struct Slope {
     /// The derivative at 0.
     pub start: f64,
     /// The slope of the derivative at 0, ≥ 0.
     pub growth: f64,
-    /// Positions at which the slope of the derivative changes, and the changes.
+    /// Positions at which the slope of the derivative changes, each with the change.
     pub changes: Vec<(f64, f64)>,
 }
 
 impl Slope {
-    /// Adds `growth` to the slope between two positions.
+    /// Adds `growth` to the slope of the derivative between two positions.
     pub fn add(&mut self, from: f64, to: f64, growth: f64) {
         if to <= 0.0 || from >= 1.0 || from >= to {
             return;
@@ -27,7 +27,7 @@ impl Slope {
         }
     }
 
-    /// The zero of the derivative, or the end of the step nearest to it.
+    /// Returns the position at which the derivative is zero, or the nearer end of the step if there is no zero.
     pub fn zero(mut self) -> f64 {
         if self.start >= 0.0 {
             return 0.0;
@@ -58,12 +58,12 @@ mod tests {
             pieces.iter().for_each(|&(from, to, growth)| slope.add(from, to, growth));
             slope.zero()
         };
-        // One parabola with its minimum within the step, at its end, or beyond.
+        // The minimum of a single parabola lies within the step, at its end, or beyond.
         assert_eq!([2.0, 1.0, 0.5].map(|growth| slope(-1.0, growth, &[])), [0.5, 1.0, 1.0]);
         assert_eq!(slope(0.0, 1.0, &[]), 0.0);
-        // The slope increases at one half: -1 + 0.5 + 2 (t - 0.5) = 0 at 0.75.
+        // The slope increases at one half: the derivative -1 + 0.5 + 2 (t - 0.5) is zero at 0.75.
         assert_eq!(slope(-1.0, 1.0, &[(0.5, 7.0, 1.0)]), 0.75);
-        // A slope of 4 up to 0.125 and of 1 after it.
+        // The derivative has the slope 4 up to 0.125, and 1 after it.
         assert_eq!(slope(-1.0, 1.0, &[(-3.0, 0.125, 3.0)]), 0.625);
         // Intervals outside the step have no effect.
         assert_eq!(slope(-1.0, 2.0, &[(1.0, 2.0, 9.0), (-2.0, 0.0, 9.0), (0.3, 0.3, 9.0)]), 0.5);

@@ -5,11 +5,12 @@
 //! under the current emission and its mean radiance `b` under all other light are measured once; the solution is
 //! `(target - b) / r`. The measurement is a Monte Carlo estimate, so the solution has a confidence interval.
 //!
-//! The same paths can also be sorted by light source (`bins`). Sorted by lamp, they give the responses of several
-//! targets to thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of groups of lamps
-//! within bounds ([`solve_groups`]) or at dimming levels. [`mix_primaries`] mixes a colour from LEDs. Sorted by cell of
-//! a surface, they give the [`Importance`] of the surface: one dot product with it gives the response to any texture on
-//! the surface, and its gradient leads to the best placement of a texture ([`Importance::place`]).
+//! The same paths can also be sorted by light source (`bins`). Light sorted by lamp gives the responses of several
+//! targets to thousands of lamps ([`lamp_responses`]), and a small convex problem then gives the powers of groups of
+//! lamps within bounds or at dimming levels ([`solve_groups`]). Light sorted by cell of a surface gives the
+//! [`Importance`] of the surface: a dot product of the importance and a texture is the response to the texture, and
+//! its gradient leads to the best placement of the texture ([`Importance::place`]). Separately, [`mix_primaries`]
+//! mixes a colour from LEDs.
 //!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 
@@ -62,10 +63,11 @@ pub struct Input<'a> {
     pub world: &'a World,
     /// Index of the emitting material to solve for.
     pub emitter: usize,
-    /// The target surface: (mesh, triangle) of each of its triangles, whose winding faces the side to match.
+    /// The triangles of the target surface, each as (mesh, triangle). They wind counter-clockwise as seen from the
+    /// side to match.
     pub target_triangles: &'a [(usize, usize)],
-    /// Mean radiance of the target to achieve, in cd/m² per channel, ≥ 0; for [`Quantity::Incident`] that of a white
-    /// surface in the same light, illuminance / π.
+    /// Mean radiance of the target to achieve, in cd/m² per channel, ≥ 0. For [`Quantity::Incident`], it is the
+    /// radiance of a white surface in the same light, illuminance / π.
     pub target: Vec3,
 }
 
@@ -98,7 +100,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     }
 }
 
-/// The response of the target to the whole emission.
+/// Returns the response of the target to the whole emission, in batches.
 fn whole(batches: &Batches, fit: Fit) -> solve::Measured {
     let means = batches.means();
     solve::Measured {

@@ -4,34 +4,34 @@ use super::sided::Constraint;
 use crate::error::{Result, check_range};
 use glam::Vec3;
 
-/// The quantity of the target to match with the photo.
+/// The quantity of the target that is to match the photo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Outgoing diffuse light of the target, its albedo included, as a photo shows it.
     Outgoing,
-    /// Incident light, as reflected by a white target.
+    /// Incident light, expressed as the radiance of a white target.
     Incident,
 }
 
 /// How a target of many points is matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fit {
-    /// By its mean, as in the paper: a single colour.
+    /// By its mean over the points, a single colour, as in the paper.
     Mean,
-    /// Point by point in the least squares sense, the limit of gradient descent on texels (Lipp et al. 2024). Bright
-    /// points have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the
-    /// coefficient of variation of the response over the target.
+    /// Point by point, by least squares: the limit of gradient descent on texels (Lipp et al. 2024). Bright points
+    /// have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the coefficient
+    /// of variation of the response over the target.
     LeastSquares,
 }
 
-/// The geometry of a target.
+/// The geometry of a target: where its light is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place<'a> {
-    /// A surface: (mesh, triangle) of each of its triangles, whose winding faces the side to match. Its lamps are
-    /// excluded.
+    /// A surface, given by its triangles as (mesh, triangle). They wind counter-clockwise as seen from the side to
+    /// match. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),
-    /// A calculation grid: a parallelogram of a corner and two edges, on the side of `normal`. Its light is that of a
-    /// white surface there, illuminance / π.
+    /// A calculation grid in the air: a parallelogram given by a corner and two edges, lit on the side of `normal`.
+    /// Its light is the radiance that a white surface there would have: illuminance / π.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
@@ -39,12 +39,13 @@ pub enum Place<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
-    /// Used by [`super::run`] only, like `constraint`.
+    /// How the points of the target are matched. Only [`super::run`] uses `fit` and `constraint`.
     pub fit: Fit,
     /// Whether the target of each channel is exact or a limit; clipped pixels of a photo give lower limits. A channel
-    /// with a limit gets the mean scale of the exact channels if that satisfies the limit, and its limit otherwise.
+    /// with a limit gets the mean scale of the exact channels if this scale satisfies the limit, and otherwise the
+    /// scale that just reaches the limit.
     pub constraint: [Constraint; 3],
-    /// Largest number of paths, in `[1024, 1 << 30]`.
+    /// Maximum number of paths, in `[1024, 1 << 30]`.
     pub paths: u32,
     /// Stop when the largest relative half-width of the 95 % intervals is below this value, in `[0, 1]`; 0 = never.
     pub target_error: f32,

@@ -1,4 +1,5 @@
-//! Placement of a texture: its offset, scale and rotation on the surface, by gradient descent on the importance map.
+//! Finds the best placement of a texture: its offset, scale and rotation on the surface, by gradient descent on the
+//! importance map.
 //!
 //! The light of a placement is a dot product with the map, and so is its gradient. The texture is looked up at the
 //! centres of the cells, band-limited to their size ([`super::band`]), which makes it differentiable. As textures
@@ -22,32 +23,33 @@ use crate::scene::Texture;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
 use std::f64::consts::TAU;
 
-/// The goal of a placement.
+/// The goal of the search for a placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
-    /// The mean radiance of the target nearest to this value, in cd/m² per channel, ≥ 0, all other light included.
+    /// Bring the mean radiance of the target, all other light included, as near as possible to this value, in cd/m²
+    /// per channel, ≥ 0.
     Radiance(Vec3),
-    /// The largest luminance.
+    /// Maximise the luminance of the target.
     Brightest,
-    /// The smallest luminance.
+    /// Minimise the luminance of the target.
     Darkest,
 }
 
-/// The placement of a texture: the surface's texture coordinates are scaled and then rotated about the centre `(½,
-/// ½)`, and offset, to those of the texture.
+/// The placement of a texture. It maps the surface's texture coordinates to those of the texture: scales and then
+/// rotates them about the centre `(½, ½)`, and adds the offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     pub offset: DVec2,
     /// Number of repetitions of the texture along the surface's u and v.
     pub scale: DVec2,
-    /// In radians.
+    /// Rotation in radians.
     pub rotation: f64,
 }
 
 impl Pose {
     pub const IDENTITY: Self = Self { offset: DVec2::ZERO, scale: DVec2::ONE, rotation: 0.0 };
 
-    /// The placement as a matrix for [`Importance::respond`].
+    /// Returns the placement as a matrix for [`Importance::respond`].
     pub fn matrix(&self) -> DMat3 {
         let turned = DMat2::from_angle(self.rotation) * DMat2::from_diagonal(self.scale);
         let centre = DVec2::splat(0.5);
@@ -68,7 +70,8 @@ impl Pose {
 pub struct PlaceParams {
     pub aim: Aim,
     /// Bounds: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`. Parameters with equal bounds
-    /// are fixed. Offsets over at least a period and rotations over at least a full turn are unbounded.
+    /// are fixed. An offset whose range covers a period of the texture is unbounded, and so is a rotation whose range
+    /// covers a full turn.
     pub min: Pose,
     pub max: Pose,
     /// Number of starting points, in `[1, 4096]`.
@@ -77,7 +80,7 @@ pub struct PlaceParams {
 }
 
 impl Default for PlaceParams {
-    /// Any offset, at the current scale and rotation.
+    /// Searches for the brightest target over all offsets, at the current scale and rotation.
     fn default() -> Self {
         let shifted = |by: f64| Pose { offset: DVec2::splat(by), ..Pose::IDENTITY };
         Self { aim: Aim::Brightest, min: shifted(-0.5), max: shifted(0.5), starts: 64, seed: 1 }
@@ -88,18 +91,20 @@ impl Default for PlaceParams {
 #[derive(Clone, Debug)]
 pub struct Placement {
     pub pose: Pose,
-    /// The response of the target.
+    /// The response of the target to the placed texture.
     pub response: Response,
 }
 
-/// Largest number of cells along each side of the map used for the search. [origin not recorded]
+/// Maximum number of cells along each side of the importance map in the search; larger maps are reduced.
+/// [origin not recorded]
 const MAX_CELLS: usize = 64;
-/// Number of starting points from which the search descends. [origin not recorded]
+/// Number of best starting points from which the search descends. [origin not recorded]
 const MAX_DESCENTS: usize = 8;
 
 impl Importance {
-    /// The target's light under a placed texture, band-limited as in the search and without other light, and the
-    /// derivatives of this light by the offset along u and v, the scale along both, and the rotation.
+    /// Returns the light of the target under a placed texture, without other light. Also returns the derivatives of
+    /// this light with respect to the offset along u and v, the scale along u and v, and the rotation. The texture is
+    /// band-limited as in the search.
     ///
     /// # Errors
     /// Cancelled.
@@ -124,8 +129,8 @@ impl Importance {
     pub fn place(&self, texture: &Image, params: &PlaceParams, job: Job) -> Result<Placement> {
         let bounds = params.bounds()?;
         let search = self.search(texture, params.aim, job.part(0.0, 0.1))?;
-        // Start from the current placement, clamped to the bounds, and from a low-discrepancy sequence within the
-        // bounds.
+        // Start from the current placement, clamped to the bounds, and from points of a low-discrepancy sequence
+        // within the bounds.
         let mut rng = Rng::new(params.seed, &[]);
         let shift: [f64; 5] = std::array::from_fn(|_| rng.next_f64());
         let start = |index: usize| match index {
@@ -143,7 +148,7 @@ impl Importance {
             descent::run(&bounds, start(order[i]), |at| search.slope(at), job)
         })?;
 
-        // Select the best result at full resolution: the search used a blurred texture.
+        // Select the best result at full resolution, because the search used a blurred texture.
         let texture = Texture::new("placed", texture.clone());
         let mut best: Option<(f64, Placement)> = None;
         for (i, numbers) in found.into_iter().enumerate() {
@@ -160,7 +165,8 @@ impl Importance {
     }
 }
 
-/// Powers of the root of `x⁶ = x + 1`: a low-discrepancy sequence in five dimensions (Roberts 2018). [convention]
+/// Powers of the reciprocal root of `x⁶ = x + 1`, whose multiples modulo 1 are a low-discrepancy sequence in five
+/// dimensions (Roberts 2018). [convention]
 const KRONECKER: [f64; 5] = [
     0.881_271_462_333_504_6,
     0.776_639_390_326_789_7,
@@ -206,14 +212,14 @@ impl Search {
         self.slope(numbers).0
     }
 
-    /// The cost of a placement and its gradient.
+    /// Returns the cost of a placement and its gradient.
     fn slope(&self, numbers: [f64; 5]) -> (f64, [f64; 5]) {
         let (light, slopes) = self.light(numbers);
         let (value, by_light) = self.judge(light);
         (value, slopes.map(|slope| slope.dot(by_light)))
     }
 
-    /// The target's light under a placement and its derivatives.
+    /// Returns the target's light under a placement, and its derivatives.
     fn light(&self, numbers: [f64; 5]) -> (DVec3, [DVec3; 5]) {
         let pose = Pose::of(numbers);
         let rotation = DMat2::from_angle(pose.rotation);
@@ -243,7 +249,7 @@ impl Search {
         (light, slopes)
     }
 
-    /// The cost of the target's light and its gradient.
+    /// Returns the cost of the target's light, and the gradient of the cost with respect to the light.
     fn judge(&self, light: DVec3) -> (f64, DVec3) {
         match self.aim {
             Aim::Brightest => (-light.dot(LUMINANCE), -LUMINANCE),

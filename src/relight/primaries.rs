@@ -1,38 +1,39 @@
-//! Colour mixing: the drives of the LEDs of a luminaire (RGB, RGBW, tunable white, …) for a given colour.
+//! Colour mixing: finds the drives of a luminaire's LEDs (RGB, RGBW, tunable white, …) for a given colour.
 //!
-//! Light is additive and non-negative: the reachable colours form a cone, or a part of it with bounded drives. The
-//! nearest reachable colour is a least squares problem of three equations in linear light ([`super::bounded`]). Among
-//! mixtures of equal colour, the regularisation selects the one with the smallest sum of squared drives, which spreads
-//! the load.
+//! Light is additive and non-negative, so the reachable colours form a cone, or a bounded part of it if the drives are
+//! bounded. The nearest reachable colour is a least squares problem of three equations in linear light
+//! ([`super::bounded`]). Among mixtures of equal colour, the regularisation selects the one with the smallest sum of
+//! squared drives, which spreads the load.
 
 use super::bounded::Problem;
 use crate::error::{Error, Result, check_range};
 use crate::image::colour;
 use glam::DVec3;
 
-/// Largest number of primaries of a luminaire. \[convention\]
+/// Maximum number of primaries of a luminaire. \[convention\]
 pub const MAX_PRIMARIES: usize = 64;
 
-/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [origin not
-/// recorded]
+/// Weight of the squared drives relative to the colour error: only large enough to select among mixtures of equal
+/// colour. [origin not recorded]
 const REGULARISATION: f64 = 1e-9;
-/// Relative colour error that counts as zero. [rounding]
+/// A colour counts as reached if its relative error is at most this. [rounding]
 const MAX_RELATIVE_MISS: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
     /// Drive of each primary, in `[0, max_drive]`.
     pub drives: Vec<f64>,
-    /// The colour of the mixture.
+    /// The linear RGB colour of the mixture.
     pub colour: DVec3,
-    /// Whether the mixture has the requested colour; otherwise it is the nearest one.
+    /// Whether the mixture has the requested colour; otherwise it has the nearest reachable colour.
     pub reached: bool,
-    /// CIEDE2000 difference from the requested colour, at the exposure that shows that colour as a middle grey.
+    /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as a middle
+    /// grey.
     pub delta_e: f64,
 }
 
-/// Mixes a linear RGB colour from primaries, each given as the linear RGB of a drive of 1 (with negative channels
-/// outside the gamut, as of LEDs), with drives of at most `max_drive`.
+/// Mixes a linear RGB colour from primaries, with drives of at most `max_drive`. Each primary is given by its linear
+/// RGB colour at a drive of 1, which has negative channels if it lies outside the gamut, as LEDs do.
 ///
 /// # Errors
 /// Numbers that are not finite or out of range; no primaries or more than [`MAX_PRIMARIES`]; primaries that are all
@@ -81,7 +82,7 @@ mod tests {
 
     #[test]
     fn colours_within_the_cone_are_mixed_exactly() {
-        // Three primaries have a unique solution: that of the linear system.
+        // With three primaries, the linear system has a unique solution.
         let led = [DVec3::new(1.2, 0.1, 0.0), DVec3::new(-0.2, 0.9, 0.1), DVec3::new(0.0, -0.1, 0.8)];
         let drives = [0.5, 0.25, 2.0];
         let wanted: DVec3 = led.iter().zip(drives).map(|(p, d)| *p * d).sum();
@@ -109,10 +110,10 @@ mod tests {
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Z).unwrap();
         let alone = cold.z / cold.length_squared();
         assert!(mixture.drives[0] == 0.0 && (mixture.drives[1] - alone).abs() < 1e-6, "{mixture:?}, expected {alone}");
-        // With bounded drives, the mixture of a colour that is too bright is as bright as possible.
+        // If a colour is too bright for the bounded drives, all drives are at their maximum.
         let bounded = mix_primaries(&[warm, cold], 1.0, (warm + cold) * 10.0).unwrap();
         assert_eq!((bounded.drives, bounded.reached), (vec![1.0; 2], false));
-        // No mixture on a fine grid is nearer.
+        // No mixture on a fine grid of drives is nearer.
         let mut rng = Rng::new(5, &[]);
         for _ in 0..20 {
             let mut random = || DVec3::new(rng.next_f64(), rng.next_f64(), rng.next_f64());

@@ -1,4 +1,4 @@
-//! Responses of several targets to each of many lamps, from one set of paths per target.
+//! Computes the responses of several targets to each of many lamps, from one set of paths per target.
 
 use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
@@ -13,10 +13,10 @@ use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
 
-/// Which part of a goal's light counts.
+/// Which property of the light has to meet a goal's target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
-    /// Every channel.
+    /// Every channel, so that the colour of the light counts.
     Colour,
     /// The luminance alone, for goals in lux.
     Luminance,
@@ -30,19 +30,19 @@ pub struct Goal<'a> {
     /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light, the illuminance divided by π.
     pub target: Vec3,
     pub aspect: Aspect,
-    /// Whether the target of each channel is exact or a limit; equal for all channels of a luminance goal.
+    /// Whether the target of each channel is exact or a limit; the same for all channels if only the luminance counts.
     pub constraint: [Constraint; 3],
-    /// Weight of the relative error of this goal beside other goals, ≥ 0.
+    /// Weight of this goal's relative error compared with other goals, ≥ 0.
     pub weight: f64,
 }
 
-/// Largest number of goals. [convention]
+/// Maximum number of goals. [convention]
 pub const MAX_GOALS: usize = 64;
-/// Largest number of lamps × goals: each pair takes [`BATCHES`] colours of memory, twice while results are assembled.
-/// [convention]
+/// Maximum number of lamps × goals. For each pair of a lamp and a goal, [`BATCHES`] colours are stored, and twice as
+/// many while results are assembled. [convention]
 pub const MAX_PAIRS: usize = 1 << 20;
 
-/// A mean with its standard error, per channel.
+/// A mean over batches with its standard error, per channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub mean: DVec3,
@@ -55,7 +55,7 @@ impl Estimate {
         self.standard_error * STUDENT_T
     }
 
-    /// Largest relative half-width among the channels with light.
+    /// Returns the largest relative half-width among the channels with light.
     pub(super) fn error(&self) -> f64 {
         let relative = self.half_width() / self.mean;
         (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
@@ -70,7 +70,8 @@ impl Estimate {
     }
 }
 
-/// The response of each goal to each lamp or group of lamps.
+/// The response of each goal to each lamp or group of lamps: the mean radiance of the goal's surface or grid under the
+/// light of this lamp or group alone.
 #[derive(Clone, Debug)]
 pub struct Responses {
     lamps: usize,
@@ -81,17 +82,17 @@ pub struct Responses {
 
 #[derive(Clone, Debug)]
 struct PerGoal {
-    /// For each batch the mean radiance under each lamp.
+    /// For each batch, the mean radiance under each lamp.
     batches: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
 }
 
 /// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are
-/// those of [`super::run`], for the response of each goal to all lamps together; the responses to single lamps have
-/// larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
+/// those of [`super::run`], applied to the response of each goal to all lamps together; the responses to single lamps
+/// have larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
 ///
 /// # Errors
-/// Parameters out of range; goals that do not exist or have no area; cancelled.
+/// Parameters out of range; goals whose surface does not exist or has no area; cancelled.
 pub fn lamp_responses(
     world: &World,
     emitter: usize,
@@ -140,7 +141,7 @@ pub fn lamp_responses(
     }
 }
 
-/// Relative half-width of the response to all lamps.
+/// Returns the relative half-width of the response to all lamps together.
 fn error_of_all(batches: &Batches) -> f64 {
     let sums: Vec<DVec3> = (0..BATCHES).map(|batch| batches.mean_of_bins(batch).sum()).collect();
     Estimate::of(|batch| sums[batch]).error()
@@ -163,22 +164,22 @@ impl Responses {
         self.goals.len()
     }
 
-    /// Mean radiance of a goal under one lamp, in cd/m².
+    /// Mean radiance of a goal's surface or grid under one lamp, in cd/m².
     pub fn lamp(&self, goal: usize, lamp: usize) -> Estimate {
         Estimate::of(|batch| self.batch(goal, batch)[lamp])
     }
 
-    /// Mean radiance of a goal under all lamps.
+    /// Mean radiance of a goal's surface or grid under all lamps.
     pub fn all(&self, goal: usize) -> Estimate {
         Estimate::of(|batch| self.batch(goal, batch).iter().sum())
     }
 
-    /// Mean radiance of a goal under all other light.
+    /// Mean radiance of a goal's surface or grid under all light except the lamps.
     pub fn background(&self, goal: usize) -> Estimate {
         Estimate::of(|batch| self.goals[goal].background[batch])
     }
 
-    /// The responses to each lamp in one batch.
+    /// Responses of a goal to each lamp, in one batch.
     pub(super) fn batch(&self, goal: usize, batch: usize) -> &[DVec3] {
         &self.goals[goal].batches[batch]
     }
@@ -187,7 +188,7 @@ impl Responses {
         self.goals[goal].background[batch]
     }
 
-    /// The responses to groups of lamps: `group_of` has the group of each lamp, less than `groups`.
+    /// Adds up the responses within groups of lamps. `group_of` holds the group of each lamp, less than `groups`.
     ///
     /// # Errors
     /// `InvalidArgument` if the groups do not match the lamps.

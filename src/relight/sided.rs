@@ -3,8 +3,9 @@
 //! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
 //! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
 //! quadratic. Each step of Newton's method solves the problem with only the terms that are active at the current point
-//! ([`super::bounded`]), then moves to the minimum on the line to this solution. The method ends after finitely many
-//! steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after a few.
+//! ([`super::bounded`]), then moves towards the solution, to the minimum of the function on this line. The method ends
+//! after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after
+//! a few.
 
 use super::bounded::{self, dot};
 use super::line_search::Slope;
@@ -23,7 +24,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// The residual of a value that exceeds the target by `over`.
+    /// Returns the residual of a value that exceeds the target by `over`; 0 if a limit is satisfied.
     pub(super) fn miss(self, over: f64) -> f64 {
         match self {
             Self::Exactly => over,
@@ -34,10 +35,10 @@ impl Constraint {
 }
 
 pub(super) struct Problem<'a> {
-    /// Row by row.
+    /// The coefficients `a` of the terms, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// One per row.
+    /// The kind of each term: one per row.
     pub constraints: &'a [Constraint],
     /// `λ` relative to the mean square of a row, positive.
     pub regularisation: f64,
@@ -47,12 +48,14 @@ pub(super) struct Problem<'a> {
     pub upper: &'a [f64],
 }
 
-/// Largest number of Newton steps; a few suffice. [convention]
+/// Maximum number of Newton steps; a few suffice. [convention]
 const MAX_STEPS: usize = 200;
-/// Relative margin around a limit within which a term keeps its state. [rounding]
+/// A term keeps its state (active or not) if its value equals its limit up to this relative difference. [rounding]
 const ROUNDING: f64 = 1e-12;
 
 impl Problem<'_> {
+    /// Returns the solution `x`.
+    ///
     /// # Errors
     /// `Internal` if the method does not converge, which cannot happen in theory.
     pub fn solve(&self) -> Result<Vec<f64>> {
@@ -85,7 +88,7 @@ impl Problem<'_> {
         &self.matrix[i * n..(i + 1) * n]
     }
 
-    /// The terms that are active at `x`. A term whose value equals its limit up to rounding keeps its state from
+    /// Returns which terms are active at `x`. A term whose value equals its limit up to rounding keeps its state from
     /// `before`.
     fn active(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
         let is_active = |i: usize| {
@@ -101,7 +104,7 @@ impl Problem<'_> {
         (0..self.right.len()).map(is_active).collect()
     }
 
-    /// The solution with only the active terms, which are treated as exact targets.
+    /// Solves the problem with only the active terms, which are treated as exact targets.
     fn solve_active(&self, active: &[bool], regularisation: f64) -> Result<Vec<f64>> {
         let Self { matrix, right, preferred, upper, .. } = *self;
         if active.iter().all(|is_active| *is_active) {
@@ -113,7 +116,8 @@ impl Problem<'_> {
         bounded::Problem { matrix: &matrix, right: &right, regularisation, preferred, upper }.solve()
     }
 
-    /// The minimum of the function between two points, and its derivative at the first point.
+    /// Returns the position of the function's minimum between two points, in `[0, 1]`, and the derivative at the first
+    /// point.
     fn line_search(&self, lambda: f64, from: &[f64], to: &[f64]) -> (f64, f64) {
         let step: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
         let away: f64 = from.iter().zip(self.preferred).zip(&step).map(|((x, p), d)| (x - p) * d).sum();
@@ -136,9 +140,9 @@ impl Problem<'_> {
     }
 }
 
-/// The common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, with `a ≥ 0`, in closed form. Among several
-/// minima it returns the smallest, which uses the least light; if no term requires light, it returns the minimum
-/// nearest to 1, which is the current power.
+/// Returns, in closed form, the power `q ≥ 0` that minimises `½ Σ ψ(a q − b)²`, where all lamps have this power and `a
+/// ≥ 0`. Among several minima it returns the smallest, which uses the least light. If no term requires light, it
+/// returns the minimum nearest to 1, the current power.
 pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Constraint]) -> f64 {
     let rows = || {
         responses
@@ -148,7 +152,7 @@ pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Cons
             .map(|((a, b), constraint)| (*a, *b, *constraint))
             .filter(|row| row.0 > 0.0)
     };
-    // The minimum lies below the largest of the ratios b / a.
+    // The minimum lies at or below the largest of the ratios b / a.
     let last = rows().map(|(a, b, _)| b / a).fold(0.0, f64::max);
     let mut slope = Slope { start: 0.0, growth: 0.0, changes: Vec::new() };
     for (a, b, constraint) in rows() {
@@ -189,13 +193,13 @@ mod tests {
         near(solve(&[2.0], &[6.0], &[AtLeast], &[1.0]), &[3.0]);
         near(solve(&[2.0], &[6.0], &[AtMost], &[5.0]), &[3.0]);
         near(solve(&[2.0], &[6.0], &[AtMost], &[1.0]), &[1.0]);
-        // An exact target against a limit: x = 4 by the first, x <= 2 by the second; the minimum is in the middle.
+        // The exact target requires x = 4 and the limit x <= 2: the minimum is in the middle.
         near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtMost], &[0.0]), &[3.0]);
         near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtLeast], &[0.0]), &[4.0]);
-        // Two desks, each mainly below its own lamp, need at least 5 each; the first may have at most 6.
+        // Each of two desks gets light mainly from its own lamp and needs at least 5; the first may get at most 6.
         let x = solve(&[1.0, 0.2, 0.2, 1.0, 1.0, 0.2], &[5.0, 5.0, 6.0], &[AtLeast, AtLeast, AtMost], &[0.0; 2]);
         near(x, &[25.0 / 6.0; 2]);
-        // No response at all.
+        // Without any response, the preferred value stays.
         near(solve(&[0.0], &[1.0], &[AtLeast], &[0.7]), &[0.7]);
     }
 
@@ -238,7 +242,7 @@ mod tests {
         // Upper limits alone keep the current power or reduce it.
         assert_eq!(alike(&[(2.0, 6.0, AtMost)]), 1.0);
         assert_eq!(alike(&[(2.0, 1.0, AtMost), (1.0, 4.0, AtMost)]), 0.5);
-        // A black target, too much other light, and no response.
+        // The cases are a black target, too much other light, and no response.
         assert_eq!(alike(&[(2.0, 0.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, AtMost)]), 0.0);

@@ -10,7 +10,7 @@ pub enum TargetStatus {
     Met,
     /// Other lights alone exceed the target: the emission is off in this channel.
     TooBright,
-    /// All lamps at their upper bounds are too dim, or goals contradict each other.
+    /// The lamps are too dim even at their upper bounds, or the goals contradict each other.
     TooDim,
     /// No light of this channel reaches the target, so the channel cannot be solved; it gets the mean scale of the
     /// solved channels.
@@ -31,8 +31,8 @@ pub struct Solution {
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².
     pub background: DVec3,
-    /// Colour error of the target: the CIEDE2000 difference that 95 % of errors stay below, at the exposure that shows
-    /// the target as a middle grey.
+    /// Colour error of the target: 95 % of errors stay below this CIEDE2000 difference, at the exposure that shows the
+    /// target as a middle grey.
     pub delta_e: f64,
     /// Number of paths traced.
     pub paths: u32,

@@ -1,4 +1,4 @@
-//! The closed-form solution and its confidence interval, from the means of independent batches.
+//! Computes the closed-form scale of the emission and its confidence interval, from the means of independent batches.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
 use super::sided::Constraint;
@@ -12,7 +12,7 @@ use glam::DVec3;
 pub(super) struct Measured {
     pub response: Vec<DVec3>,
     pub background: Vec<DVec3>,
-    /// Second moments, for least squares over the target's points.
+    /// Second moments for a least squares fit over the target's points; `None` for a fit of the mean.
     pub pairs: Option<Vec<Pairs>>,
     /// Number of paths traced.
     pub paths: u32,
@@ -73,11 +73,11 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     })
 }
 
-/// Adjusts the channels whose target is only a lower or an upper limit: they take the mean scale of the channels whose
-/// exact target was met, which preserves the colour of the lamps, unless that scale violates the limit. If no exact
-/// target was met, each of them keeps the scale that just reaches its limit.
+/// Adjusts the channels whose target is only a lower or an upper limit. To preserve the colour of the lamps, such a
+/// channel takes the mean scale of the channels whose exact target was met, unless this scale violates the channel's
+/// limit. If no exact target was met, the channel keeps the scale that just reaches its limit.
 fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
-    // A lower limit is met if other light alone exceeds it.
+    // A lower limit is met if the other light alone exceeds it.
     for (answer, _) in answers.iter_mut().zip(constraint).filter(|(_, constraint)| *constraint == Constraint::AtLeast) {
         if answer.status == TargetStatus::TooBright {
             answer.status = TargetStatus::Met;
@@ -103,8 +103,8 @@ fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
 }
 
 impl Channel {
-    /// The scale from means over batches, as computed by `mean`: `(t - E b) / E r` for the mean, and `(t E r - E br) /
-    /// E r²` for least squares.
+    /// Computes the scale from means over batches, which `mean` computes. With the target `t`, background `b` and
+    /// response `r`, it is `(t - E b) / E r` for a fit of the mean, and `(t E r - E br) / E r²` for least squares.
     fn scale(&self, target: f64, mean: impl Fn(&[f64; BATCHES]) -> f64) -> f64 {
         match &self.squares {
             None => (target - mean(&self.background)) / mean(&self.response),
@@ -112,11 +112,11 @@ impl Channel {
         }
     }
 
-    /// The scale and its interval by the jackknife.
+    /// Solves for the scale, with its confidence interval by the jackknife.
     fn solve(&self, target: f64) -> Answer {
         let response = mean(&self.response);
         let noise = standard_error(&self.response);
-        // The jackknife needs a positive denominator without any one of the batches.
+        // The jackknife leaves out one batch at a time: at least two batches must have a positive denominator.
         let paired = self.squares.is_none_or(|[own, _]| own.iter().filter(|square| **square > 0.0).count() > 1);
         if response.is_nan() || response <= 3.0 * noise || !paired {
             return Answer { scale: 0.0, half_width: 0.0, status: TargetStatus::Dark, deviations: [0.0; BATCHES] };
@@ -133,9 +133,9 @@ impl Channel {
     }
 }
 
-/// Colour error of the target: Student's quantile times the root mean square CIEDE2000 difference of deviations as
-/// large as the standard error, with the correlation of the channels. It bounds 95 % of errors in any direction. The
-/// exposure shows the target as a middle grey.
+/// Colour error of the target: Student's quantile times the root mean square CIEDE2000 difference that the deviations
+/// of the batches cause, scaled to the standard error of the mean. It includes the correlation of the channels and
+/// bounds 95 % of errors in any direction. The exposure shows the target as a middle grey.
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();

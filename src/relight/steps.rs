@@ -1,27 +1,27 @@
 //! Rounding of powers to dimming levels.
 //!
-//! If each group were rounded separately, the errors would add up, because lamps of equal power would all be rounded to
-//! the same side. Instead, coordinate descent chooses for each group in turn the level that minimises the sum of
-//! squares of the goals, given the levels of the others, until none changes. It runs from two starting points and keeps
-//! the better result. Along one group the sum is convex, so its best level is found by stepping through the levels
-//! while the sum decreases.
+//! If each group were rounded separately, the errors would add up, because lamps of equal power would all be rounded
+//! in the same direction. Instead, coordinate descent visits one group after the other, until no level changes. For
+//! each group, it chooses the level that minimises the sum of squared residuals of the goals, with the levels of the
+//! other groups fixed. It runs from two starting points and keeps the better result. The sum is convex in the power of
+//! one group, so the group's best level is found by stepping through the levels while the sum decreases.
 
 use super::bounded::dot;
 use super::sided::Constraint;
 
-/// The terms of the goals: see [`super::sided::Problem`].
+/// The terms of the goals, one per row of the matrix: see [`super::sided::Problem`].
 pub(super) struct Terms<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
     pub constraints: &'a [Constraint],
 }
 
-/// Largest number of rounds over all groups; a few suffice. [convention]
+/// Maximum number of rounds over all groups; a few suffice. [convention]
 const MAX_ROUNDS: usize = 100;
-/// Decrease relative to the goals that counts as zero. [rounding]
+/// A decrease of the sum counts as zero if it is at most this, relative to the squared targets. [rounding]
 const ROUNDING: f64 = 1e-14;
 
-/// The current powers, their levels, and the light of each term.
+/// The current powers, the index of the level chosen for each group, and the light of each term.
 #[derive(Clone)]
 struct State {
     powers: Vec<f64>,
@@ -30,8 +30,8 @@ struct State {
 }
 
 impl Terms<'_> {
-    /// Rounds the powers `x` to levels (ascending, not empty). The level of a group exceeds the bound of the group only
-    /// if even the lowest level does.
+    /// Rounds the powers `x` to levels (ascending, not empty). A group's level exceeds the group's bound only if even
+    /// the lowest level does.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
         let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {
@@ -40,8 +40,8 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Start from the nearest levels of all groups, and from unrounded powers, which the first round rounds in
-        // turn.
+        // Start once from the nearest level of every group, and once from the unrounded powers, of which the descent
+        // then rounds one group after the other.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
@@ -81,7 +81,7 @@ impl Terms<'_> {
         (state.powers[j], state.chosen[j]) = (levels[level], level);
     }
 
-    /// The sum of squares after a change of group `j`.
+    /// Returns the sum of squared residuals after the power of group `j` changes by `change`.
     fn sum(&self, state: &State, j: usize, change: f64) -> f64 {
         let n = state.powers.len();
         let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
@@ -116,8 +116,8 @@ mod tests {
         assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
     }
 
-    /// Compared with all combinations: never worse than separate rounding, no single change improves it, usually
-    /// optimal.
+    /// Joint rounding is never worse than separate rounding, and no change of a single group improves it. Its mean
+    /// error is less than 0.6 times the mean error of separate rounding.
     #[test]
     fn joint_choices_against_all_combinations() {
         let mut rng = Rng::new(11, &[]);

@@ -1,4 +1,4 @@
-//! Sampling of target points uniform by area, with their reflectance.
+//! Samples points of the target uniformly by area, with their reflectance.
 
 use super::params::{Place, Quantity};
 use crate::error::{Error, Result};
@@ -7,8 +7,8 @@ use crate::scene::{Material, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// The generalised golden ratio in two dimensions, 1/g and 1/g² (Roberts 2018): a low-discrepancy sequence.
-/// [convention]
+/// Steps of a low-discrepancy sequence (Roberts 2018): 1/g and 1/g² of the generalised golden ratio g in two
+/// dimensions. [convention]
 const KRONECKER: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 
 pub(super) enum Sampler<'a> {
@@ -24,7 +24,7 @@ pub(super) struct Surface<'a> {
     quantity: Quantity,
 }
 
-/// A target point, and the factor that converts its irradiance to the quantity to match.
+/// A target point, and the factor that converts its irradiance to the quantity that is to match the photo.
 pub(super) struct Target {
     at: At,
     pub factor: Vec3,
@@ -36,7 +36,7 @@ enum At {
 }
 
 impl Target {
-    /// Adds one sample of the irradiance at the point to a sink.
+    /// Traces one sample of the irradiance at the point and adds it to a sink.
     pub fn gather<S: PathSink>(&self, world: &World, seed: u64, sample: u32, sink: &mut S) {
         match &self.at {
             At::Surface(point) => render::irradiance(world, point, seed, sample, sink),
@@ -65,8 +65,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Point `index` of the sequence with offset `shift`; `None` if the point lies on a lamp, because the mean of the
-    /// photo excludes lamps too.
+    /// Returns point `index` of the low-discrepancy sequence with offset `shift`. `None` if the point lies on a lamp:
+    /// the mean of the photo excludes lamps too.
     pub fn point(&self, index: u32, shift: [f64; 2]) -> Option<Target> {
         let [u, v] = std::array::from_fn(|i| (shift[i] + f64::from(index) * KRONECKER[i]).fract());
         match self {
@@ -136,7 +136,8 @@ fn emits(scene: &Scene, mesh: &Mesh, material: &Material, triangle: usize, baryc
     scene.textures[map.texture].nearest(at).truncate() * material.emission != Vec3::ZERO
 }
 
-/// Diffuse albedo. Glossy reflection is neglected: the mean colour of a ceiling hardly contains any.
+/// Returns the diffuse albedo. Glossy reflection is neglected: it contributes hardly anything to the mean colour of a
+/// ceiling.
 fn diffuse_albedo(scene: &Scene, mesh: &Mesh, material: &Material, triangle: usize, barycentric: Vec2) -> Vec3 {
     let look_up = |map: crate::scene::TextureRef| {
         let at = map.transform.transform_point2(uv(mesh, map.uv_set, triangle, barycentric));

@@ -1,4 +1,4 @@
-//! Light transport: traces paths from the target and sums their light by bin, in independent batches.
+//! Light transport: traces paths from the target and sums their light by bin, in independent batches of paths.
 
 use super::bins::{Bins, Sorter};
 use super::estimate::BATCHES;
@@ -14,11 +14,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Paths per batch in the first round. [origin not recorded]
+/// Number of paths per batch in the first round. [origin not recorded]
 pub const FIRST_ROUND: u32 = 64;
 /// Smallest and largest growth factor of the number of paths in later rounds. [origin not recorded]
 const GROWTH: [f64; 2] = [1.25, 4.0];
-/// Safety factor on the predicted number of paths: with 32 batches, an error is known to 13 %. [origin not recorded]
+/// Safety factor on the predicted number of paths: with 32 batches, the error is known only to within 13 %.
+/// [origin not recorded]
 pub const FORECAST_MARGIN: f64 = 1.1;
 
 /// Stopping conditions: target error, time budget, and number of paths.
@@ -26,7 +27,7 @@ pub(super) struct Stop {
     clock: Instant,
     /// Time budget in seconds; may be infinite.
     budget: f64,
-    /// Relative half-width; 0 for no target.
+    /// Relative half-width at which tracing stops; 0 for no target.
     target_error: f64,
     pub max_paths: u32,
 }
@@ -38,8 +39,8 @@ impl Stop {
         Self { clock: Instant::now(), budget, target_error: f64::from(params.target_error), max_paths: params.paths }
     }
 
-    /// Growth factor for the number of paths, given that the current relative half-width is `error`; `None` if no more
-    /// paths are needed.
+    /// Returns the growth factor for the number of paths, given the current relative half-width `error`; `None` if no
+    /// more paths are needed.
     pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
         let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
         if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
@@ -51,7 +52,7 @@ impl Stop {
     }
 }
 
-/// Paths between two checks for cancellation. [convention]
+/// Number of paths between two checks for cancellation. [convention]
 const CHUNK: u32 = 256;
 
 /// The sums of one batch.
@@ -61,27 +62,27 @@ struct Batch {
     bins: Vec<DVec3>,
     /// Sum of all other light.
     others: DVec3,
-    /// Sums of products over pairs of paths from the same point.
+    /// Sums of products of two paths from the same point.
     pairs: Pairs,
-    /// Number of paths that started outside the lamps.
+    /// Number of paths summed; target points on lamps start no path.
     count: u32,
 }
 
-/// Second moments of the light at target points: products over pairs of independent paths from the same point are
-/// unbiased, whereas squares of single paths include their noise.
+/// Second moments of the light at target points. Products of two independent paths from the same point are unbiased,
+/// whereas squares of single paths include their noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// The squared response.
+    /// The response squared.
     pub own: DVec3,
     /// The product of response and background.
     pub cross: DVec3,
 }
 
-/// Means over the paths of a batch.
+/// Means over the paths of one batch.
 pub(super) struct Means {
     pub bins: Vec<DVec3>,
     pub others: DVec3,
-    /// Zero unless paths come in pairs.
+    /// Zero unless paths are traced in pairs.
     pub pairs: Pairs,
 }
 
@@ -106,7 +107,7 @@ impl<'a> Batches<'a> {
         Ok(Self { world, points, bins, seed, paired: false, batches, traced: 0 })
     }
 
-    /// Traces pairs of paths from each point; for a single bin.
+    /// Makes later rounds trace pairs of paths from each point, as a least squares fit needs; only for a single bin.
     pub fn in_pairs(self) -> Self {
         Self { paired: true, ..self }
     }
@@ -116,8 +117,8 @@ impl<'a> Batches<'a> {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces more paths, up to `limit` in total: `growth` times the current number, with `growth` clamped to its
-    /// bounds.
+    /// Traces more paths: `growth` times the current number, with `growth` clamped to [`GROWTH`], and at most `limit`
+    /// in total.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
         let max_per_batch = limit.div_ceil(BATCHES as u32);
         let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
@@ -129,7 +130,7 @@ impl<'a> Batches<'a> {
         exec::for_rows(&mut self.batches, 1, part, |index, batch| {
             let seed = hash(seed, &[index as u64]);
             if paired {
-                // The pairs that begin in this round.
+                // A pair takes two paths: trace the pairs that begin in this round.
                 batch[0].extend_pairs(world, points, bins, seed, first.div_ceil(2)..last.div_ceil(2), job);
             } else {
                 batch[0].extend(world, points, bins, seed, first..last, job);
@@ -151,7 +152,7 @@ impl<'a> Batches<'a> {
         self.batches.iter().cloned().map(Batch::into_means).collect()
     }
 
-    /// The same means, consuming the batches.
+    /// Like [`Self::means`], but consumes the batches.
     pub fn into_means(self) -> Vec<Means> {
         self.batches.into_par_iter().map(Batch::into_means).collect()
     }
@@ -187,7 +188,7 @@ impl Batch {
         }
     }
 
-    /// Extends the batch by pairs of paths from each point.
+    /// Traces pairs of paths, both from the same point, and adds them to the batch.
     fn extend_pairs(
         &mut self,
         world: &World,

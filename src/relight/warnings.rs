@@ -1,4 +1,4 @@
-//! Reasons to doubt a solved colour and intensity.
+//! Warnings about a solved colour and intensity that may be wrong.
 
 use super::{Constraint, Solution, TargetStatus};
 use crate::warning::{Code, Warning};
@@ -6,7 +6,7 @@ use crate::warning::{Code, Warning};
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 impl Solution {
-    /// Reasons to doubt the solution.
+    /// Returns warnings about a solution that may be wrong.
     pub fn warnings(&self) -> Vec<Warning> {
         [self.unreachable(), self.clipped()].into_iter().flatten().collect()
     }

@@ -78,8 +78,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f32 values that the totals of a film hold per pixel for this attribute. The number of
-    /// hits is stored separately.
+    /// Returns the number of f32 values per pixel in which a film accumulates this attribute (the totals). The number
+    /// of hits is stored separately.
     pub fn total_count(self) -> usize {
         match self {
             Self::Depth | Self::Distance => 1,
@@ -89,8 +89,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f64 values that lossless sums hold per pixel for this attribute (see
-    /// [`Surfaces::add_to`]).
+    /// Returns the number of f64 values per pixel in which a rendered part accumulates this attribute (the lossless
+    /// sums, see [`Surfaces::add_to`]).
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -98,7 +98,7 @@ impl Aov {
         }
     }
 
-    /// Converts the lossless sums of a pixel to the totals of a film.
+    /// Computes the totals of a film's pixel from the lossless sums of the pixel.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -171,7 +171,8 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to lossless f64 sums. Vote counts are lossless up to `ballot::CANDIDATES` different indices.
+    /// Adds these sums to the lossless f64 sums of a rendered part. Vote counts are exact for up to
+    /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),
@@ -194,7 +195,8 @@ impl Surfaces {
     }
 }
 
-/// State of a Boyer–Moore majority vote: the leading candidate, and by how many uncancelled votes it leads.
+/// State of a Boyer–Moore majority vote: the leading candidate, and its lead. The lead is the number of the
+/// candidate's votes that no vote for another candidate has cancelled.
 #[derive(Clone, Copy, Default)]
 struct Vote {
     candidate: u32,

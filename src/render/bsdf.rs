@@ -3,9 +3,9 @@
 //! The model has a Lambertian layer below a GGX layer (the top layer). At a roughness below 1/1000, the top layer is a
 //! perfect mirror. Of the light that passes the top layer, the share `transmission` continues in a straight line, as
 //! through a thin pane (`KHR_materials_transmission` without volume). Appendix B blends the two layers by the Fresnel
-//! factor of the half vector; its sum reflects up to twice the incident light at grazing angles. This module instead
-//! attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the outgoing direction. A
-//! dielectric with an index of refraction of 1 has no top layer.
+//! factor of the half vector; the sum of both layers then reflects up to twice the incident light at grazing angles.
+//! This module instead attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the
+//! outgoing direction. A dielectric with an index of refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -23,7 +23,7 @@ const SHAREABLE_ROUGHNESS: f32 = 0.1;
 /// The BSDF parameters of a material at one surface point.
 #[derive(Clone, Copy, Debug)]
 pub struct Substance {
-    /// Albedo of the diffuse layer, multiplied by the share of the dielectric part of the material.
+    /// Albedo of the diffuse layer, already multiplied by 1 - metallic and by 1 - transmission.
     pub diffuse: Vec3,
     /// Reflectance of the top layer at normal incidence (`f0`) and at grazing incidence (`f90`).
     pub f0: Vec3,
@@ -126,7 +126,7 @@ impl<'a> Bsdf<'a> {
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
         let diffuse = substance.diffuse;
-        // Return early, which saves copying the memory of the layers for diffuse surfaces.
+        // Return early for diffuse surfaces, so that the unused layers are not copied.
         if !layered {
             return Self { diffuse, normal, geometric, layers: None };
         }
@@ -155,8 +155,9 @@ impl<'a> Bsdf<'a> {
         self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
-    /// Whether neighbouring pixels may share a path vertex with this BSDF. True if the BSDF scatters light but not
-    /// specularly or nearly so. The result does not depend on the view direction.
+    /// Whether neighbouring pixels may share a path vertex with this BSDF. True for a BSDF that reflects light,
+    /// transmits none, and has no top layer smoother than `SHAREABLE_ROUGHNESS`. The result does not depend on the
+    /// view direction.
     #[inline]
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
@@ -294,7 +295,8 @@ impl<'a> Layers<'a> {
     fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
         let [diffuse, top] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
-        // Stretch the part of `u.x` that selected the layer to `[0, 1)`, to reuse it for the direction.
+        // Rescale the interval of `u.x` that selected the layer to `[0, 1)`, and reuse the result to sample the
+        // direction.
         let part = |from: f32, share: f32| Vec2::new(((u.x - from) / share).min(1.0 - f32::EPSILON), u.y);
         let local = if u.x < diffuse {
             cosine_hemisphere(part(0.0, diffuse))
@@ -346,7 +348,8 @@ impl<'a> TopAlbedo<'a> {
     }
 }
 
-/// Tilts a shading normal that faces away from the viewer until the viewer sees the surface at a grazing angle.
+/// If the shading normal faces away from the viewer, tilts it until it is almost perpendicular to the view direction,
+/// so that the viewer sees the surface at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
     // Smallest cosine between the tilted normal and the viewer's direction. [origin not recorded]
     const MIN_COSINE: f32 = 1e-3;

@@ -6,8 +6,8 @@
 //! which preserves textures. Each level averages a pixel with eight neighbours, whose distance doubles from level to
 //! level. The weight of a neighbour falls with its distance from the pixel's plane, with the angle between the
 //! normals, with the difference in albedo, and with the difference in luminance relative to the standard errors of
-//! both. The filter propagates the variance of each average to the next level. With zero variance it leaves the image
-//! unchanged.
+//! both luminances. The filter propagates the variance of each average to the next level. With zero variance it leaves
+//! the image unchanged.
 //!
 //! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, and changes their
 //! radiance by about their standard error. [`Output::bias`] estimates this bias; final images are rendered without the
@@ -67,11 +67,11 @@ const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Kernel weight of a neighbour in the same row or column, relative to the weight of the pixel itself: the binomial
 /// kernel. [convention]
 const TAP: f32 = 0.5;
-/// Ratio of the variance of one half to the variance of the mean of both halves. It is exact for independent halves.
+/// Ratio of two variances: of one half, and of the mean of both halves. It is exact for independent halves.
 /// [convention]
 const HALF: f32 = 2.0;
-/// Range weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in luminance
-/// is this multiple of the sum of the two variances. [origin not recorded]
+/// Range weight: let the squared difference in luminance be this multiple of the sum of the two variances. Then, at
+/// strength 1, the weight of a neighbour falls by a factor e. [origin not recorded]
 const RANGE: f32 = 12.0;
 /// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
 /// direction to the neighbour has this value. [origin not recorded]
@@ -112,7 +112,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     Ok(Output { image, bias })
 }
 
-/// Filters one half of the paths.
+/// Filters the image of one half of the paths.
 fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: Job) -> Result<Image> {
     let (width, height) = (half.width, half.height);
     let mut light = light(half, variance, guide, job.part(0.0, 0.1))?;
@@ -136,7 +136,7 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
     Ok(image)
 }
 
-/// Returns the guide images in one array; within each row the channels follow each other as planes.
+/// Returns the guide images in one array. Each row stores its channels one after the other.
 fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *input.albedo;
     let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
@@ -152,8 +152,8 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Within each row the
-/// channels follow each other as planes.
+/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Each row stores its
+/// channels one after the other.
 fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;

@@ -13,8 +13,9 @@ pub enum EnvironmentSampler {
     /// Constant radiance: directions are uniform over the sphere.
     Constant,
     /// An equirectangular image: pixels are selected in proportion to their weights. The weight of a pixel is its
-    /// solid angle times the mean brightness of its 3 × 3 neighbourhood. Bilinear interpolation spreads light to
-    /// neighbouring pixels; the mean is positive wherever the interpolated radiance is.
+    /// solid angle times the mean brightness of its 3 × 3 neighbourhood. The weight uses this mean because bilinear
+    /// interpolation spreads light to neighbouring pixels: the mean is positive wherever the interpolated radiance is
+    /// positive.
     Image { rows: Distribution, columns: Vec<Distribution> },
 }
 

@@ -27,15 +27,16 @@ pub struct Facet {
 /// Bound on the rounding error of an interpolated point, relative to the largest coordinate of its triangle: sixteen
 /// times 2^-24, the rounding error of an f32 number. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
-/// A free point belongs to no triangle but may happen to lie in a surface. Its offset grows with the extent of the
-/// scene up to this extent, in metres. The offset must move the point clear of such a surface in a building, yet must
-/// not move it through a wall in a scene as large as a country. [convention]
+/// Rays from a free point start at an offset that grows with the extent of the scene, but only up to this extent, in
+/// metres. A free point belongs to no triangle but may happen to lie in a surface. The offset must move the point
+/// clear of such a surface in a building, yet must not move it through a wall in a scene as large as a country.
+/// [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
 /// if its distance exceeds this multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// Smallest number of triangles whose corners are used to locate the detail of a large scene; fewer than twice as many
-/// are used. The number is small, so that the list of corners fits in the memory reserve. [convention]
+/// To locate the detail of a large scene, the corners of at least this many triangles are used, and of fewer than
+/// twice as many. The number is small, so that the list of corners fits in the memory reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -98,7 +99,8 @@ impl Facet {
     }
 }
 
-/// Whether the mesh has no vertex normals, or those of the triangle equal its geometric normal up to rounding.
+/// Whether the mesh has no vertex normals, or the vertex normals of the triangle equal its geometric normal up to
+/// rounding.
 fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
     if mesh.normals.is_empty() {
         return true;

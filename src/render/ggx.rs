@@ -77,8 +77,8 @@ pub fn disc(u: Vec2) -> (Vec2, f32) {
 }
 
 /// Table of the lobe's directional albedo, `f0 * scale + f90 * bias`; an entry holds scale and bias for one cosine and
-/// roughness. The diffuse layer reflects the remainder, so that both layers together never reflect more than they
-/// receive (Kelemen and Szirmay-Kalos 2001).
+/// roughness. The diffuse layer reflects only light that the lobe does not reflect, so both layers together never
+/// reflect more than they receive (Kelemen and Szirmay-Kalos 2001).
 pub struct AlbedoTable {
     entries: Vec<Vec2>,
     averages: Vec<Vec2>,

@@ -2,9 +2,9 @@
 //! Σ L² ω / p²)`, with background luminance Lb, and luminance L, solid angle ω and position index p of each luminaire.
 //!
 //! As in CIE 117, the luminance of a luminaire towards the eye is its intensity divided by the projected area of its
-//! luminous opening, and its solid angle is that area divided by the squared distance. Hidden parts of an opening do
-//! not count; rays from the eye to a grid of points on the opening find the visible parts. The background luminance is
-//! `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
+//! luminous opening, and its solid angle is this projected area divided by the squared distance. Hidden parts of an
+//! opening do not count; rays from the eye to a grid of points on the opening find the visible parts. The background
+//! luminance is `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
 //! Not modelled: emissive surfaces, the environment and lights without area as glare sources. The rating leaves them
 //! out, but reports their direct illuminance at the eye.
@@ -88,8 +88,8 @@ const MAX_SOLID_ANGLE: f64 = 0.1;
 /// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper lines of sight are
 /// refused, because the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
-/// An opening counts as seen edge-on if its projected area towards the eye is at most this share of its largest
-/// projected area along one of its axes. [rounding]
+/// Let the reference be the largest of an opening's projected areas along its own axes. The opening counts as seen
+/// edge-on if its projected area towards the eye is at most this share of the reference. [rounding]
 const EDGE_ON: f64 = 1e-6;
 /// Number of visibility rays along each side of each face of a luminous opening.
 const RAYS: usize = 16;
@@ -140,7 +140,7 @@ struct Lamp {
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Luminance of the light's colour, by which the intensity distribution is multiplied.
+    /// Factor on the intensity distribution: the luminance of the light's colour.
     factor: f64,
 }
 

@@ -173,8 +173,8 @@ impl<'a> Layers<'a> {
         (0..MAX_SHARED).map(|_| self.recorder()).collect()
     }
 
-    /// Computes the images of all layers from the totals so far. `places` names for each pixel of the image the
-    /// displayed pixel: its tile, its index within the tile, and its number of samples.
+    /// Computes the images of all layers from the totals so far. For each pixel of the image, `places` holds the
+    /// rendered pixel to display there: its tile, its index within the tile, and its number of samples.
     pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
         let guards = try_collect(self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)))?;
         let tiles = try_collect(guards.iter().map(|guard| guard.as_slice()))?;

@@ -18,8 +18,8 @@ use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is about this share of
-/// the pixel's estimate or more. In rooms, the measured product of time and variance is smallest near this value.
+/// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
+/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
 /// [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability, so that a path between white walls ends eventually. The variance is infinite if the
@@ -204,13 +204,14 @@ pub(super) fn continue_path<O: Observer>(
         return None;
     }
     // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
-    // and splitting in light transport simulation"). A single value replaces their estimate of the radiance yet to be
-    // found.
+    // and splitting in light transport simulation"). The single value `roulette_weight` replaces their estimate of the
+    // radiance yet to be found.
     let mut throughput = leg.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
-        // Let dim paths survive with more than their expected share, which underestimates rare bright light.
+        // Let dim paths survive with a higher probability than their expected share, because this share underestimates
+        // rare bright light.
         let expected_share = (throughput * roulette_weight).max_element();
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {

@@ -68,8 +68,8 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// Returns one sentence for each shading feature that tracing omits because the scene does not need it, and for
-    /// each content of the scene that the renderer does not model.
+    /// Returns one sentence for each shading feature that the scene does not need and tracing therefore omits, and one
+    /// for each content of the scene that the renderer does not model.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -206,8 +206,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 }
 
 impl Requirements {
-    /// Adds the kinds of scattering that a material can cause, and its albedo. `extremes` are its extreme parameter
-    /// sets.
+    /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
+    /// parameter sets that bound the material (see `extremes`).
     fn include_material(
         &mut self,
         index: usize,
@@ -321,8 +321,8 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the extreme parameter sets of a material. Between them, all parameters of the layers are linear or
-/// monotone.
+/// Returns the parameter sets of a material with the smallest and largest metalness and roughness. Between these sets,
+/// all parameters of the layers are linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);

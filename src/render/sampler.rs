@@ -78,8 +78,8 @@ impl Sampler {
     }
 
     /// Returns a number uniform in `[0, 1)` that, unlike the numbers of blocks, is independent of the numbers of all
-    /// other paths. Decisions that depend on the results of other paths (Russian roulette) must use it, because
-    /// stratified numbers would bias them.
+    /// other paths. Decisions that depend on the results of other paths (Russian roulette) must use this function,
+    /// because stratified numbers would bias the estimate.
     #[inline]
     pub fn chance(&self) -> f32 {
         (self.ray_seed() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)

@@ -51,7 +51,8 @@ impl World {
     /// Validates a scene, which may be empty, and prepares it for rendering. Call it on the library's own thread pool.
     ///
     /// # Errors
-    /// Indices, sizes or values of the scene that are invalid, by name; too many triangles; no memory; cancelled.
+    /// Invalid indices, sizes or values of the scene, which the message names; too many triangles; no memory;
+    /// cancelled.
     pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
         check(&scene)?;
         let count: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();

@@ -1,4 +1,4 @@
-//! Checks that no light of a scene is too bright to be summed.
+//! Upper bounds on the emission, lights and environment of a scene, so that sums over pixels cannot overflow `f32`.
 
 use super::light::{MAX_LIGHT, check_light};
 use super::{Environment, Material, PunctualLight, Scene};
@@ -7,8 +7,9 @@ use crate::image::Image;
 use glam::Vec3;
 
 impl Scene {
-    /// Checks the luminance of every surface and of the environment, with their textures, and the intensity or
-    /// illuminance of every punctual light. The error names the first that is too bright, its value and the range.
+    /// Checks the luminance of every emissive material and of the environment, with their textures, and the intensity
+    /// or illuminance of every punctual light. The error names the first material or light that is too bright, its
+    /// value and the allowed range.
     pub fn check_brightness(&self) -> Result<()> {
         for (i, material) in self.materials.iter().enumerate() {
             self.check_emission(material).map_err(|e| e.context(format_args!("material {i} ({:?})", material.name)))?;
@@ -23,7 +24,7 @@ impl Scene {
         }
     }
 
-    /// The emission of a material, alone and times its texture.
+    /// Checks the emission of a material: the factor alone, and the factor times each texel of its emission texture.
     fn check_emission(&self, material: &Material) -> Result<()> {
         check_light("emission", material.emission)?;
         let texture = material.emission_texture.and_then(|reference| self.textures.get(reference.texture));
@@ -50,7 +51,8 @@ impl Scene {
     }
 }
 
-/// Checks the texels of an image times a factor; a black channel of the factor hides the channel of the image.
+/// Checks the texels of an image times `factor`. Where a channel of `factor` is 0, that channel of the image may have
+/// any value.
 fn check_texels(what: &str, image: &Image, factor: Vec3) -> Result<()> {
     let limits: [f32; 3] = factor.to_array().map(|f| if f > 0.0 { MAX_LIGHT / f } else { f32::MAX });
     let colours = image.channels.min(3);

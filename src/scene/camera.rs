@@ -1,4 +1,4 @@
-//! The camera of a rendering.
+//! The pinhole camera from which a scene is rendered.
 
 use glam::Vec3;
 
@@ -9,21 +9,22 @@ pub struct Camera {
     pub position: Vec3,
     /// Unit viewing direction.
     pub forward: Vec3,
-    /// Unit vector orthogonal to `forward`: up in the image.
+    /// Unit vector orthogonal to `forward` that points up in the image.
     pub up: Vec3,
     /// Full vertical angle of view in radians, in (0, π).
     pub fov_y: f32,
 }
 
 impl Camera {
-    /// A camera at `position` that looks at `target`, with the world's up direction upright in the image.
+    /// A camera at `position` that looks at `target`, rolled so that the world's +y points up in the image.
     pub fn look_at(position: Vec3, target: Vec3, fov_y: f32) -> Self {
         let forward = (target - position).normalize_or(Vec3::NEG_Z);
         let side = forward.cross(Vec3::Y).try_normalize().unwrap_or(Vec3::X);
         Self { name: String::new(), position, forward, up: side.cross(forward), fov_y }
     }
 
-    /// Unnormalised direction through a point of the image, `x` and `y` in `[0, 1]` from the top-left corner.
+    /// Returns the unnormalised ray direction through a point of the image. `x` and `y` lie in `[0, 1]` from the
+    /// top-left corner; `aspect` is width over height.
     pub fn direction(&self, x: f32, y: f32, aspect: f32) -> Vec3 {
         let half = (self.fov_y / 2.0).tan();
         let right = self.forward.cross(self.up);

@@ -7,8 +7,9 @@ use glam::DVec3;
 use std::fmt::{self, Debug, Write};
 
 impl Scene {
-    /// A hash of everything in the scene except its cameras. Different scenes collide with probability 2^-64; it
-    /// offers no protection against forgery. It may change between versions of the library.
+    /// Returns a hash of everything in the scene except its cameras and the list of unrendered features. Two different
+    /// scenes collide with probability 2^-64. The hash offers no protection against forgery, and it may change between
+    /// versions of the library.
     pub fn fingerprint(&self) -> u64 {
         let Self { origin, meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } =
             self;
@@ -64,9 +65,10 @@ impl Digest {
         self.array(data);
     }
 
-    /// Hashes small values by their debug text, which has all digits and includes fields added in future.
+    /// Hashes a small value by its `Debug` text: this text has all digits of floats, and fields added later are hashed
+    /// without a change here.
     fn text(&mut self, value: &dyn Debug) {
-        // Writing to the digest cannot fail.
+        // Ignore the result: `write_str` of the digest never fails.
         let _ = writeln!(self, "{value:?}");
     }
 }

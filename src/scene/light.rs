@@ -4,14 +4,15 @@ use crate::error::{Error, Result};
 use crate::image::Image;
 use glam::Vec3;
 
-/// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. Squares of it, and of
-/// its multiples in pixels near a lamp, stay within the range of `f32`. The sun's disc has 1.6e9 cd/m².
+/// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. The square of this
+/// value, and the squares of its multiples that occur in pixels near a lamp, do not overflow `f32`. For comparison,
+/// the sun's disc has 1.6e9 cd/m².
 // [rounding]
 pub const MAX_LIGHT: f32 = 1e15;
 
-/// Checks that each channel of a light lies in [0, [`MAX_LIGHT`]].
+/// Checks that each channel of `light` lies in [0, [`MAX_LIGHT`]]; `what` names the light in the error.
 pub fn check_light(what: &str, light: Vec3) -> Result<()> {
-    // NaN compares false and is refused.
+    // Comparisons with NaN are false, so NaN is refused.
     if light.cmpge(Vec3::ZERO).all() && light.cmple(Vec3::splat(MAX_LIGHT)).all() {
         return Ok(());
     }
@@ -25,27 +26,31 @@ pub fn check_light(what: &str, light: Vec3) -> Result<()> {
 pub enum PunctualLight {
     /// Isotropic luminous intensity per channel in cd.
     Point { position: Vec3, intensity: Vec3 },
-    /// Luminous intensity on the axis in cd; falls off between the inner and outer cone angles (radians) as glTF
-    /// prescribes.
+    /// `intensity` is the luminous intensity per channel on the axis, in cd. It falls off between the inner and outer
+    /// cone angles (half-angles in radians) as glTF prescribes.
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
-    /// Illuminance per channel in lux on a surface perpendicular to the light, which travels along `direction`.
+    /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },
-    /// A measured luminaire in the far field, so small that it acts as a point at the distance of the lit surfaces.
-    /// `axis` is the direction of γ = 0 (down for a hanging luminaire); `c0` is the direction of C = 0, perpendicular
-    /// to it. C increases anticlockwise as seen against the axis, from above. Both are unit vectors. Each channel is
-    /// `colour` times the intensity of one of the scene's distributions.
+    /// A measured luminaire in the far field: it is treated as a point, which assumes that the lit surfaces are far
+    /// away compared with its size.
+    ///
+    /// `axis` is the unit direction of γ = 0 (down for a hanging luminaire), and `c0` the unit direction of C = 0,
+    /// perpendicular to `axis`. C increases anticlockwise for a viewer who looks along `axis`, from above for a
+    /// hanging luminaire. The intensity in cd is `colour` per channel times the value of the scene's distribution of
+    /// index `distribution`.
     Luminaire { position: Vec3, axis: Vec3, c0: Vec3, colour: Vec3, distribution: usize },
 }
 
-/// The direction with C = 90° and γ = 90°.
+/// Returns the direction with C = 90° and γ = 90° of a luminaire.
 pub fn c90(axis: Vec3, c0: Vec3) -> Vec3 {
     c0.cross(axis)
 }
 
-/// Light from infinitely far away, in cd/m².
+/// Light from infinitely far away, with its luminance in cd/m².
 #[derive(Clone, Debug, PartialEq)]
 pub enum Environment {
     Constant(Vec3),
-    /// Equirectangular linear RGB: the image centre is the direction -z, its top +y, its right +x.
+    /// Equirectangular linear RGB. The image centre shows the direction -z, the top row +y, and the points to the
+    /// right of the centre directions towards +x.
     Image(Image),
 }

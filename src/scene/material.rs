@@ -9,7 +9,7 @@ pub struct TextureRef {
     pub texture: usize,
     /// Index of the mesh's set of texture coordinates: 0 or 1.
     pub uv_set: usize,
-    /// Applied to (u, v, 1) before the lookup (`KHR_texture_transform`).
+    /// Matrix applied to (u, v, 1) before the lookup (`KHR_texture_transform`).
     pub transform: Mat3,
 }
 
@@ -22,37 +22,38 @@ impl TextureRef {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
     Opaque,
-    /// Points with alpha below the cutoff are absent.
+    /// Surface points with an alpha below this cutoff are absent: rays pass through them.
     Mask(f32),
-    /// Points are present with probability alpha.
+    /// A surface point is present with a probability of alpha, otherwise rays pass through it.
     Blend,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
-    /// Linear, each in `[0, 1]`.
+    /// Linear reflectance per channel, in `[0, 1]`.
     pub base_color: Vec3,
     pub base_color_texture: Option<TextureRef>,
-    /// In `[0, 1]`; multiplies the texture's alpha.
+    /// Opacity in `[0, 1]`, multiplied by the alpha of the base colour texture.
     pub alpha: f32,
     pub alpha_mode: AlphaMode,
-    /// In `[0, 1]`.
+    /// Metalness in `[0, 1]`: 0 for dielectrics, 1 for metals.
     pub metallic: f32,
-    /// Perceptual roughness in `[0, 1]`; the GGX width is its square.
+    /// Perceptual roughness in `[0, 1]`; its square is the width parameter α of the GGX distribution.
     pub roughness: f32,
-    /// Green is roughness, blue is metallic.
+    /// The green channel holds the roughness, the blue channel the metalness.
     pub metallic_roughness_texture: Option<TextureRef>,
     pub normal_texture: Option<TextureRef>,
     pub normal_scale: f32,
-    /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength`.
+    /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength` of glTF.
     pub emission: Vec3,
     pub emission_texture: Option<TextureRef>,
     /// Whether back faces reflect and emit as front faces do. Back faces of single-sided materials still block light.
     pub double_sided: bool,
-    /// Share of light transmitted instead of reflected diffusely, in `[0, 1]`.
+    /// Share of the light that passes the dielectric surface and is transmitted rather than reflected diffusely, in
+    /// `[0, 1]`.
     pub transmission: f32,
-    /// Index of refraction of the dielectric layer, at least 1; with 1 it does not reflect.
+    /// Index of refraction of the dielectric layer, at least 1; a layer of index 1 reflects nothing.
     pub ior: f32,
 }
 
@@ -79,7 +80,8 @@ impl Default for Material {
 }
 
 impl Material {
-    /// A perfectly diffuse material of one colour: with an index of refraction of 1 it has no specular layer.
+    /// A perfectly diffuse, double-sided material of one colour. Its index of refraction is 1, so it has no specular
+    /// layer.
     pub fn diffuse(name: &str, base_color: Vec3) -> Self {
         Self { name: name.into(), base_color, metallic: 0.0, ior: 1.0, double_sided: true, ..Self::default() }
     }

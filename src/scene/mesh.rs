@@ -6,24 +6,25 @@ use glam::{Vec2, Vec3, Vec4};
 /// Triangles in world space. Front faces are wound counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// The host's name of the object; surfaces are looked up by it.
+    /// The host's name for the object. Surfaces are looked up by this name.
     pub name: String,
     /// Index into the scene's materials.
     pub material: usize,
     pub positions: Vec<Vec3>,
-    /// One per position; if empty, faces are flat.
+    /// One normal per position, or empty for flat-shaded faces.
     pub normals: Vec<Vec3>,
-    /// Up to two sets of texture coordinates, each with one entry per position or empty; (0, 0) is the top-left of a
-    /// texture.
+    /// Two sets of texture coordinates. Each set is empty or has one entry per position; (0, 0) is the top-left corner
+    /// of a texture.
     pub uvs: [Vec<Vec2>; 2],
-    /// Factors of the base colour and of alpha, each in `[0, 1]`: one per position; if empty, 1.
+    /// Factors of the base colour (RGB) and of alpha, each in `[0, 1]`: one entry per position, or empty for factors
+    /// of 1.
     pub colours: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// A parallelogram of two triangles whose front faces along `u` × `v`. Its texture coordinates are (0, 0) at the
-    /// corner, (1, 0) along `u` and (0, 1) along `v`.
+    /// A parallelogram of two triangles whose front side faces along `u` × `v`. The texture coordinates are (0, 0) at
+    /// `corner`, (1, 0) at `corner + u` and (0, 1) at `corner + v`.
     pub fn parallelogram(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Self {
         Self {
             material,
@@ -38,11 +39,13 @@ impl Mesh {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// Whether the consistently wound triangles enclose a volume: every edge is then traversed equally often in both
-    /// directions. Vertices at equal positions count as one. Edges are compared by a sum of hashes, which needs no
-    /// memory and errs for one in 2^64 meshes.
+    /// Whether the triangles are consistently wound and enclose a volume. In such a mesh every edge is traversed
+    /// equally often in both directions. Vertices at equal positions count as one vertex.
+    ///
+    /// Each directed edge has a hash, and the function sums the hashes of all edges minus those of the reversed edges.
+    /// The sum needs no memory; it is 0 by chance for one open mesh in 2^64.
     pub fn is_closed(&self) -> bool {
-        // Adding zero turns -0 into 0.
+        // Add zero, which turns -0 into +0, so that zeros of either sign hash alike.
         let place = |p: Vec3| hash(0, &(p + Vec3::ZERO).to_array().map(|v| v.to_bits().into()));
         let boundary = (0..self.triangles.len()).fold(0u64, |sum, triangle| {
             let [a, b, c] = self.corners(triangle).map(place);
@@ -59,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_box_is_closed_until_a_side_is_taken_away() {
-        // Each side has its own vertices, as in meshes with sharp normals.
+        // Give each side its own vertices, as meshes with sharp normals have.
         let mut cube = Mesh::default();
         let mut corner = Vec3::splat(-1.0);
         for axis in 0..3 {

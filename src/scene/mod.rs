@@ -1,8 +1,8 @@
-//! The 3D scene as described by a host, before any acceleration structure is built.
+//! The 3D scene as a host describes it, before any acceleration structure is built.
 //!
-//! Metres, right-handed, Y up. All meshes are in world space: a loader applies the node transforms. Emission is in
-//! cd/m² (`factor × texture × strength`, as in glTF), punctual lights in candela (point, spot, luminaire) or lux
-//! (directional).
+//! Coordinates are in metres, right-handed, with Y up. All meshes are in world space: a loader applies the transforms
+//! of the nodes. Emission is in cd/m² (`factor × texture × strength`, as in glTF). Punctual lights are in candela
+//! (point, spot, luminaire) or in lux (directional).
 
 pub mod accel;
 mod brightness;
@@ -31,20 +31,20 @@ use crate::photometry::Luminaire;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A scene description. [`Scene::validate`] checks the indices between the lists.
+/// A scene description. [`Scene::validate`] checks that every index into another list is in range.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The origin of all positions, in the coordinates of the scene's file and in metres. Without it, f32 positions of
-    /// a building on a national grid would be rounded to centimetres.
+    /// The origin of all positions, in metres in the coordinates of the scene's file. An origin near the building
+    /// keeps `f32` positions precise: on a national grid they would be rounded to centimetres.
     pub origin: DVec3,
     pub meshes: Vec<Mesh>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub lights: Vec<PunctualLight>,
-    /// Measured intensity distributions, referenced by the luminaires among the lights.
+    /// Measured luminous intensity distributions; luminaires among the lights refer to them by index.
     pub distributions: Vec<Arc<Luminaire>>,
     pub environment: Option<Environment>,
     pub cameras: Vec<Camera>,
-    /// The parts of the scene's file that are not shown.
+    /// The features of the scene's file that the renderer does not show.
     pub unrendered: Vec<Unrendered>,
 }

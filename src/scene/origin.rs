@@ -1,13 +1,14 @@
-//! The place where most of a scene is, as the origin of coordinates that f32 can hold.
+//! Finds the place where most of a scene lies. Positions relative to it are small enough for `f32`.
 
 use glam::DVec3;
 
-/// Share of the points that must lie near the median. The other points do not count, such as a few objects left behind
-/// at the origin of a national grid. [convention]
+/// Share of the points that must lie near the median. The remaining points are outliers, such as a few objects left
+/// behind at the origin of a national grid. [convention]
 const NEAR_SHARE: f64 = 0.75;
 
-/// The median of points per axis, and the distance from it, along an axis, within which [`NEAR_SHARE`] of them lie.
-/// `None` without points. A median lies where most points lie, however far away the others are.
+/// Returns the median of the points on each axis, and a half-extent: [`NEAR_SHARE`] of the points differ from the
+/// median by at most this length along every axis. `None` without points. Outliers hardly move the median, however far
+/// away they are.
 pub fn detail(points: &[DVec3]) -> Option<(DVec3, f64)> {
     if points.is_empty() {
         return None;

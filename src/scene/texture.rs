@@ -4,7 +4,7 @@ use crate::image::Image;
 use crate::image::regions::any_light;
 use glam::{Vec2, Vec4};
 
-/// Continuation of a texture outside `[0, 1]`.
+/// How a texture continues outside `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     Repeat,
@@ -12,7 +12,7 @@ pub enum Wrap {
     Mirror,
 }
 
-/// Linear values; (u, v) = (0, 0) is the outer corner of the top-left texel.
+/// An image with linear values; (u, v) = (0, 0) is the outer corner of the top-left texel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     pub name: String,
@@ -25,7 +25,7 @@ impl Texture {
         Self { name: name.into(), image, wrap: [Wrap::Repeat; 2] }
     }
 
-    /// Bilinear sample; missing alpha is 1, and a grey image gives r = g = b.
+    /// Samples bilinearly. An image without alpha gives an alpha of 1, and a grey image gives r = g = b.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
         let ([x0, x1], tx) = neighbours(uv.x, self.image.width, self.wrap[0]);
         let ([y0, y1], ty) = neighbours(uv.y, self.image.height, self.wrap[1]);
@@ -34,28 +34,29 @@ impl Texture {
         top.lerp(bottom, ty)
     }
 
-    /// The texel that covers a point, without interpolation.
+    /// Returns the texel that covers `uv`, without interpolation.
     pub fn nearest(&self, uv: Vec2) -> Vec4 {
         let size = Vec2::new(self.image.width as f32, self.image.height as f32);
         self.continued((uv * size).floor())
     }
 
-    /// The texel at integer coordinates, wrapped if they lie outside the image.
+    /// Returns the texel at integer coordinates, wrapped if they lie outside the image.
     pub fn continued(&self, texel: Vec2) -> Vec4 {
         let x = wrap_index(texel.x, self.image.width, self.wrap[0]);
         let y = wrap_index(texel.y, self.image.height, self.wrap[1]);
         self.texel(x, y)
     }
 
-    /// Whether no texel of a square inside the image has a colour above 0.
+    /// Whether all texels of a square are black. The square has its top-left texel at (x, y) and lies inside the
+    /// image.
     pub fn is_black(&self, [x, y]: [usize; 2], side: usize) -> bool {
         let channels = self.image.channels;
         let row = |y: usize| &self.image.data[(y * self.image.width + x) * channels..][..side * channels];
-        // An image with two channels has no colour and counts as white.
+        // Two channels hold no colour: `texel` returns white for such an image.
         channels != 2 && (y..y + side).all(|y| !any_light(row(y), channels))
     }
 
-    /// A texel of the image.
+    /// Returns the texel at (x, y) as RGBA; see [`Texture::sample`] for missing channels.
     pub fn texel(&self, x: usize, y: usize) -> Vec4 {
         match *self.image.pixel(x, y) {
             [v] => Vec4::new(v, v, v, 1.0),
@@ -66,21 +67,21 @@ impl Texture {
     }
 }
 
-/// Row-major index of the texel that covers a point in a texture of `width × height` texels.
+/// Row-major index of the texel that covers `uv` in a texture of `width × height` texels.
 pub fn texel_at(uv: Vec2, [width, height]: [usize; 2], wrap: [Wrap; 2]) -> usize {
     let texel = (uv * Vec2::new(width as f32, height as f32)).floor();
     wrap_index(texel.y, height, wrap[1]) * width + wrap_index(texel.x, width, wrap[0])
 }
 
-/// The two texels whose centres enclose a coordinate, and its fractional position between them.
+/// Returns the indices of the two texels whose centres enclose a coordinate, and the fractional position between them.
 fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
     let position = (u * size as f32 - 0.5).max(-16_777_216.0).min(16_777_216.0);
-    // A cast truncates towards 0, so subtract one from negative values. (`floor` is a function call on older
-    // processors.)
+    // A cast truncates towards 0, so subtract one from a negative position that is not whole. (`floor` is a function
+    // call on processors without SSE4.1.)
     let cut = position as i32;
     let base = cut - i32::from(cut as f32 > position);
     let t = position - base as f32;
-    // Fast path: inside the image no wrapping is needed.
+    // Fast path: both texels lie inside the image, so no wrapping is needed.
     if base >= 0 && base as usize + 1 < size {
         return ([base as usize, base as usize + 1], t);
     }
@@ -88,10 +89,10 @@ fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
 }
 
 fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
-    // Beyond 2^24, `f32` does not distinguish neighbouring texels; NaN becomes 0.
+    // Clamp to 2^24, beyond which `f32` does not distinguish neighbouring texels. The cast turns NaN into 0.
     let i = i.clamp(-16_777_216.0, 16_777_216.0) as i32;
     let n = size as i32;
-    // Fast path: avoid the division if no wrapping is needed.
+    // Fast path: without wrapping, avoid the slow integer division.
     if (0..n).contains(&i) {
         return i as usize;
     }
@@ -120,7 +121,7 @@ mod tests {
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Clamp, u)), [0.0, 0.0, 3.0, 3.0]);
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Mirror, u)), [0.0, 0.0, 3.0, 3.0]);
         assert!(at(Wrap::Repeat, f32::NAN).is_finite() && at(Wrap::Clamp, f32::INFINITY).is_finite());
-        // Interpolation between texel centres, across the seam and far outside.
+        // Interpolation between texel centres, across the wrapping seam and far outside the image.
         let between = |wrap, u| {
             Texture { name: String::new(), image: image.clone(), wrap: [wrap; 2] }.sample(Vec2::new(u, 0.5)).x
         };

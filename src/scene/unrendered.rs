@@ -1,18 +1,18 @@
-//! The parts of a scene's file that the renderer does not show, by name.
+//! The list of features of a scene's file that the renderer does not show, for messages to the user.
 
 use std::fmt;
 
-/// Maximum number of objects that are named; further objects are only counted.
+/// Maximum number of objects that an entry names; further objects are only counted.
 const MAX_NAMED: usize = 3;
 
-/// A feature of a file that is not rendered.
+/// A feature of a scene's file that is not rendered, and the objects that have it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unrendered {
-    /// Name of the extension, or of the part of glTF itself.
+    /// Name of the glTF extension, or words for a feature of glTF itself.
     pub feature: String,
-    /// The part of the picture that is missing.
+    /// The visible consequence, such as "there is no clear coat".
     pub effect: &'static str,
-    /// Names of the first objects that have the feature.
+    /// Names of the first `MAX_NAMED` objects that have the feature.
     pub named: Vec<String>,
     /// Number of objects that have the feature.
     pub count: usize,
@@ -28,7 +28,7 @@ impl fmt::Display for Unrendered {
     }
 }
 
-/// Adds an object to the list of its feature.
+/// Adds an object to the entry of `feature`, or starts that entry. `place` names the object.
 pub fn note(list: &mut Vec<Unrendered>, feature: &str, effect: &'static str, place: impl FnOnce() -> String) {
     let at = list.iter().position(|known| known.feature == feature).unwrap_or_else(|| {
         list.push(Unrendered { feature: feature.into(), effect, named: Vec::new(), count: 0 });

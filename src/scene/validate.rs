@@ -1,4 +1,4 @@
-//! Validates a scene before anything is built from it.
+//! Checks a scene's indices, lengths and value ranges before anything is built from it.
 
 use super::light::check_light;
 use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
@@ -8,16 +8,16 @@ use glam::{Mat3, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Display;
 
-/// Largest coordinate of any position, in metres: products of two coordinates, and quantities derived from them, then
-/// stay within the range of `f32` [rounding].
+/// Largest absolute coordinate of a position, in metres. Products of two coordinates, and quantities derived from
+/// these products, then do not overflow `f32`. [rounding]
 const MAX_COORDINATE: f32 = 1e15;
 
 fn is_place(point: Vec3) -> bool {
-    // NaN compares false and is rejected.
+    // Comparisons with NaN are false, so NaN is rejected.
     point.abs().cmple(Vec3::splat(MAX_COORDINATE)).all()
 }
 
-/// Checks that a position is in range; `what` is evaluated only on failure.
+/// Checks that a position is in range. `what` names the position; it is evaluated only on failure.
 pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<()> {
     if is_place(point) {
         return Ok(());
@@ -28,7 +28,8 @@ pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<
     )))
 }
 
-/// Tolerance of the length and orthogonality of directions [rounding].
+/// Largest deviation of a unit vector's length from 1, and of the dot product of two perpendicular unit vectors from
+/// 0. [rounding]
 const DIRECTION_TOLERANCE: f32 = 1e-3;
 
 impl Scene {
@@ -201,7 +202,7 @@ fn check_image(image: &Image) -> Result<()> {
     }
 }
 
-/// Emitted light and reflectance must not be negative.
+/// Refuses negative samples: emitted light and reflectance cannot be negative.
 fn check_positive(image: &Image) -> Result<()> {
     match image.data.iter().position(|&v| v < 0.0) {
         Some(i) => {

@@ -1,35 +1,39 @@
-//! Reasons to doubt that a scene is rendered as its author intended.
+//! Warnings about signs that a scene will not be rendered as its author intended.
 
 use super::{PunctualLight, Scene};
 use crate::warning::{Code, Warning};
 use glam::{DVec3, Vec3};
 
-/// Maximum height in metres of a plausible scene. [convention]: few interiors are higher, and rooms of 2 to 4 m would
-/// be 79 to 157 in inches, and more in smaller units.
+/// Height in metres above which the unit of a scene is probably not the metre. [convention]: few interiors are higher
+/// than this, whereas rooms of 2 to 4 m given in inches are 79 to 157 units high, and higher in smaller units.
 pub const MAX_HEIGHT: f64 = 50.0;
 
-/// Width in metres above which the unit of a scene is hardly the metre. [convention]: a plan or a ceiling alone has no
-/// height, and rooms of 3 m are 3000 wide in millimetres; few halls are longer than 1 km.
+/// Width in metres above which the unit of a scene is probably not the metre. This limit serves for scenes without
+/// height, such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000
+/// wide in millimetres.
 pub const MAX_WIDTH: f64 = 2000.0;
 
-/// Extent in metres below which a scene is hardly a room in metres. [convention]: smaller than a table lamp.
+/// Extent in metres below which the unit of a scene is probably not the metre. [convention]: a table lamp is larger.
 pub const MIN_EXTENT: f64 = 0.2;
 
-/// Height and width of a usual room in metres, from which the likely unit is derived. [convention]
+/// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
+/// size. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
 
 /// Maximum number of lights that a warning describes; further lights are only counted.
 const MAX_LISTED: usize = 3;
 
-/// Units of modelling programs, in metres. [convention]
+/// Units smaller than the metre in which modelling programs write scenes, with their length in metres. [convention]
 const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimetre", 0.01), ("the inch", 0.0254)];
 
-/// Units of scenes that were scaled down once too often, in metres. [convention]
+/// Units larger than the metre, for scenes that were scaled down once too often, with their length in metres.
+/// [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
-/// Maximum spacing in metres of the f32 coordinates of vertices. Beyond it, walls, lamps and panes that lie close
-/// together merge. [convention]: half a millimetre, which f32 reaches 4 km from the origin.
+/// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate. With coarser
+/// values, walls, lamps and panes that lie close together would merge. [convention]: half a millimetre, which `f32`
+/// reaches 4 km from the origin.
 pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {
@@ -47,8 +51,8 @@ impl Scene {
             .collect()
     }
 
-    /// Warns if the scene was moved to an origin other than that of its file, or if its coordinates are so large that
-    /// f32 has rounded them.
+    /// Warns if the importer moved the scene to an origin other than that of its file, or if the coordinates are so
+    /// large that `f32` has rounded them.
     fn far_away(&self) -> Option<Warning> {
         if self.origin != DVec3::ZERO {
             let [x, y, z] = self.origin.to_array();
@@ -61,7 +65,7 @@ impl Scene {
             return Some(Warning::new(Code::FarFromOrigin, self.origin.length(), 0.0, message, advice));
         }
         let (low, high) = self.bounds()?;
-        // The largest coordinate, which is rounded most.
+        // The largest coordinate has the coarsest rounding.
         let largest = low.abs().max(high.abs()).max_element();
         let spacing = f64::from(largest.next_up() - largest);
         Warning::above(
@@ -76,7 +80,8 @@ impl Scene {
         )
     }
 
-    /// Number of lights that shine from points, so that no picture shows them.
+    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so they are invisible in
+    /// renderings.
     pub fn unseen_lights(&self) -> usize {
         let is_unseen = |light: &&PunctualLight| match light {
             PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
@@ -88,8 +93,8 @@ impl Scene {
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// A warning if the scene has luminaires, which shine from points. Point and spot lights raise no warning: nobody
-    /// expects to see them in a picture.
+    /// Warns if the scene has luminaires: they shine from points, so they are invisible in renderings. Point and spot
+    /// lights raise no warning, because nobody expects to see them in a rendering.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
             PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),
@@ -105,8 +110,8 @@ impl Scene {
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
-    /// A warning if the extent suggests a unit other than the metre. Only the first defect is reported: too high, too
-    /// wide, too small.
+    /// Warns if the extent of the scene suggests a unit other than the metre. Reports only the first defect in the
+    /// order too high, too wide, too small.
     pub fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let extent = (high - low).as_dvec3();
@@ -134,7 +139,7 @@ impl Scene {
         }
     }
 
-    /// The corners of the bounding box of all triangles.
+    /// Returns the corners of the bounding box of all triangles; `None` without a finite position.
     fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let positions = self
             .meshes
@@ -148,7 +153,7 @@ impl Scene {
     }
 }
 
-/// A length with three significant digits, in full: 2700, 4.5, 0.0123.
+/// Formats a length with three significant digits and without an exponent: 2700, 4.5, 0.0123.
 fn significant(length: f64) -> String {
     let digits = 2.0 - length.log10().floor();
     let text = format!("{length:.*}", digits.clamp(0.0, 12.0) as usize);
@@ -161,7 +166,7 @@ mod tests {
     use crate::scene::Mesh;
     use crate::scene::unrendered::note;
 
-    /// A wall of the given height.
+    /// A scene with one square wall, as high and as wide as `height`.
     fn room(height: f32) -> Scene {
         let wall = Mesh::parallelogram(Vec3::ZERO, Vec3::X * height, Vec3::Y * height, 0);
         Scene { meshes: vec![wall], ..Scene::default() }
@@ -197,7 +202,7 @@ mod tests {
     #[test]
     fn a_room_that_is_too_small_is_noticed_with_the_unit() {
         assert!(room(0.25).warnings().is_empty());
-        // A point has no size by which a unit could be guessed.
+        // A scene of no extent suggests no unit.
         assert_eq!(room(0.0).warnings(), []);
         for (height, unit) in [(0.0027, "1000"), (0.03, "100"), (0.07, "100")] {
             let warnings = room(height).warnings();
@@ -216,7 +221,7 @@ mod tests {
         let warnings = scene(1e5).warnings();
         assert_eq!((warnings.len(), warnings[0].code, warnings[0].severity), (1, Code::FarFromOrigin, 0.0078125));
         assert!(warnings[0].message.contains("100004 m") && warnings[0].message.contains("7.81 mm"), "{}", warnings[0]);
-        // Near its own origin, the scene is not rounded, but its coordinates are not those of its file.
+        // Near its own origin the scene is not rounded, but its coordinates differ from those in its file.
         let moved = Scene { origin: DVec3::new(3e5, 0.0, -4e5), ..scene(0.0) };
         let warnings = moved.warnings();
         assert_eq!((warnings[0].severity, warnings[0].limit), (5e5, 0.0));

@@ -1,5 +1,5 @@
-//! Applies the classifier to the whole image, in tiles along the rows. Each feature of a tile is a plane, and each
-//! result is a quadratic form of the features.
+//! Applies the classifier to the whole image, in tiles of pixels along the rows. Within a tile, the values of each
+//! feature are contiguous. The logit and the distances from the classes are quadratic forms of the features.
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
@@ -16,7 +16,7 @@ use crate::job::Job;
 use crate::simd::widest;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Pixels processed together: their planes stay in the first-level cache.
+/// Number of pixels that are classified together: their features stay in the first-level cache.
 const TILE: usize = 64;
 
 /// One feature of all pixels of a tile.
@@ -26,14 +26,14 @@ pub struct Classified {
     pub mask: Image,
     pub confidence: Image,
     pub unseen: Image,
-    /// Mean of `unseen` over the pixels of the region.
+    /// Mean of `unseen` over the pixels of the region to be segmented.
     pub mean_unseen: f64,
-    /// Feature values that are NaN or infinite.
+    /// Number of feature values that are NaN or infinite.
     pub bad: usize,
 }
 
 impl Classified {
-    /// Makes mask and confidence follow the edges of the photo.
+    /// Filters the confidence so that it follows the edges of the photo, and thresholds it to a new mask.
     pub fn refine(&mut self, input: &Input, params: &Params, job: Job) -> Result<()> {
         let refinement = Refinement {
             features: input.features,
@@ -49,7 +49,8 @@ impl Classified {
     }
 }
 
-/// The output images, still black. Allocating them takes a while, so it is done while the model is trained.
+/// The output images, filled with zeros. They are allocated in parallel with learning, because allocation takes a
+/// while.
 pub struct Blank {
     mask: Image,
     confidence: Image,
@@ -63,30 +64,31 @@ impl Blank {
     }
 }
 
-/// All that is needed to classify a tile.
+/// The parameters of the classifier, converted to `f32` for the tiles.
 struct Judge<'a> {
-    /// The channels of the samples' columns.
+    /// The image channel of each column of the samples.
     channels: &'a [usize],
     /// Whether `channels` are all channels of an image with [`CHANNELS`] channels.
     is_usual: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
-    /// Indices in `channels` of the features that the logit uses, in its order.
+    /// Indices into `channels` of the features in the logit, in the order of its terms.
     deciding: Vec<usize>,
-    /// For each class, the squared distance from the centre of the region that its samples cover, over all of
+    /// For each class, the squared distance from the ellipsoid around its samples: at most 1 inside. It uses all of
     /// `channels`.
     seen: [Form; 2],
-    /// Factors on logits where features are like the painted ones, and where they are not.
+    /// Calibration factors on the logit: for pixels like the painted ones, and for pixels unlike them.
     calibration: [f32; 2],
 }
 
 impl Judge<'_> {
-    /// Standardises the channels of a tile. Inlined into the function for each instruction set.
+    /// Deinterleaves and standardises the channels of a tile. It is inlined into `judge`, which is compiled once per
+    /// instruction set.
     #[inline(always)]
     fn standardise(&self, pixels: &[f32], count: usize, tile: &mut Tile) {
         if self.is_usual {
-            // With all of the usual channels, standardise them while they are deinterleaved.
+            // For the usual ten channels, standardise in the same pass as deinterleaving.
             let mean: [f32; CHANNELS] = std::array::from_fn(|c| self.mean[c]);
             let scale: [f32; CHANNELS] = std::array::from_fn(|c| self.scale[c]);
             if let Some(planes) = tile.all.first_chunk_mut::<CHANNELS>() {
@@ -105,7 +107,8 @@ impl Judge<'_> {
     }
 }
 
-/// `xᵀAx + bᵀx + c` of standardised features; `a` holds the upper triangle row by row, empty if `A` is zero.
+/// The quadratic form `xᵀAx + bᵀx + c` of standardised features. `a` holds the upper triangle of `A` row by row; it is
+/// empty if `A` is zero.
 struct Form {
     a: Vec<f32>,
     b: Vec<f32>,
@@ -120,7 +123,7 @@ impl Form {
         Self { a, b: w[..d].to_vec(), c: w[w.len() - 1] }
     }
 
-    /// The squared distance from an ellipsoid's centre.
+    /// The squared Mahalanobis distance from an ellipsoid's centre, as a quadratic form.
     fn of_ellipsoid(e: &Ellipsoid) -> Self {
         let d = e.centre.len();
         let at = |i: usize, j: usize| e.inverse[i * d + j];
@@ -133,7 +136,7 @@ impl Form {
         Self { a, b: pull.iter().map(|p| -2.0 * *p as f32).collect(), c: c as f32 }
     }
 
-    /// Evaluates the form; `planes` are in the order of its features.
+    /// Evaluates the form at all pixels of a tile; `planes` holds one plane per feature of the form.
     #[inline(always)]
     fn evaluate(&self, planes: &[Plane]) -> Plane {
         let mut sum = [self.c; TILE];
@@ -158,34 +161,36 @@ impl Form {
     }
 }
 
-/// The results for a tile.
+/// The results for the pixels of a tile.
 struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far the features lie beyond the regions of both classes, in `[0, 1]`.
+    /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside, `1 - e^(1 - distance)`
+    /// outside.
     beyond: [f32; TILE],
-    /// Whether all distances are finite, and with them all of the samples' columns.
+    /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,
 }
 
-/// The features of a tile.
+/// The features of a tile, one plane per channel.
 struct Tile {
-    /// The channels as they are in the image.
+    /// The channels as they are stored in the image.
     raw: [Plane; MAX_CHANNELS],
-    /// The samples' columns, standardised (`all`), and those of them that the logit uses (`deciding`).
+    /// `all`: the standardised columns of the samples. `deciding`: the columns that the logit uses.
     all: [Plane; MAX_CHANNELS],
     deciding: [Plane; MAX_CHANNELS],
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels; results beyond the last pixel mean nothing. `likely` is the index of the
-    /// region of feature space that contained an earlier tile. It is tested first, which saves time and does not
+    /// Classifies up to [`TILE`] pixels; results behind the last pixel are undefined. `likely` is the index of the
+    /// ellipsoid that contained all pixels of an earlier tile. It is tested first, which saves time and does not
     /// change the result.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
         judge.standardise(pixels, count, tile);
         let planes = &tile.all[..judge.channels.len()];
 
-        // If one region contains all pixels, none lies beyond it: the other region need not be evaluated.
+        // Find the distance from the nearer ellipsoid. If one ellipsoid contains all pixels, `beyond` is 0, and the
+        // other one need not be evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..judge.seen.len() {
@@ -228,8 +233,8 @@ widest! {
     }
 }
 
-/// Classifies every pixel by its features; `channels` are the channels of the samples' columns. Outside the region,
-/// where `region` is at most one half, all results are 0.
+/// Classifies every pixel by its features; `channels` holds the image channel of each column of the samples. Outside
+/// the region (`region` at most 0.5) all results are 0.
 pub fn run(
     features: &Image,
     region: Option<&Image>,
@@ -253,7 +258,8 @@ pub fn run(
     let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);
     let looks_at_all = channels.len() == features.channels;
-    // The sum of each row, as bits. Adding them in order gives the same mean for any number of threads.
+    // The sum of `unseen` over each row, as the bits of an `f64`. Adding the sums in the order of rows gives the same
+    // mean for any number of threads.
     let sums: Vec<AtomicU64> = (0..height).map(|_| AtomicU64::new(0)).collect();
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job, |y, [mask, confidence, unseen]| {
@@ -295,7 +301,7 @@ widest! {
     }
 }
 
-/// The sum of all values, by eight partial sums.
+/// The sum of all values, through eight partial sums.
 fn sum_of(values: &[f32]) -> f32 {
     let (chunks, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

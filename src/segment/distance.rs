@@ -1,19 +1,20 @@
-//! Grows masks by a radius, by the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012). The ceiling
-//! outside a light's mask, grown by the radius of its bloom, has a colour that can be trusted.
+//! Dilates masks by a radius, through the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012).
+//! Example: the mask of the lights is dilated by the radius of their bloom, and the ceiling outside it has a
+//! trustworthy colour.
 
 use crate::error::{Result, check_range};
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// The mask grown by a disc: 1 where any pixel above one half is within `radius` pixels, else 0. The distance is from
-/// centre to centre; `radius` lies in `[0, 65536]`.
+/// Dilates a mask by a disc: a pixel becomes 1 if any mask pixel above one half lies within `radius` pixels, else 0.
+/// Distances are measured between pixel centres; `radius` lies in `[0, 65536]`.
 pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
     check_range("radius", radius, 0.0, 65_536.0)?;
     check_range("the number of channels of the mask", mask.channels, 1, 1)?;
     let (width, height) = (mask.width, mask.height);
 
-    // Squared distances along columns, stored column by column.
+    // Compute squared distances along columns, and store them column by column.
     let mut columns = Image::new(height, width, 1)?;
     exec::for_rows(&mut columns.data, height, job.part(0.0, 0.5), |x, column| {
         let is_set = |y: usize| mask.data[y * width + x] > 0.5;
@@ -29,7 +30,7 @@ pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
         }
     })?;
 
-    // Along rows: the lower envelope of parabolas.
+    // Combine the distances along each row: the lower envelope of one parabola per column.
     let mut out = Image::new(width, height, 1)?;
     exec::for_rows(&mut out.data, width, job.part(0.5, 1.0), |y, row| {
         let f: Vec<f64> = (0..width).map(|x| f64::from(columns.data[x * height + y])).collect();

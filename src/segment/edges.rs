@@ -1,20 +1,21 @@
-//! Smooths the contours of lamps before resampling: the half level of the confidence becomes a smooth line.
+//! Smooths the contours of lamps before the photo is resampled, so that the 0.5 level of the confidence becomes a
+//! smooth line.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 
-/// Standard deviation of the blur in photo pixels: the edge of a clipped lamp is a staircase of whole pixels, and its
-/// half level is straight again after a blur of about a pixel. [convention]
+/// Standard deviation of the blur in photo pixels. The edge of a clipped lamp is a staircase of whole pixels; after a
+/// blur of about a pixel, the 0.5 level of a straight edge is straight again. [convention]
 const EDGE_BLUR: f32 = 0.9;
-/// Widest gap between two lamps that is kept open, in photo pixels: the blur closes gaps of up to twice its deviation.
-/// [convention]
+/// Gaps between lamps stay open if they are at most this wide, in photo pixels. The blur would close gaps of up to
+/// twice its standard deviation. [convention]
 const GAP: usize = 2;
-/// Steps across a gap: along a row, a column and the diagonals.
+/// The directions in which a gap is crossed: along a row, a column and the two diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// The confidence of lamps with smooth edges, for resampling. Narrow gaps between lamps stay open, such as the bars
-/// between panes.
+/// Blurs the confidence of lamps, so that their edges are smooth after resampling. Narrow gaps between lamps stay
+/// open, such as the bars between panes of one window.
 pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     let mut smooth = pyramid::blur(confidence, EDGE_BLUR, job)?;
     for y in 0..smooth.height {
@@ -28,7 +29,7 @@ pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     Ok(smooth)
 }
 
-/// Whether a dark pixel has lit pixels near it on two opposite sides.
+/// Whether a dark pixel lies in a gap of at most [`GAP`] pixels: lit pixels lie close to it on two opposite sides.
 fn is_gap(confidence: &Image, x: usize, y: usize) -> bool {
     let is_lit = |[dx, dy]: [isize; 2], steps: isize| {
         let (u, v) = (x as isize + dx * steps, y as isize + dy * steps);
@@ -64,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_staircase_of_an_oblique_edge_becomes_a_line() {
-        // The half level along each row, between the pixels left and right of it, on a line of slope 1/4.
+        // On each row, the blurred value must cross 0.5 close to the ideal edge, a line of slope 1/4.
         let smooth = smooth(|x, y| 4 * x + y < 40);
         for y in 4..12 {
             let row = |x: usize| smooth.pixel(x, y)[0];

@@ -1,14 +1,14 @@
-//! The regions of feature space that the samples of a class cover, and how far pixels lie beyond them.
+//! Ellipsoids around the samples of each class in feature space, and how far pixels lie outside them.
 
 use super::input::MAX_CHANNELS;
 use super::logistic::cholesky_solve;
 use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::simd::widest;
 
-/// Variance that is added to each feature of a class. The class then spreads by at least a tenth of the unit deviation
-/// that standardised features have over both classes.
+/// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
+/// at least 0.1 along each feature; the deviation over both classes is 1.
 const LEAST_VARIANCE: f64 = 0.01;
-/// Share of a class's samples that lie within distance 1.
+/// Percentage of a class's samples that lie inside its ellipsoid.
 const WITHIN: usize = 99;
 
 /// Mean and covariance of a class's samples.
@@ -16,20 +16,21 @@ pub struct Spread<'a> {
     features: &'a Table,
     members: Vec<usize>,
     centre: Vec<f64>,
-    /// Row by row.
+    /// The covariance matrix, row by row; only its lower triangle is filled.
     covariance: Vec<f64>,
 }
 
-/// An ellipsoid around nearly all samples of a class: `(x - centre)ᵀ A (x - centre)` is at most 1 inside, and grows
-/// with the squared distance from the centre.
+/// An ellipsoid around nearly all samples of a class. The squared distance `(x - centre)ᵀ A (x - centre)` is at most 1
+/// inside.
 pub struct Ellipsoid {
     pub centre: Vec<f64>,
-    /// `A`, row by row.
+    /// The matrix `A`, row by row: the inverse covariance, scaled so that [`WITHIN`] percent of the samples lie
+    /// inside.
     pub inverse: Vec<f64>,
 }
 
 impl<'a> Spread<'a> {
-    /// The spread of the rows for which `is_member` holds.
+    /// Computes mean and covariance of the rows for which `is_member` holds.
     pub fn of(features: &'a Table, is_member: impl Fn(usize) -> bool) -> Self {
         let d = features.columns;
         let members: Vec<usize> = (0..features.rows).filter(|&i| is_member(i)).collect();
@@ -50,7 +51,7 @@ impl<'a> Spread<'a> {
         Self { features, members, centre, covariance }
     }
 
-    /// The ellipsoid in the space of some columns.
+    /// Computes the ellipsoid in the space of the given columns.
     pub fn ellipsoid(&self, columns: &[usize]) -> Ellipsoid {
         let (d, all) = (columns.len(), self.features.columns);
         let mut inverse = vec![0.0; d * d];
@@ -81,7 +82,8 @@ impl Ellipsoid {
     }
 }
 
-/// The mean over pixels of how far they lie beyond the nearest region: 0 inside it, `1 - e^(1 - distance)` outside.
+/// Computes how far pixels lie outside the nearest ellipsoid, and returns the mean over all pixels: 0 inside, `1 -
+/// e^(1 - distance)` outside.
 pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
     let mut sum = 0.0;
     for (rows, block) in pixels.blocks() {
@@ -104,7 +106,7 @@ widest! {
 }
 
 widest! {
-    /// Adds the weighted products of the deviations from the centre; only the lower triangle.
+    /// Adds the weighted outer products of the deviations from the centre to the lower triangle of `products`.
     fn add_products(block: &[Lanes], weights: &Lanes, centre: &[f64], products: &mut [f64]) {
         let d = centre.len();
         let mut off = [[0.0; BLOCK]; MAX_CHANNELS];
@@ -163,7 +165,8 @@ mod tests {
         };
         let within = (0..400).step_by(2).filter(|&i| at(rows[3 * i], rows[3 * i + 2]) <= 1.0 + 1e-12).count();
         assert_eq!(within, 198);
-        // Six times the deviation along an axis: equally far whatever the axis' own spread.
+        // At six standard deviations along either axis, the Mahalanobis distance is equal, although the deviations
+        // differ.
         let (x, y) = (region.centre[0], region.centre[1]);
         let (along, across) = (at(x + 18.0, y), at(x, y + 6.0 * 0.51));
         assert!((along / across).ln().abs() < 0.3, "{along} {across}");

@@ -1,11 +1,11 @@
-//! Exponentials and a logarithm from operations that processors apply to many values at once, with the same bits on all
+//! Exponentials and a logarithm from basic arithmetic, which compilers vectorise, and which gives the same bits on all
 //! processors.
 
-/// `eˣ`, with x clamped to `[-87, 88]`, to a relative error below 3e-7.
+/// Computes `eˣ` to a relative error below 3e-7; `x` is clamped to `[-87, 88]`.
 #[inline(always)]
 pub fn exp_f32(x: f32) -> f32 {
     const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
-    // Adding 1.5 × 2²³ rounds to a whole number, which then stands in the lowest bits.
+    // Adding 1.5 × 2²³ rounds to an integer, which then stands in the lowest bits of the mantissa.
     const ROUND: f32 = 12_582_912.0;
     let x = x.clamp(-87.0, 88.0);
     let shifted = x * std::f32::consts::LOG2_E + ROUND;
@@ -15,12 +15,12 @@ pub fn exp_f32(x: f32) -> f32 {
     p * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
 }
 
-/// `eˣ`, with x clamped to `[-708, 709]`, to a relative error below 1e-12.
+/// Computes `eˣ` to a relative error below 1e-12; `x` is clamped to `[-708, 709]`.
 #[inline(always)]
 pub fn exp_f64(x: f64) -> f64 {
     const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
     const ROUND: f64 = 6_755_399_441_055_744.0;
-    /// `1 / k!` from k = 10 down.
+    /// Taylor coefficients `1 / k!` for k from 10 down to 0.
     const TAYLOR: [f64; 11] = [
         1.0 / 3_628_800.0,
         1.0 / 362_880.0,
@@ -42,8 +42,8 @@ pub fn exp_f64(x: f64) -> f64 {
     p * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 
-/// `ln y` for y in `[1, 2]`, to an error below 1e-12: `ln √2` plus twice the inverse hyperbolic tangent of
-/// `(y - √2) / (y + √2)`.
+/// Computes `ln y` for y in `[1, 2]` to an error below 1e-12, as `ln √2 + 2 artanh((y - √2) / (y + √2))` with the
+/// power series of artanh.
 #[inline(always)]
 pub fn ln(y: f64) -> f64 {
     const SERIES: [f64; 7] = [1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];

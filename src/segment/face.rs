@@ -1,5 +1,6 @@
-//! Restricts the mask of a surface to one face of the room, or to the parts that strokes touch. A classifier of single
-//! pixels would also mark walls and floors of the same colour that no stroke has touched.
+//! Restricts the mask of a surface to one face of the room. If the strokes lie on several faces, restricts it to the
+//! parts that strokes touch. Without this step, the per-pixel classifier would also mark walls and floors of the same
+//! colour that no stroke has touched.
 
 use super::classify::Classified;
 use super::input::Input;
@@ -10,43 +11,45 @@ use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Minimum cosine of the angle between the normals of one face: the angle is at most half a right angle. [convention]
+/// Minimum cosine of the angle between normals of one face: the angle is at most 45 degrees. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Minimum share of the pixels whose normals must agree before they count as one face. [judged on 28 photos]
+/// Pixels lie on one face if at least this share of them have nearly equal normals. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
-/// Minimum cosine between normals that are equal up to rounding, as in a room laid out as a box but not in a depth map.
-/// [rounding]
+/// Minimum cosine between normals that differ by rounding only. Normals of a room laid out as a box pass this test,
+/// normals of a depth map do not. [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then tells no more
-/// than the face does, and a classifier that uses position would cut off parts of the face that no stroke has touched.
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box; otherwise `None`. The
+/// classifier must not use position in such a room: within a face, position does not separate the classes, and a
+/// classifier that uses it would cut off parts of the face that no stroke has touched.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
 
-/// The normal of the face that a mask covers, in a room laid out as a box.
+/// The normal of the face that a mask covers, in a room laid out as a box; otherwise `None`.
 pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
     agreed_normal(features, || marked(mask), EQUAL)
 }
 
-/// The normal of a ceiling: normals point into the room, and y points down. [convention]
+/// The normal of a ceiling. Normals point into the room, and y points down. [convention]
 const CEILING: Vec3 = Vec3::Y;
-/// Share of the photo that a ceiling must cover to be proposed. [convention]
+/// A ceiling is proposed only if it covers at least this share of the photo. [convention]
 const MIN_CEILING: f64 = 0.02;
-/// Expected error of a proposed plane: 1 minus the mean intersection over union with the true plane, over generated
-/// rooms. [bench photos:nostrokes:tune:48]
+/// Expected error of a proposed plane: 1 minus the mean intersection over union of proposed and true plane, over
+/// generated rooms. [bench photos:nostrokes:tune:48]
 const PROPOSED_ERROR: f64 = 0.18;
 
-/// Approximate number of ceiling pixels that stand for a stroke on the ceiling. [convention]
+/// Approximate number of ceiling pixels that replace a stroke on the ceiling. [convention]
 const EXAMPLES: usize = 1000;
 
-/// The mask of the face that the positive strokes lie on, in a room laid out as a box. `None` if they agree on no face.
+/// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box; `None` if they lie on
+/// more than one face or if there is no such room.
 pub fn of_strokes(input: &Input) -> Result<Option<Segmentation>> {
     laid_out(input).map(|normal| proposed(input, &face(input.features, normal)?)).transpose()
 }
 
-/// The mask of the ceiling of a room laid out as a box. Errors: there is no ceiling (`Degenerate`).
+/// Returns the mask of the ceiling of a room laid out as a box. Errors: there is no ceiling (`Degenerate`).
 pub fn of_ceiling(input: &Input) -> Result<Segmentation> {
     proposed(input, &ceiling(input.features)?)
 }
@@ -58,14 +61,14 @@ fn proposed(input: &Input, mask: &Image) -> Result<Segmentation> {
     Ok(Segmentation { error: PROPOSED_ERROR, is_proposed: true, off_image, ..own })
 }
 
-/// A positive stroke of pixels spread over the ceiling. Errors: there is no ceiling (`Degenerate`).
+/// Returns a positive stroke of pixels spread over the ceiling. Errors: there is no ceiling (`Degenerate`).
 pub fn ceiling_example(features: &Image) -> Result<Stroke> {
     let ceiling = ceiling(features)?;
     let step = (marked(&ceiling).count() / EXAMPLES).max(1);
     Ok(Stroke { pixels: try_collect(marked(&ceiling).step_by(step).map(|p| p as u32))?, positive: true })
 }
 
-/// The mask of the pixels on faces with the given normal.
+/// Returns the mask of the pixels whose normals deviate from the given normal by at most 45 degrees.
 fn face(features: &Image, normal: Vec3) -> Result<Image> {
     let mut mask = Image::new(features.width, features.height, 1)?;
     let is_on = |i: usize| normal_at(features, i).dot(normal) >= SAME_FACE;
@@ -73,9 +76,9 @@ fn face(features: &Image, normal: Vec3) -> Result<Image> {
     Ok(mask)
 }
 
-/// The mask of the ceiling of a room laid out as a box. The normals of such a ceiling are equal, unlike those of a
-/// depth map or of the prior for photos without lines. Errors: there is no such room, or its ceiling is hardly in view
-/// (`Degenerate`).
+/// Returns the mask of the ceiling of a room laid out as a box. The normals of such a ceiling are equal, unlike the
+/// normals of a depth map or of the prior for photos without lines. Errors (`Degenerate`): the room is not laid out as
+/// a box, or the ceiling covers less than [`MIN_CEILING`] of the photo.
 fn ceiling(features: &Image) -> Result<Image> {
     let mask = face(features, CEILING)?;
     let is_in_view = marked(&mask).count() as f64 >= MIN_CEILING * mask.data.len() as f64;
@@ -88,13 +91,13 @@ fn ceiling(features: &Image) -> Result<Image> {
     ))
 }
 
-/// The pixels of a mask.
+/// Iterates over the indices of the pixels in a mask.
 fn marked(mask: &Image) -> impl Iterator<Item = usize> {
     (0..mask.data.len()).filter(|&i| mask.data[i] > 0.5)
 }
 
-/// Removes pixels from the mask that lie on another face of the room than the positive strokes. If the strokes agree on
-/// no face, removes connected parts of the mask that no positive stroke touches.
+/// Removes pixels from the mask that lie on another face of the room than the positive strokes. If the positive
+/// strokes lie on several faces, removes the connected parts of the mask that no positive stroke touches.
 pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input, SAME_FACE) {
         Some(normal) => Box::new(move |i| normal_at(input.features, i).dot(normal) >= SAME_FACE),
@@ -111,7 +114,7 @@ pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     Ok(())
 }
 
-/// The distance of a face from the camera along its normal: the mean over the pixels with this normal.
+/// The distance of a face from the camera: the mean of `position · normal` over the pixels with this normal.
 pub fn offset(features: &Image, normal: Vec3) -> f32 {
     let pixels = features.data.chunks_exact(features.channels);
     let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);
@@ -121,7 +124,7 @@ pub fn offset(features: &Image, normal: Vec3) -> f32 {
     (sum / count.max(1) as f64) as f32
 }
 
-/// The neighbours of a pixel in its row and its column.
+/// The up to four neighbours of a pixel in its row and its column.
 fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let x = i % width;
     let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
@@ -133,21 +136,22 @@ fn normal_at(features: &Image, pixel: usize) -> Vec3 {
     Vec3::new(n[0], n[1], n[2])
 }
 
-/// The normal that the positive strokes agree on, up to an angle with the given cosine.
+/// The common normal of the pixels of the positive strokes, as for [`agreed_normal`].
 fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     let count = input.features.width * input.features.height;
     let strokes = || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels);
     agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
 }
 
-/// The normal that most of some pixels have, up to an angle with the given cosine.
+/// The common normal of the given pixels. `None` if fewer than the share [`AGREEMENT`] of the pixels have this normal.
+/// `cosine` is the minimum cosine between the common normal and the normal of a pixel that has it.
 fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
     if features.channels != CHANNELS {
         return None;
     }
     let normals = || pixels().map(|p| normal_at(features, p));
     let middle = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
-    // Average again without pixels on other faces, which would bias the mean.
+    // Average again without outliers on other faces, which would bias the mean.
     let mean = normals().filter(|n| n.dot(middle) >= SAME_FACE).fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
     let (mut agree, mut total) = (0usize, 0usize);
     for normal in normals() {
@@ -157,7 +161,7 @@ fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() 
     (agree as f64 >= AGREEMENT * total as f64).then_some(mean)
 }
 
-/// The pixels of the mask that are connected to a positive stroke within the mask.
+/// Finds the mask pixels that are connected to a positive stroke within the mask (flood fill).
 fn touched(input: &Input, mask: &Image) -> Result<Vec<bool>> {
     let (width, count) = (mask.width, mask.data.len());
     let mut touched = try_vec(count, false)?;

@@ -9,16 +9,17 @@ pub const MAX_CHANNELS: usize = 16;
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
-    /// 1 to 16 channels of the photo's size; finite everywhere.
+    /// The features of each pixel, 1 to 16 channels; an image of the photo's size with finite values.
     pub features: &'a Image,
     pub strokes: &'a [Stroke],
-    /// Where to look: 1 inside, 0 outside. In the second phase it is the plane's mask. Outside it the confidence is 0,
-    /// except in the regions of lamps. Strokes outside it still count as examples.
+    /// Mask of the pixels to classify: 1 inside, 0 outside; `None` means the whole image. In the second phase it is
+    /// the plane's mask. Outside it the confidence is 0, except on lamps that straddle its border. Strokes outside it
+    /// still count as examples.
     pub region: Option<&'a Image>,
 }
 
 impl Input<'_> {
-    /// Checks that the images fit each other.
+    /// Checks the numbers of channels, and that features and region have the same size.
     pub fn check(&self) -> Result<()> {
         check_range("the number of feature channels", self.features.channels, 1, MAX_CHANNELS)?;
         if let Some(region) = self.region {

@@ -1,4 +1,4 @@
-//! Logistic regression with a ridge, by Newton's method (iteratively reweighted least squares), in `f64`.
+//! Logistic regression with a ridge penalty, by Newton's method (iteratively reweighted least squares), in `f64`.
 
 use super::exponential::{exp_f64, ln};
 use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
@@ -6,34 +6,35 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Weighted examples, each a row of terms; the last term is the constant.
+/// Weighted samples for logistic regression. Each sample is a row of terms; the last term is the constant 1.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
     pub terms: &'a Table,
     pub positive: &'a [bool],
-    /// A weight of 0 leaves an example out.
+    /// Weight of each sample; 0 leaves a sample out.
     pub weights: &'a [f64],
 }
 
-/// The objective that a fit minimises, with its derivatives, at some weights.
+/// The objective of a fit and its derivatives, at given weights of the terms.
 pub struct Objective {
     pub value: f64,
     pub gradient: Vec<f64>,
-    /// Lower triangle, row by row.
+    /// The Hessian matrix: lower triangle, row by row.
     pub hessian: Vec<f64>,
 }
 
-/// The weights that minimise the mean log loss plus `ridge / 2 |w|²`, without the weight of the constant. The ridge
-/// makes the solution finite and unique even for separable, duplicated or constant terms. The fit starts at `start` and
-/// ends with the first step whose expected gain is below `precision`.
+/// Finds the weights `w` that minimise the mean log loss plus `ridge / 2 |w|²`. The weight of the constant term is
+/// hardly penalised. The ridge makes the solution finite and unique even for separable, duplicated or constant terms.
+/// Newton's method starts at `start` and ends with the first step whose expected decrease of the objective is below
+/// `precision`.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let mut w = start.to_vec();
     let mut here = Objective::at(problem, ridge, &w);
     for _ in 0..30 {
         job.check()?;
         let Some(step) = cholesky_solve(&mut here.hessian, &here.gradient) else { break };
-        // The expected gain of a step is half the slope along it: exact for a parabola, which the objective resembles
-        // near its minimum.
+        // The expected decrease of a Newton step is half the slope along it. This is exact for a parabola, which the
+        // objective resembles near its minimum.
         let expected = 0.5 * dot(&here.gradient, &step);
         let moved = |length: f64| -> Vec<f64> { w.iter().zip(&step).map(|(w, s)| w - length * s).collect() };
         if expected < precision {
@@ -41,7 +42,7 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Jo
             break;
         }
 
-        // A Newton step, halved until the objective falls.
+        // Take a Newton step, and halve its length until the objective falls.
         let mut length = 1.0;
         let (next, there) = loop {
             let next = moved(length);
@@ -65,7 +66,8 @@ impl Objective {
         let mut at = Self { value: 0.0, gradient: vec![0.0; d], hessian: vec![0.0; d * d] };
         add_log_loss(problem, w, &mut at);
         for i in 0..d {
-            // The constant has a tiny ridge too, because all the weight may lie on one class.
+            // The constant term gets a tiny ridge too: its best weight would be infinite if all weighted samples had
+            // one class.
             let r = if i + 1 == d { 1e-6 * ridge } else { ridge };
             at.value += 0.5 * r * w[i] * w[i];
             at.gradient[i] += r * w[i];
@@ -76,7 +78,7 @@ impl Objective {
 }
 
 widest! {
-    /// Adds the mean log loss with its derivatives.
+    /// Adds the mean log loss and its derivatives to the objective.
     fn add_log_loss(problem: &Problem, w: &[f64], to: &mut Objective) {
         let d = w.len();
         let scale = 1.0 / problem.weights.iter().sum::<f64>();
@@ -111,7 +113,7 @@ widest! {
     }
 }
 
-/// The logits of the rows that are `wanted`, with the indices of these rows.
+/// Computes the logits of the rows for which `wanted` holds; each pair is the row's index and its logit.
 pub fn logits(terms: &Table, w: &[f64], wanted: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (rows, block) in terms.blocks().filter(|(rows, _)| rows.clone().any(&wanted)) {
@@ -131,7 +133,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves `A x = b` for a symmetric positive definite `A` whose lower triangle is given; it is overwritten.
+/// Solves `A x = b` by Cholesky decomposition. `a` holds the lower triangle of the symmetric matrix `A` and is
+/// overwritten. `None` if `A` is not positive definite.
 pub fn cholesky_solve(a: &mut [f64], b: &[f64]) -> Option<Vec<f64>> {
     let n = b.len();
     for j in 0..n {
@@ -165,7 +168,7 @@ mod tests {
     use crate::job::Monitor;
     use crate::rng::Rng;
 
-    /// A constant alone: the weight is the logit of the share of positives.
+    /// If the constant is the only term, its weight must be the logit of the share of positive samples.
     #[test]
     fn the_constant_model_is_the_logit_of_the_share() {
         let positive: Vec<bool> = (0..100).map(|i| i % 4 == 0).collect();
@@ -213,7 +216,7 @@ mod tests {
         let terms = Table::of(&rows, 3).unwrap();
         let problem = Problem { terms: &terms, positive: &positive, weights: &vec![1.0; 20_000] };
         let w = fit(&problem, 1e-9, &[0.0; 3], 1e-9, Monitor::default().job()).unwrap();
-        // Standard errors are about 0.02 to 0.03: five of them.
+        // The standard errors of the weights are about 0.02 to 0.03; the bound allows about five of them.
         assert!(w.iter().zip(&truth).all(|(w, t)| (w - t).abs() < 0.13), "{w:?}");
         assert_eq!(logits(&terms, &w, |row| row == 777)[0].0, 777);
         assert!((logits(&terms, &w, |row| row == 777)[0].1 - dot(&w, &rows[3 * 777..3 * 778])).abs() < 1e-12);

@@ -1,36 +1,37 @@
-//! Guided segmentation: turns strokes on the photo into a mask with a confidence per pixel ("Lighting Style Transfer",
-//! §4.2).
+//! Guided segmentation: learns a classifier from the user's strokes on the photo, and computes a mask and a confidence
+//! for every pixel ("Lighting Style Transfer", §4.2).
 //!
 //! ```text
-//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the best one, calibrated
-//!                                                                                            │
-//! features ─────────────────────────────────────────────────────────────────────▶ classify ◀─┘ ─▶ mask, confidence, unseen
+//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation ─▶ the best model, calibrated
+//!                                                                                   │
+//! features ────────────────────────────────────────────────────────────▶ classify ◀─┘ ─▶ mask, confidence, unseen
 //! ```
 //!
 //! The paper does not name its classifier. Here it is logistic regression, with linear or with quadratic terms of the
 //! features. Such models do not memorise single samples, so they extrapolate to surfaces that no stroke touched; trees
-//! and kernel methods do not. Cross-validation decides which of the two models is used, on which channels, and how far
-//! its probabilities are trusted. It holds out strokes and parts of strokes, not single pixels, because neighbouring
-//! pixels are too alike to test each other.
+//! and kernel methods do not. Cross-validation decides which of the two models is used, on which channels, and by
+//! which factor its logits are scaled (calibration). It holds out strokes and parts of strokes, not single pixels,
+//! because neighbouring pixels are too alike to test each other.
 //!
-//! The paper's two phases are two runs. The first finds the plane ([`StrokeSet::plane_examples`]). The second finds the
-//! lights within the plane's mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane and share
-//! its geometry.
+//! The paper's two phases are two runs. The first run finds the plane ([`StrokeSet::plane_examples`]). The second run
+//! finds the lights within the plane's mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane
+//! and share its geometry.
 //!
 //! Known weakness: if the strokes lie on few surfaces, held-out strokes do not tell the subsets of channels apart. The
 //! simplest subset that separates the painted pixels is then chosen, and its probabilities are too confident.
 //!
-//! No state is kept between runs: with each additional stroke, everything is learnt and validated anew. The result
+//! No state is kept between runs: after each additional stroke, the model is learnt and validated anew. The result
 //! therefore depends on the strokes alone and not on earlier runs.
 //!
-//! Each pixel is classified on its own. Optionally ([`Params::refine_radius`]), its neighbours then influence it, most
-//! of all neighbours of its own colour. Masks then follow the edges of the photo, and noise and small mistakes
-//! disappear; so do lamps that are smaller than the radius.
+//! Each pixel is classified on its own. An optional edge-aware filter ([`Params::refine_radius`]) then mixes each
+//! pixel's probability with its neighbours' probabilities, mostly with neighbours of similar colour. The filter makes
+//! masks follow the edges of the photo, and removes noise and small mistakes. It also removes lamps that are smaller
+//! than the radius.
 //!
 //! Lamps are found as whole regions rather than pixel by pixel ([`instances`]), unless the caller asks for a surface
 //! ([`Subject`]). The mask of a plane is restricted to the face of the room that its strokes lie on ([`face`]).
 //!
-//! Not modelled: the influence of neighbouring pixels on each other during learning.
+//! Not modelled: dependence between neighbouring pixels while the classifier is learnt.
 
 mod classify;
 mod distance;
@@ -70,10 +71,11 @@ use input::MAX_CHANNELS;
 use samples::Samples;
 use select::{Chosen, Question};
 
-/// The channels of depth and position.
+/// Bits of the feature channels 3 to 6: screen depth and position.
 const POSITION: u32 = 0b111_1000;
 
-/// The subsets of an image's channels to choose from.
+/// Returns the subsets of channels to choose from, as bit masks. `count` is the number of feature channels; `wanted`
+/// is [`Params::channels`], where 0 leaves the choice open.
 fn subsets(count: usize, wanted: u32) -> Result<Vec<u32>> {
     let all = (1 << count) - 1;
     match wanted {
@@ -92,13 +94,13 @@ fn not_finite(bad: usize) -> Error {
 
 /// Segments an image by examples.
 ///
-/// With the [`CHANNELS`] of the features, a mask is proposed if strokes are missing:
+/// If the features have [`CHANNELS`] channels and strokes are missing, the mask is a proposal:
 /// - without negative strokes, the face of the room that the positive strokes lie on;
 /// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes;
 /// - for lamps without positive strokes, the regions most like lamps among the brightest parts of the given mask.
 ///
-/// Errors (`Degenerate`): a class that is needed covers no pixel of the image, and no mask can be proposed, because the
-/// features are others or because no face, ceiling or lamp was found.
+/// Errors (`Degenerate`): the strokes of a class that is needed cover no pixel of the image, and no mask can be
+/// proposed, because the features have another number of channels, or because no face, ceiling or lamp was found.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -125,7 +127,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         subsets.retain(|subset| subset & POSITION == 0);
     }
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
-    // Allocating the output takes a while: do it while the model is learnt.
+    // Allocating the output images takes a while, so allocate them in parallel with learning.
     let blank = || classify::Blank::new(features.width, features.height);
     let (learnt, blank) = exec::both(|| learn(input, params, &subsets, &channels, job.part(0.0, 0.4)), blank);
     let ((samples, chosen), blank) = (learnt?, blank?);
@@ -145,7 +147,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     Ok(result(classified, &samples, &chosen, &channels))
 }
 
-/// The result of a classification. `chosen` refers to channels by their index in `channels`.
+/// Builds the [`Segmentation`] from the classified pixels. `chosen.columns` holds indices into `channels`.
 fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: &[usize]) -> Segmentation {
     let unseen = classified.mean_unseen;
     Segmentation {
@@ -163,8 +165,8 @@ fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: 
     }
 }
 
-/// Proposes the mask of a plane if strokes of a class are missing. `None` if both classes have strokes in the image, or
-/// if the positive strokes agree on no face.
+/// Proposes the mask of a plane if the strokes of a class are missing. Returns `None` if both classes have strokes in
+/// the image, or if the positive strokes lie on more than one face.
 fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentation>> {
     let count = input.features.width * input.features.height;
     let is_seen = |s: &Stroke| s.pixels.iter().any(|&p| (p as usize) < count);
@@ -173,8 +175,8 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
         (true, true) => Ok(None),
         (true, false) => face::of_strokes(input),
         (false, false) => face::of_ceiling(input).map(Some),
-        // Pixels of the ceiling stand for the positive strokes. The negative strokes follow, so that they win where
-        // both cover a pixel.
+        // Add a positive stroke of ceiling pixels. The user's negative strokes follow it, because the later stroke
+        // wins where two strokes overlap.
         (false, true) => {
             let mut strokes = vec![face::ceiling_example(input.features)?];
             strokes.extend(input.strokes.iter().cloned());
@@ -184,8 +186,8 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
     }
 }
 
-/// Draws samples of the given channels, then chooses the model and the subset of channels that do best on held-out
-/// strokes.
+/// Draws samples of the given channels, then chooses the model and the subset of channels with the least expected loss
+/// on held-out strokes.
 fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
     let features = input.features;
     let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));

@@ -5,40 +5,42 @@ use crate::features::CHANNELS;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Samples drawn from the strokes of each class, in `[1, 1e6]`.
+    /// Number of samples drawn from the strokes of each class, in `[1, 1e6]`.
     pub samples_per_class: usize,
-    /// Which feature channels to use; bit `i` is channel `i`. 0 leaves the choice open: with [`CHANNELS`] channels, the
-    /// subset in [`SUBSETS`] that does best on held-out strokes is used; with any other number, all channels are used.
+    /// Feature channels to use; bit `i` stands for channel `i`. 0 leaves the choice open: if there are [`CHANNELS`]
+    /// channels, cross-validation chooses one of [`SUBSETS`]; with any other number, all channels are used.
     pub channels: u32,
-    /// Strength of the prior that keeps weights small, relative to the data, in `[1e-9, 1e3]`.
+    /// Strength of the ridge penalty `ridge / 2 |w|²` on the classifier's weights, relative to the mean log loss of
+    /// the samples, in `[1e-9, 1e3]`.
     pub ridge: f64,
     pub seed: u64,
-    /// Half-width of the windows of the edge-aware refinement, in pixels, in `[0, 1024]`; 0: no refinement. The first
-    /// three channels of the features guide it.
+    /// Half-width of the windows of the edge-aware filter, in pixels, in `[0, 1024]`; 0 turns the filter off. Its
+    /// guide image is the first three channels of the features.
     pub refine_radius: usize,
-    /// Differences of the guide below which neighbours belong to one surface, in the guide's units (for colour those of
-    /// CIELAB), in `[1e-3, 1e6]`.
+    /// Differences in the guide image below this value are smoothed over; larger ones count as edges. In units of the
+    /// guide (CIELAB units for colour), in `[1e-3, 1e6]`.
     pub refine_tolerance: f64,
-    /// What the positive strokes lie on.
+    /// The kind of object that the positive strokes mark.
     pub subject: Subject,
 }
 
-/// What is segmented: "stuff", which has a look but no shape, or "things", which have both (Kirillov et al. 2019,
-/// "Panoptic Segmentation").
+/// The kind of object that is segmented: "stuff", which has an appearance but no shape (a surface), or "things", which
+/// have both (lamps). The terms come from Kirillov et al. 2019, "Panoptic Segmentation".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Subject {
     /// Lamps if a region is given and the features have [`CHANNELS`] channels, else a surface.
     #[default]
     Auto,
-    /// A surface: every pixel is judged by its features, and must lie on the face of the room that the strokes lie on.
+    /// A surface: every pixel is classified by its features, and must lie on the face of the room that the strokes lie
+    /// on.
     Surface,
     /// Lamps: compact regions with a sharp contour, brighter than their surroundings ([`super::instances`]).
     Lamps,
 }
 
-/// The subsets of channels to choose from if the caller leaves the choice open: colour; colour and position; colour and
-/// normal; all. More channels are not always better: a channel that does not tell the classes apart still misleads
-/// where there is no stroke.
+/// The subsets of channels to choose from if the caller leaves the choice open: colour; colour and position; colour
+/// and normal; all channels. Using all channels is not always best: a channel that does not separate the classes adds
+/// errors far from the strokes.
 pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNELS) - 1];
 
 impl Default for Params {
@@ -65,7 +67,7 @@ impl Params {
         Ok(())
     }
 
-    /// For the second phase: colour only.
+    /// Settings of the second phase, which finds the lights: colour channels only.
     pub fn for_lights() -> Self {
         Self { channels: 0b111, ..Self::default() }
     }

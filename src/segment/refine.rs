@@ -1,11 +1,11 @@
-//! Edge-aware refinement: the guided filter makes probabilities follow the edges of the photo (He, Sun and Tang 2013,
-//! "Guided Image Filtering"). Its guide is the first three features, the colour.
+//! Edge-aware refinement: the guided filter makes the probabilities follow the edges of the photo (He, Sun and Tang
+//! 2013, "Guided Image Filtering"). The guide image consists of the first three features, which are the colour.
 //!
-//! In every window, the probability is fitted by an affine function of colour, `p ≈ a · I + b`. A penalty suppresses
-//! slopes that would rest on colour differences below the tolerance. Each pixel takes the mean of the fits of all
-//! windows that contain it. The sums over windows are running sums, so the time does not depend on the radius. Rows are
-//! processed in bands of a fixed height, each with its margins, so that a task needs the memory of one band only, and
-//! the bits of the result do not depend on the number of threads.
+//! In the window around each pixel, an affine function of colour is fitted to the probability, `p ≈ a · I + b`. A
+//! penalty keeps `a` small where colour varies by less than the tolerance. The refined probability of a pixel is the
+//! mean over the fits of all windows that contain the pixel. Sums over windows are running sums, so the time does not
+//! depend on the radius. Rows are processed in bands of fixed height, each with margins above and below. A task
+//! therefore needs memory for one band only, and the bits of the result do not depend on the number of threads.
 
 use crate::error::Result;
 use crate::exec;
@@ -14,29 +14,29 @@ use crate::job::Job;
 use crate::simd::widest;
 use std::ops::Range;
 
-/// Rows that are worked on together.
+/// Number of rows in a band.
 const BAND: usize = 64;
 
-/// Weighted sums over a window: of 1, I (3), p, I p (3), and the upper triangle of I Iᵀ (6); two are not used.
+/// Weighted sums over the pixels of a window. Elements: 1, I (3), p, I p (3), upper triangle of I Iᵀ (6), unused (2).
 type Moments = [f64; 16];
-/// Weighted sums of 1, a (3) and b; three are not used.
+/// Weighted sums of the fits over a window. Elements: 1, a (3), b, unused (3).
 type Fits = [f64; 8];
 
 /// The input and the settings of the filter.
 #[derive(Clone, Copy)]
 pub struct Refinement<'a> {
-    /// The first three channels are the guide; fewer channels are allowed.
+    /// The features of each pixel. The first three channels are the guide image; fewer channels are allowed.
     pub features: &'a Image,
     pub confidence: &'a Image,
-    /// Pixels not above one half take no part and stay as they are.
+    /// The filter ignores pixels whose region value is at most 0.5, and leaves their confidence unchanged.
     pub region: Option<&'a Image>,
     /// Half-width of the windows, in pixels, at least 1.
     pub radius: usize,
-    /// Colour differences below this count as noise, in units of the guide, > 0.
+    /// Colour differences below this value are smoothed over, in units of the guide image; > 0.
     pub tolerance: f64,
 }
 
-/// The refined probabilities, in `[0, 1]`.
+/// Runs the filter and returns the refined probabilities, in `[0, 1]`.
 pub fn run(refinement: &Refinement, job: Job) -> Result<Image> {
     let (width, height) = (refinement.confidence.width, refinement.confidence.height);
     let bands = exec::map(height.div_ceil(BAND), job, |k| {
@@ -50,7 +50,7 @@ pub fn run(refinement: &Refinement, job: Job) -> Result<Image> {
 }
 
 impl Refinement<'_> {
-    /// The refined probabilities of some rows.
+    /// Computes the refined probabilities of the given rows.
     fn band(&self, rows: Range<usize>, job: Job) -> Result<Vec<f32>> {
         let (width, height, radius) = (self.confidence.width, self.confidence.height, self.radius);
         let around = |y: usize| y.saturating_sub(radius)..(y + radius + 1).min(height);
@@ -66,7 +66,7 @@ impl Refinement<'_> {
             fit_row(self, &Line { y, columns: &columns }, fits);
         }
 
-        // Compute the means of these fits.
+        // Average the fits over the windows that contain each pixel.
         let mut out = try_vec(rows.len() * width, 0.0)?;
         let mut columns = try_vec(width, [0.0; 8])?;
         let mut held = 0..0;
@@ -84,7 +84,7 @@ impl Refinement<'_> {
         self.region.map_or(1.0, |region| f64::from(region.data[y * region.width + x] > 0.5))
     }
 
-    /// Adds (`sign` 1) or removes (-1) the moments of a row in the sums of the columns.
+    /// Adds the moments of a row's pixels to the sums of their columns (`sign` 1), or subtracts them (-1).
     fn add_moments(&self, y: usize, sign: f64, columns: &mut [Moments]) {
         let row = MomentRow { features: self.features.row(y), probability: self.confidence.row(y), sign };
         match self.region {
@@ -100,20 +100,21 @@ struct MomentRow<'a> {
     sign: f64,
 }
 
-/// The sums of all columns over the rows around row `y`.
+/// The sums of every column over the window rows around row `y`.
 struct Line<'a> {
     y: usize,
     columns: &'a [Moments],
 }
 
-/// Moves the range of rows that the sums hold: removes the rows that leave it, and adds the rows that enter it.
+/// Slides the window of rows that the running sums cover: adds the rows that enter it, and subtracts the rows that
+/// leave it.
 fn slide(held: &mut Range<usize>, wanted: Range<usize>, mut add: impl FnMut(usize, f64)) {
     (held.end.max(wanted.start)..wanted.end).for_each(|y| add(y, 1.0));
     (held.start..held.end.min(wanted.start)).for_each(|y| add(y, -1.0));
     *held = wanted;
 }
 
-/// The first three features of a pixel.
+/// The guide image at a pixel: the first three features; missing channels are 0.
 #[inline(always)]
 fn guide(features: &[f32], channels: usize, x: usize) -> [f64; 3] {
     std::array::from_fn(|c| if c < channels { f64::from(features[x * channels + c]) } else { 0.0 })
@@ -136,7 +137,7 @@ widest! {
 }
 
 widest! {
-    /// The affine fit of each window along a row, times the weight of the pixel in its middle.
+    /// Fits the affine function in the window around each pixel of a row. Pixels outside the region get zeros.
     fn fit_row(of: &Refinement, line: &Line, fits: &mut [[f32; 5]]) {
         let width = fits.len();
         let epsilon = of.tolerance * of.tolerance;
@@ -162,18 +163,18 @@ widest! {
             if of.weight(x, line.y) > 0.0 {
                 let [a, b, c, d] = affine(&sum, epsilon).map(|v| v as f32);
                 let is_finite = a.is_finite() && b.is_finite() && c.is_finite() && d.is_finite();
-                // If the numbers are too large for slopes, use the mean of the window.
+                // If the sums are too large for finite slopes, use the mean probability of the window.
                 *fit = if is_finite { [1.0, a, b, c, d] } else { [1.0, 0.0, 0.0, 0.0, (sum[4] / sum[0]) as f32] };
             }
         }
     }
 }
 
-/// `a = (Σ + ε)⁻¹ cov(I, p)` and `b = p̄ - a · Ī` of a window, by Cholesky's method.
+/// Solves for `a = (Σ + ε)⁻¹ cov(I, p)` and `b = p̄ - a · Ī` of a window, by Cholesky decomposition.
 #[inline(always)]
 fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let per_n = 1.0 / sum[0];
-    // Suppress slopes that come from the rounding of the running sums, too.
+    // Enlarge the penalty by the rounding error of the running sums, so that rounding alone causes no slopes.
     let epsilon = epsilon + 1e-12 * per_n * (sum[8] + sum[11] + sum[13]);
     let [r, g, b, p] = [1, 2, 3, 4].map(|k| sum[k] * per_n);
     let covariance = |k: usize, u: f64, v: f64| sum[k] * per_n - u * v;
@@ -181,7 +182,7 @@ fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let (rp, gp, bp) = (covariance(5, r, p), covariance(6, g, p), covariance(7, b, p));
     let (rg, rb, gb) = (covariance(9, r, g), covariance(10, r, b), covariance(12, g, b));
 
-    // Decompose into L D Lᵀ. Despite rounding, no pivot may be smaller than the tolerance alone would make it.
+    // Decompose the matrix into L D Lᵀ. No pivot may fall below ε, whatever the rounding.
     let d0 = variance(8, r);
     let (l10, l20) = (rg / d0, rb / d0);
     let d1 = (variance(11, g) - l10 * rg).max(epsilon);
@@ -252,7 +253,7 @@ mod tests {
         Image::from_fn(width, height, |x, y| [Rng::new(seed, &[x as u64, y as u64]).next_f32()]).unwrap()
     }
 
-    /// By the definition, one window after the other.
+    /// The refined probabilities by the filter's definition, window by window.
     fn by_definition(of: &Refinement) -> Vec<f64> {
         let (width, height) = (of.confidence.width, of.confidence.height);
         let window = |x: usize, y: usize| {
@@ -310,7 +311,7 @@ mod tests {
                 sum.iter_mut().zip(add).for_each(|(s, a)| *s += a);
             }
             let a = affine(&sum, 0.01);
-            // The gradient of Σ (a · I + b - p)² + n ε |a|² is zero.
+            // At the minimum, the gradient of Σ (a · I + b - p)² + n ε |a|² must be zero.
             let residual = |q: &[f64; 4]| a[0] * q[0] + a[1] * q[1] + a[2] * q[2] + a[3] - q[3];
             for c in 0..3 {
                 let slope: f64 = pixels.iter().map(|q| residual(q) * q[c]).sum::<f64>() + 9.0 * 0.01 * a[c];
@@ -322,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_blurred_border_snaps_to_the_edge_and_noise_goes() {
-        // Two colours, and a probability that changes from one to the other over 16 pixels, with noise.
+        // Two colours that meet at a sharp edge, and a noisy probability that rises across that edge over 16 pixels.
         let features = Image::from_fn(96, 80, |x, _| [if x < 48 { 30.0 } else { 70.0 }, 0.0, 0.0]).unwrap();
         let confidence = Image::from_fn(96, 80, |x, y| {
             let noise = Rng::new(5, &[x as u64, y as u64]).next_f32() - 0.5;
@@ -347,7 +348,7 @@ mod tests {
             let of = Refinement { features: &features, confidence: &confidence, region: None, radius, tolerance: 0.1 };
             assert!(refined(&of).data.iter().all(|p| (p - 0.7).abs() < 1e-3), "{guide} {radius}");
         }
-        // Black, white and 1e18 at random, one pixel, and one channel.
+        // An image of one channel that is 0, 100 or 1e18 at random; then an image of one pixel.
         let wild = Image::from_fn(40, 70, |x, y| match Rng::new(6, &[x as u64, y as u64]).next_f32() {
             v if v < 0.3 => [0.0],
             v if v < 0.6 => [100.0],

@@ -1,4 +1,5 @@
-//! Draws training samples from strokes: a limited number per class, spread evenly over the strokes, selected by hashes.
+//! Draws training samples from strokes: a limited number per class, spread evenly over the strokes. Within a stroke,
+//! the pixels with the smallest hash values are drawn.
 
 use super::input::Input;
 use super::params::Params;
@@ -11,14 +12,14 @@ use crate::rng;
 #[derive(Clone, Copy)]
 pub struct Origin {
     pub positive: bool,
-    /// Index of its stroke among the strokes of both classes.
+    /// Index of the sample's stroke among the strokes of both classes.
     pub stroke: usize,
-    /// Quarter of its stroke, along the stroke's longer extent.
+    /// The quarter of the stroke that holds the sample, 0 to 3, counted along the stroke's longer extent.
     pub part: usize,
 }
 
 pub struct Samples {
-    /// The values of one sample after the other, `dimension` values each.
+    /// Feature values, sample after sample, `dimension` values per sample.
     pub values: Vec<f64>,
     pub dimension: usize,
     /// The feature channel of each of the `dimension` values.
@@ -32,9 +33,9 @@ pub struct Samples {
     pub off_image: usize,
 }
 
-/// Parts a stroke is split into for cross-validation.
+/// Number of parts into which cross-validation splits a stroke.
 pub const PARTS: usize = 4;
-/// Maximum number of pixels of a probe.
+/// Maximum number of pixels that [`probe`] returns.
 const PROBES: usize = 2048;
 
 /// Draws the samples. Where strokes overlap, the later stroke wins.
@@ -68,7 +69,8 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
         }
         let sizes: Vec<usize> = strokes.iter().map(|pixels| pixels.len()).collect();
         for (pixels, share) in strokes.iter_mut().zip(shares(&sizes, params.samples_per_class)) {
-            // The pixels with the smallest hashes are a random sample without replacement, whatever the stroke's order.
+            // Keep the pixels with the smallest hashes: a random sample without replacement that does not depend on
+            // the order in which the stroke lists its pixels.
             if share < pixels.len() {
                 pixels.select_nth_unstable(share);
                 pixels.truncate(share);
@@ -89,9 +91,9 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
     Ok(samples)
 }
 
-/// The pixels that each stroke owns. Where strokes overlap, the later stroke wins.
+/// The pixels that belong to each stroke. A pixel under several strokes belongs to the last one.
 struct Owned {
-    /// The pixels of each stroke, each pixel once, with the hash by which samples are selected.
+    /// For each stroke, its pixels without duplicates, each after the hash by which samples are drawn.
     pixels_of: Vec<Vec<(u64, u32)>>,
     contradictory: usize,
     off_image: usize,
@@ -99,7 +101,7 @@ struct Owned {
 
 fn owned(input: &Input, seed: u64) -> Result<Owned> {
     let pixels = input.features.width * input.features.height;
-    // For each pixel the last stroke that covers it, and a flag that strokes of both classes cover it.
+    // For each pixel, the index of the last stroke that covers it, and a flag if strokes of both classes cover it.
     const NONE: u32 = u32::MAX >> 1;
     const CONTRADICTED: u32 = !NONE;
     let mut owner = try_vec(pixels, NONE)?;
@@ -118,7 +120,7 @@ fn owned(input: &Input, seed: u64) -> Result<Owned> {
             *slot = s as u32 | flag;
         }
     }
-    // Collect the pixels that each stroke owns, each pixel once, with its hash.
+    // Collect the pixels of each stroke without duplicates, with their hashes.
     let mut own = |(s, stroke): (usize, &Stroke)| {
         try_collect(stroke.pixels.iter().filter_map(|&p| {
             let slot = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32)?;
@@ -130,7 +132,7 @@ fn owned(input: &Input, seed: u64) -> Result<Owned> {
     Ok(Owned { pixels_of, contradictory, off_image })
 }
 
-/// The pixels of the strokes by class.
+/// The pixels under the strokes, by class. A pixel under several strokes belongs to the last one.
 pub struct Ownership {
     /// Pixels of each positive stroke.
     pub positive: Vec<Vec<u32>>,
@@ -155,7 +157,8 @@ pub fn ownership(input: &Input) -> Result<Ownership> {
     Ok(Ownership { positive, negative, contradictory, off_image })
 }
 
-/// Features of pixels spread over the region to be segmented, `channels.len()` values per pixel.
+/// Returns the features of up to [`PROBES`] pixels spread over the region to be segmented, `channels.len()` values per
+/// pixel.
 pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
     let features = input.features;
     // The step must not divide the width: otherwise only a few columns would be sampled.
@@ -169,8 +172,8 @@ pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// Number of samples that each stroke contributes to `total`: equal shares. Where a small stroke has fewer pixels than
-/// its share, larger strokes contribute more.
+/// Distributes `total` samples over the strokes in equal shares. If a stroke has fewer pixels than its share, the
+/// remainder goes to larger strokes.
 fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| (sizes[i], i));
@@ -183,7 +186,7 @@ fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     shares
 }
 
-/// The pixels of a stroke, sorted along its longer extent, each with the quarter of the stroke that it lies in.
+/// Sorts the pixels of a stroke along its longer extent, and numbers the quarter of the stroke that holds each pixel.
 fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     let position = |p: u32| (p as usize % width, p as usize / width);
     let extent = |f: fn((usize, usize)) -> usize| {

@@ -4,12 +4,12 @@ use super::strokes::Stroke;
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 
-/// The two families of classifiers.
+/// The two families of classifiers: the logit is a linear or a quadratic function of the features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// `bᵀx + c`.
+    /// The logit is `bᵀx + c`.
     Linear,
-    /// `xᵀAx + bᵀx + c`.
+    /// The logit is `xᵀAx + bᵀx + c`.
     Quadratic,
 }
 
@@ -19,15 +19,16 @@ pub struct Segmentation {
     pub mask: Image,
     /// Probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out strokes.
     pub confidence: Image,
-    /// How far a pixel's features lie beyond those of all strokes, in `[0, 1]`. Where it is high, one more stroke
-    /// helps.
+    /// Distance of a pixel's features from the features of all strokes, mapped to `[0, 1]`: 0 if the samples of a
+    /// class cover them. Another stroke helps most where this value is high.
     pub unseen: Image,
-    /// Expected share of wrong pixels, in `[0, 1]`. Cross-validation gives the error on held-out parts of strokes, for
-    /// pixels like the painted ones, and the error on held-out whole strokes, for pixels that are `unseen`.
+    /// Expected share of wrong pixels, in `[0, 1]`, from cross-validation. It is a weighted mean of two errors: on
+    /// held-out parts of strokes, for pixels like the painted ones, and on held-out whole strokes, for pixels unlike
+    /// them. The mean of `unseen` is the weight of the second error.
     pub error: f64,
     /// The classifier; `None` for lamps and for a mask that the caller supplied.
     pub model: Option<Model>,
-    /// The channels that were used; bit `i` is channel `i`.
+    /// The channels that the classifier uses; bit `i` stands for channel `i`.
     pub channels: u32,
     /// Number of samples of the negative and the positive class.
     pub samples: [usize; 2],
@@ -35,16 +36,16 @@ pub struct Segmentation {
     pub contradictory: usize,
     /// Stroke pixels outside the image; they were ignored.
     pub off_image: usize,
-    /// Whether the mask was proposed because strokes were missing: for the plane, the strokes of at least one class;
+    /// Whether the mask is a proposal because strokes were missing: for a plane, the strokes of at least one class;
     /// for lamps, the positive strokes.
     pub is_proposed: bool,
-    /// For lamps only: regions outside the given mask that have the size and the shape of a lamp if the plane continues
-    /// there. They suggest that the room is larger than it was laid out.
+    /// For lamps only: regions outside the given plane mask that would have the size and the shape of a lamp if the
+    /// plane continued there. They suggest that the room is larger than its layout.
     pub beyond: Vec<Stroke>,
 }
 
 impl Segmentation {
-    /// A segmentation that the caller supplies: one channel of probabilities in `[0, 1]`, or a mask.
+    /// Wraps a segmentation that the caller supplies: one channel of probabilities in `[0, 1]`, or a mask of 0 and 1.
     pub fn from_confidence(confidence: &Image) -> Result<Self> {
         check_range("the number of channels of the mask", confidence.channels, 1, 1)?;
         let bad = confidence.data.iter().find(|v| !(0.0..=1.0).contains(*v));

@@ -1,9 +1,10 @@
-//! Chooses the model and its features by cross-validation, and calibrates its probabilities on the held-out samples.
+//! Chooses the model and its feature channels by cross-validation, and calibrates its probabilities on held-out
+//! samples.
 //!
-//! Two kinds of cross-validation answer two questions. Holding out parts of strokes: how well does the model do on
-//! surfaces that the user has painted? Holding out whole strokes: how well does it extrapolate to surfaces that the
-//! user has not painted? Each kind has its own error and its own calibration. Each pixel gets a mix of the two, which
-//! depends on how far its features are from those of the strokes.
+//! Two kinds of cross-validation are run. Holding out parts of strokes measures how well the model does on surfaces
+//! that the user has painted. Holding out whole strokes measures how well it extrapolates to other surfaces. Each kind
+//! gives an error and a calibration factor. A pixel's calibration factor is interpolated between the two, by the
+//! distance of its features from those of the strokes.
 
 use super::ellipsoid::{self, Ellipsoid, Spread};
 use super::logistic::{self, Objective, Problem};
@@ -15,70 +16,69 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::job::Job;
 
-/// Maximum number of folds; if there are more strokes, several are held out together.
+/// Maximum number of folds. If there are more strokes, a fold holds several strokes.
 const FOLDS: usize = 8;
-/// Samples of each class that cross-validation uses: enough to compare two models.
+/// Approximate number of samples per class to which cross-validation fits models: enough to compare two models.
 const CV_SAMPLES: usize = 250;
-/// Range of the factor by which calibration multiplies logits: a handful of strokes does not justify a larger
-/// correction.
+/// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// A fit ends with the step that is expected to lower the mean log loss by less than this. `CV_PRECISION` applies to
-/// the fits that are only compared, `PRECISION` to the final fit.
+/// A fit ends with the step whose expected decrease of the mean log loss is below this value. `CV_PRECISION` applies
+/// to fits that only compare models, `PRECISION` to the final fit.
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 
-/// The chosen classifier in standardised features, with its expected errors.
+/// The chosen classifier of standardised features, with its expected errors.
 pub struct Chosen {
     pub model: Model,
     /// The columns of the samples that the classifier uses.
     pub columns: Vec<usize>,
-    /// Standardisation of all columns.
+    /// Mean and scale of every column of the samples.
     pub standard: Standard,
     /// Weights of the terms (see `standardise::terms`), before calibration.
     pub weights: Vec<f64>,
-    /// Result of holding out parts of strokes: applies where the features are like those of the strokes.
+    /// Result of holding out parts of strokes. It applies to pixels whose features are like those of the strokes.
     pub familiar: Trust,
-    /// Result of holding out whole strokes: applies where the features are unlike those of the strokes.
+    /// Result of holding out whole strokes. It applies to pixels whose features are unlike those of the strokes.
     pub unfamiliar: Trust,
-    /// The regions that the samples of the two classes cover in the space of all standardised features.
+    /// For each class, the ellipsoid around its samples in the space of all standardised features.
     pub seen: [Ellipsoid; 2],
 }
 
 /// The result of one kind of cross-validation.
 #[derive(Clone, Copy)]
 pub struct Trust {
-    /// Share of held-out samples that were classified wrongly. Both classes have the same weight, and so have the
-    /// strokes of a class.
+    /// Weighted share of held-out samples that were classified wrongly. Both classes have equal weight, and so have
+    /// all strokes of a class.
     pub error: f64,
-    /// The factor that calibrates logits.
+    /// The calibration factor by which logits are multiplied.
     pub scale: f64,
-    /// Mean log loss of the calibrated held-out samples.
+    /// Mean log loss of the held-out samples after calibration.
     loss: f64,
 }
 
-/// The input of the choice.
+/// The input of [`choose`].
 pub struct Question<'a> {
     pub samples: &'a Samples,
-    /// Subsets of the samples' columns to choose from.
+    /// Subsets of the features to choose from, as column indices of the samples.
     pub subsets: &'a [Vec<usize>],
-    /// Features of pixels spread over the region to be segmented, in the layout of `samples.values`.
+    /// Features of pixels spread over the region to be segmented, laid out as `samples.values`.
     pub probe: &'a [f64],
     pub ridge: f64,
 }
 
-/// A family of models on a subset of the features.
+/// A candidate classifier: a family of models on a subset of the features.
 struct Candidate {
     model: Model,
     columns: Vec<usize>,
-    /// Values of the terms at all samples.
+    /// Values of the model's terms at all samples.
     terms: Table,
-    /// Weights fitted to the samples that comparisons use (`Trial::few`).
+    /// Weights fitted to the samples in `Trial::few`.
     weights: Vec<f64>,
     familiar: Trust,
     unfamiliar: Trust,
 }
 
-/// The samples with their classes, and the folds by which they are held out.
+/// The samples with their classes, and their folds for cross-validation.
 struct Trial<'a> {
     samples: &'a Samples,
     /// All features of all samples, standardised.
@@ -86,15 +86,15 @@ struct Trial<'a> {
     positive: Vec<bool>,
     by_part: Vec<usize>,
     by_stroke: Vec<usize>,
-    /// The samples that comparisons use.
+    /// Indices of the samples to which models are fitted for comparison.
     few: Vec<usize>,
     ridge: f64,
 }
 
-/// Chooses the model and the features with the least expected loss over the whole image. The expected loss mixes the
-/// loss on held-out parts of strokes, for pixels like the painted ones, and the loss on held-out whole strokes, for all
-/// others. Each term of the model adds one over the number of samples (Akaike's criterion), so that the simpler of two
-/// equally good models wins.
+/// Chooses the model and the features with the least expected loss over the whole image. The expected loss is the log
+/// loss on held-out parts of strokes for the share of pixels like the painted ones, and the log loss on held-out whole
+/// strokes for the other pixels. Each term of a model adds a price of one over the number of samples (Akaike's
+/// criterion), so that the simpler of two equally good models wins.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);
@@ -109,7 +109,7 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         ridge: question.ridge,
     };
 
-    // For each subset of the features, compute how far the pixels of the image lie beyond the painted regions.
+    // For each subset of the features, compute how far the image's pixels lie outside the samples' ellipsoids.
     let probe = standard.apply(question.probe)?;
     let spread = |class: bool| Spread::of(&trial.x, |i| trial.positive[i] == class);
     let (negative, positive) = exec::both(|| spread(false), || spread(true));
@@ -124,13 +124,14 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let all = balanced(&trial.positive, |_| true);
     let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
     let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
-    // A pixel may be unlike all strokes in any feature, even in one that the chosen model does not use.
+    // The ellipsoids use all features: a pixel may be unlike all strokes in a feature that the chosen model does not
+    // use.
     let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
     Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
 }
 
-/// The candidate with the least expected loss over the image, including the price of its terms. `unseen` is the share
-/// of the image that is unlike the painted pixels, for each subset.
+/// Finds the candidate with the least expected loss over the image, including the price of its terms. `unseen` holds
+/// for each subset the share of the image that is unlike the painted pixels.
 fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> Result<Candidate> {
     let mut order: Vec<(usize, Model, usize)> = (0..subsets.len())
         .flat_map(|k| [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subsets[k].len()), model, k)))
@@ -139,12 +140,12 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
     let price = |terms: usize| terms as f64 / trial.positive.len() as f64;
     let mut best: Option<(f64, Candidate)> = None;
     let mut rest = order.as_slice();
-    // Losses are not negative: once the price alone reaches the least expected loss, this candidate and all larger ones
-    // are out.
+    // Losses are not negative. Once the price of the next candidate alone reaches the least expected loss, that
+    // candidate and all larger ones cannot win.
     while let Some((terms, ..)) =
         rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
     {
-        // Evaluate candidates of up to twice the size in parallel.
+        // Evaluate all candidates with up to twice as many terms in parallel.
         let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
         let done = |left: &[_]| 1.0 - left.len() as f64 / order.len() as f64;
         let candidates = exec::map(batch.len(), job.part(done(rest), done(larger)), |i| {
@@ -176,8 +177,7 @@ impl Candidate {
 }
 
 impl Trial<'_> {
-    /// Fits a model for comparison to those of the few samples that are `used`; `terms` are the terms of the few
-    /// samples.
+    /// Fits a model to the samples in `few` for which `used` holds. `terms` holds the terms of the samples in `few`.
     fn fit_few(&self, terms: &Table, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
         let positive: Vec<bool> = self.few.iter().map(|&i| self.positive[i]).collect();
         let weights = balanced(&positive, |k| used(self.few[k]));
@@ -186,12 +186,12 @@ impl Trial<'_> {
     }
 }
 
-/// Every `stride`-th sample of a class is used to compare models.
+/// Every `stride`-th sample of a class belongs to `Trial::few`.
 fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }
 
-/// Weights that give both classes the same total, however many of their samples are `used`; all others get 0.
+/// Weights that give both classes the same total, whatever the numbers of `used` samples. Unused samples get 0.
 fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut counts = [0usize; 2];
     (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);
@@ -203,22 +203,22 @@ fn folds_of_parts(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| o.part).collect()
 }
 
-/// Assigns strokes to folds in turn, so that no fold holds a whole class. If a class has a single stroke, its parts are
-/// assigned to folds instead.
+/// Assigns strokes to folds in turn. The parts of a class's only stroke go to different folds, so that no fold holds a
+/// whole class.
 fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     let folds = (samples.strokes[0] + samples.strokes[1]).clamp(PARTS, FOLDS);
     let is_lone = |positive: bool| samples.strokes[usize::from(positive)] == 1;
     samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
 }
 
-/// Cross-validates a model. For each fold, fits the model to the few samples outside the fold, starting at `start`, the
-/// weights fitted to all folds, and applies it to all samples in the fold. `all` and `few` are the terms of these
-/// samples.
+/// Cross-validates a model. For each fold, fits the model to the samples in `few` outside the fold, and applies it to
+/// all samples in the fold. The fits start at `start`, the weights fitted without holding out a fold. `all` and `few`
+/// hold the terms of all samples, and of the samples in `Trial::few`.
 fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
     let Trial { samples, positive, .. } = trial;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
     let held_out = exec::map(count, job, |fold| -> Result<Vec<(usize, f64)>> {
-        // If a fold holds all samples of a class, they stay in the training.
+        // If a fold holds all samples of a class, train with them nevertheless.
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
         let used = |i: usize| fold_of[i] != fold || keeps[usize::from(positive[i])];
@@ -230,7 +230,7 @@ fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[u
         fold?.into_iter().for_each(|(i, z)| logits[i] = z);
     }
 
-    // Both classes have the same weight, and so have the strokes of a class.
+    // Weigh the samples: both classes have equal weight, and so have all strokes of a class.
     let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
     samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
     let share = |o: &Origin| 0.5 / (samples.strokes[usize::from(o.positive)] * size_of_stroke[o.stroke]) as f64;
@@ -242,10 +242,11 @@ fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[u
     Ok(Trust { error, scale, loss })
 }
 
-/// The factor on logits that gives held-out samples the least log loss (temperature scaling, Guo et al. 2017), and that
-/// loss. The factor changes the confidence but not the mask, because it keeps the signs of the logits.
+/// Finds the factor on logits that minimises the log loss of held-out samples (temperature scaling, Guo et al. 2017).
+/// Returns the factor and the loss. The factor changes the confidence but not the mask, because it keeps the signs of
+/// the logits.
 fn calibrate(held_out: &Problem) -> (f64, f64) {
-    // The loss is convex in the factor: find the zero of its slope by Newton's method inside a shrinking bracket.
+    // The loss is convex in the factor. Find the zero of its slope by Newton's method, safeguarded by bisection.
     let [mut low, mut high] = CALIBRATION;
     let loss_at = |scale: f64| Objective::at(held_out, 0.0, &[scale]);
     let mut scale = 1.0;

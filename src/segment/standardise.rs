@@ -1,16 +1,17 @@
-//! Standardises features to zero mean and unit spread, and forms the terms of the models.
+//! Standardises features to zero mean and unit deviation, and computes the linear and quadratic terms of the models.
 
 use super::samples::Samples;
 use super::segmentation::Model;
 use super::table::Table;
 use crate::error::Result;
 
-/// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have the same unit and
-/// share one scale. With a scale of its own, a channel that hardly varies, such as the tint of a white ceiling, would
-/// be blown up into evidence, and dark purple frames would pass for lamps.
+/// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have the same unit, so
+/// they share one scale: that of the component that varies most. With a scale per channel, a channel that hardly
+/// varies, such as the tint of a white ceiling, would be amplified, and dark purple frames would be classified as
+/// lamps.
 const VECTORS: [std::ops::Range<usize>; 3] = [0..3, 4..7, 7..10];
 
-/// The affine map that makes the samples' features comparable; features without spread become 0.
+/// Standardisation of features, `(x - mean) * scale` per channel. The scale of a channel that does not vary is 0.
 #[derive(Clone, Debug)]
 pub struct Standard {
     pub mean: Vec<f64>,
@@ -32,7 +33,7 @@ impl Standard {
         let vector_of = |i: usize| VECTORS.iter().position(|v| v.contains(&samples.channels[i]));
         let scale = (0..d)
             .map(|i| {
-                // A spread below the rounding of the features carries no information.
+                // A deviation at the level of rounding errors carries no information.
                 if spread[i] <= 1e-6 * mean[i].abs().max(1e-30) {
                     return 0.0;
                 }
@@ -43,7 +44,7 @@ impl Standard {
         Self { mean, scale }
     }
 
-    /// Standardises features that are stored one sample after the other.
+    /// Standardises features that are stored sample after sample.
     pub fn apply(&self, values: &[f64]) -> Result<Table> {
         let mut table = Table::of(values, self.mean.len())?;
         for (rows, block) in table.blocks_mut() {
@@ -55,7 +56,7 @@ impl Standard {
     }
 }
 
-/// Number of terms of a model in `d` features, the constant last.
+/// Number of terms of a model of `d` features, including the constant term.
 pub fn term_count(model: Model, d: usize) -> usize {
     match model {
         Model::Linear => d + 1,
@@ -63,7 +64,8 @@ pub fn term_count(model: Model, d: usize) -> usize {
     }
 }
 
-/// The terms of a model in some columns of standardised features: those features, their products `i <= j`, and 1.
+/// Computes the terms of a model of the given columns: the standardised features, for a quadratic model their products
+/// `x_i x_j` with `i <= j`, and the constant 1.
 pub fn terms(model: Model, features: &Table, columns: &[usize]) -> Result<Table> {
     let mut terms = Table::new(features.rows, term_count(model, columns.len()))?;
     for ((rows, x), (_, to)) in features.blocks().zip(terms.blocks_mut()) {

@@ -1,15 +1,16 @@
-//! Rows of numbers, stored so that processors work on many rows at once.
+//! A table of numbers, stored in blocks of rows so that SIMD instructions work on many rows at once.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Rows that are worked on together.
+/// Number of rows in a block.
 pub const BLOCK: usize = 32;
 
-/// One column of a block.
+/// One column of a block: the values of [`BLOCK`] rows.
 pub type Lanes = [f64; BLOCK];
 
-/// Rows in blocks of [`BLOCK`], each block column by column; the last block is filled up with rows of zeros.
+/// A table in blocks of [`BLOCK`] rows. Each block is stored column by column; the last block is padded with rows of
+/// zeros.
 pub struct Table {
     lanes: Vec<Lanes>,
     pub rows: usize,
@@ -17,12 +18,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// All zeros.
+    /// A table of zeros.
     pub fn new(rows: usize, columns: usize) -> Result<Self> {
         Ok(Self { lanes: try_vec(rows.div_ceil(BLOCK) * columns, [0.0; BLOCK])?, rows, columns })
     }
 
-    /// A table from rows that are stored one after the other.
+    /// Copies rows that are stored one after the other into a table.
     pub fn of(values: &[f64], columns: usize) -> Result<Self> {
         let mut table = Self::new(values.len() / columns, columns)?;
         for (r, row) in values.chunks_exact(columns).enumerate() {
@@ -32,7 +33,7 @@ impl Table {
         Ok(table)
     }
 
-    /// A table of some rows of another table.
+    /// Copies the rows of another table with the given indices into a new table.
     pub fn of_rows(other: &Self, rows: &[usize]) -> Result<Self> {
         let columns = other.columns;
         let mut table = Self::new(rows.len(), columns)?;
@@ -44,13 +45,13 @@ impl Table {
         Ok(table)
     }
 
-    /// The columns of each block, with the indices of its rows.
+    /// Iterates over the blocks: the range of row indices of a block, and its columns.
     pub fn blocks(&self) -> impl Iterator<Item = (std::ops::Range<usize>, &[Lanes])> {
         let rows = |b: usize| b * BLOCK..((b + 1) * BLOCK).min(self.rows);
         self.lanes.chunks_exact(self.columns).enumerate().map(move |(b, block)| (rows(b), block))
     }
 
-    /// The columns of each block, to be written, with the number of its rows.
+    /// Iterates over the blocks for writing: the number of rows in a block, and its columns.
     pub fn blocks_mut(&mut self) -> impl Iterator<Item = (usize, &mut [Lanes])> {
         let rows = self.rows;
         self.lanes
@@ -60,7 +61,8 @@ impl Table {
     }
 }
 
-/// The sum of products, by eight partial sums in a fixed order.
+/// The dot product of two columns of a block. Eight partial sums are added in a fixed order, so that every instruction
+/// set gives the same bits.
 #[inline(always)]
 pub fn dot_lanes(a: &Lanes, b: &Lanes) -> f64 {
     let mut sums = [0.0; 8];
@@ -73,7 +75,7 @@ pub fn dot_lanes(a: &Lanes, b: &Lanes) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// `Σ w_i x_i` for every row of a block.
+/// Computes `Σ w_i x_i` over the columns `i`, for every row of a block.
 #[inline(always)]
 pub fn combine(weights: &[f64], block: &[Lanes]) -> Lanes {
     let mut sum = [0.0; BLOCK];

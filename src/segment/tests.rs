@@ -1,4 +1,4 @@
-//! Synthetic rooms with exact masks, the invariants, and the degenerate inputs.
+//! Tests of segmentation on synthetic rooms with exact masks: accuracy, invariants, and degenerate inputs.
 
 use super::*;
 use crate::error::ErrorKind;
@@ -11,8 +11,8 @@ use glam::{DVec2, Vec3};
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
 
-/// A box room seen along its axis: ten features with noise in colour, and the face (0 ceiling, 1 floor, 2 left,
-/// 3 right, 4 back) of each pixel. Lamps, brighter and saturated, lie in the ceiling (face 5).
+/// A box room seen along its axis. Returns ten features, with noise in colour, and the face of each pixel: 0 ceiling,
+/// 1 floor, 2 left, 3 right, 4 back, 5 a lamp in the ceiling. Lamps have the highest lightness.
 fn room() -> (Image, Vec<u8>) {
     let mut features = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
     let mut faces = Vec::new();
@@ -46,7 +46,7 @@ fn line(positive: bool, points: &[[f64; 2]]) -> Stroke {
     Stroke::polyline(&points, 3.0, positive, WIDTH, HEIGHT).unwrap()
 }
 
-/// One stroke on each surface.
+/// Two strokes on the ceiling, and one on each other face.
 fn plane_strokes() -> Vec<Stroke> {
     vec![
         line(true, &[[60.0, 15.0], [260.0, 20.0]]),
@@ -77,13 +77,13 @@ fn the_ceiling_then_its_lamps() {
     let plane = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     let agreement = iou(&plane.mask, |i| faces[i] == 0 || faces[i] == 5);
     assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
-    // The error that is claimed covers the true one. It is larger: with one stroke to a surface, each stroke held out
-    // takes a whole surface away, which is what is then feared for every pixel unlike those painted.
+    // The expected error must be at least the true one. It is larger, because most surfaces have one stroke: holding
+    // that stroke out removes the whole surface, and this error is assumed for all pixels unlike the painted ones.
     let is_wrong = |(i, m): (usize, &f32)| (*m > 0.5) != (faces[i] == 0 || faces[i] == 5);
     let wrong = plane.mask.data.iter().enumerate().filter(|&p| is_wrong(p)).count() as f64 / faces.len() as f64;
     assert!(wrong <= plane.error && plane.error < 0.1, "{wrong} {}", plane.error);
 
-    // The lamps of the first row are painted; those of all rows are found, and nothing off the ceiling.
+    // Only lamps in the top left part are painted. All lamps must be found, and nothing off the ceiling.
     let lamp_pixels: Vec<u32> =
         (0..faces.len() as u32).filter(|&i| faces[i as usize] == 5 && i % 320 < 110 && i < 320 * 40).collect();
     assert!(lamp_pixels.len() > 50);
@@ -97,7 +97,7 @@ fn the_ceiling_then_its_lamps() {
 
 #[test]
 fn probabilities_are_calibrated_on_overlapping_classes() {
-    // One informative feature, two normals at distance 1.5: the posterior is known.
+    // One feature with normal distributions whose means differ by 1.5 between the classes: the posterior is known.
     let features = Image::from_fn(WIDTH, HEIGHT, |x, y| {
         let class = y >= HEIGHT / 2;
         [Rng::new(4, &[x as u64, y as u64]).normal() as f32 + if class { 1.5 } else { 0.0 }]
@@ -133,7 +133,7 @@ fn a_stroke_on_a_wrong_region_mends_it() {
     let few = segment(&features, &strokes[..3], None, &Params::default()).unwrap();
     let all = segment(&features, &strokes, None, &Params::default()).unwrap();
     assert!(iou(&all.mask, is_ceiling) >= iou(&few.mask, is_ceiling));
-    // What was painted as not the plane is not in it, and has been seen.
+    // Pixels under the negative strokes must be outside the mask, and `unseen` must be low there.
     for stroke in &strokes[3..] {
         let inside = stroke.pixels.iter().filter(|&&p| all.mask.data[p as usize] > 0.5).count();
         assert!(inside * 20 < stroke.pixels.len());
@@ -144,7 +144,8 @@ fn a_stroke_on_a_wrong_region_mends_it() {
     }
 }
 
-/// A banner under the ceiling, of a colour that no stroke has touched: whatever it is taken for, it is told to be unlike all.
+/// A banner below the ceiling has a colour that no stroke has touched: `unseen` must mark it, whichever class it is
+/// assigned to.
 #[test]
 fn what_no_stroke_has_shown_is_told() {
     let (mut features, faces) = room();
@@ -157,14 +158,14 @@ fn what_no_stroke_has_shown_is_told() {
         let values: Vec<f32> = (0..faces.len()).filter(|&i| of(i)).map(|i| got.unseen.data[i]).collect();
         values.iter().sum::<f32>() / values.len() as f32
     };
-    // Strokes of a few pixels do not show the whole of the other surfaces either.
+    // Strokes of a few pixels do not cover all features of the other surfaces, so `unseen` is above 0 there too.
     let known = mean(&|i| faces[i] != 5 && !is_banner(i));
     assert!(mean(&is_banner) > 0.99 && known < 0.33, "{} {known}", mean(&is_banner));
 }
 
 #[test]
 fn one_class_or_none_is_an_error_that_says_what_to_paint() {
-    // With colours alone nothing can be proposed.
+    // With colour channels only, no mask can be proposed.
     let (features, _) = room();
     let features = Image::from_fn(WIDTH, HEIGHT, |x, y| [features.pixel(x, y)[0], features.pixel(x, y)[1]]).unwrap();
     let strokes = plane_strokes();
@@ -173,7 +174,7 @@ fn one_class_or_none_is_an_error_that_says_what_to_paint() {
         assert_eq!(error.kind, ErrorKind::Degenerate);
         assert!(error.message.contains(&format!("no {word} stroke")), "{error}");
     }
-    // A positive stroke that is wholly off the image, and one wholly painted over.
+    // A positive stroke entirely off the image, and a positive stroke that a negative one covers entirely.
     let off = Stroke { pixels: vec![(WIDTH * HEIGHT) as u32, u32::MAX], positive: true };
     let error = segment(&features, &[off.clone(), strokes[2].clone()], None, &Params::default()).unwrap_err();
     assert!(error.message.contains("2 of their pixels off"), "{error}");
@@ -187,7 +188,7 @@ fn without_strokes_the_ceiling_is_proposed_and_strokes_correct_it() {
     let (features, faces) = room();
     let propose = |strokes: &[Stroke]| segment(&features, strokes, None, &Params::default());
     let strokes = plane_strokes();
-    // Nothing painted, or positive strokes alone: a whole face, lamps included.
+    // Without strokes, or with positive strokes only, the proposal is a whole face including its lamps.
     for strokes in [&strokes[..0], &strokes[..1]] {
         let ceiling = propose(strokes).unwrap();
         assert!(ceiling.is_proposed && ceiling.error > 0.0);
@@ -195,12 +196,12 @@ fn without_strokes_the_ceiling_is_proposed_and_strokes_correct_it() {
     }
     let wall = propose(&[Stroke { positive: true, ..strokes[3].clone() }]).unwrap();
     assert_eq!(iou(&wall.mask, |i| faces[i] == 2), 1.0);
-    // A negative stroke on a part of another look takes this part out.
+    // With a negative stroke on the ceiling, the result is still a proposal.
     let without_lamps = propose(&[line(false, &[[60.0, 6.0], [60.0, 10.0]])]).unwrap();
     assert!(without_lamps.is_proposed);
     let off = Stroke { pixels: vec![(WIDTH * HEIGHT) as u32], positive: true };
     assert_eq!(propose(&[off]).unwrap().off_image, 1);
-    // Both classes painted: nothing is proposed.
+    // With strokes of both classes, the mask is not a proposal.
     assert!(!propose(&strokes).unwrap().is_proposed);
 }
 
@@ -220,7 +221,7 @@ fn a_mask_has_the_normal_of_the_face_that_it_covers_and_none_over_two_faces() {
 #[test]
 fn without_strokes_and_without_a_ceiling_the_error_asks_for_strokes() {
     let wall = Image::from_fn(WIDTH, HEIGHT, |_, _| [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0]).unwrap();
-    // The normals of the prior for photos without lines turn from row to row.
+    // The normals of the prior for photos without lines differ from row to row.
     let prior = Image::from_fn(WIDTH, HEIGHT, |_, y| {
         let (sin, cos) = (y as f32 / HEIGHT as f32).sin_cos();
         [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, cos, -sin]
@@ -247,7 +248,7 @@ fn the_last_of_contradicting_strokes_wins() {
 #[test]
 fn useless_features_do_no_harm() {
     let (features, faces) = room();
-    // Twice the same features, a constant, and one that is zero.
+    // Add duplicates of four features, a constant channel, and a channel of zeros.
     let mut wide = Image::new(WIDTH, HEIGHT, 16).unwrap();
     for (o, f) in wide.data.chunks_exact_mut(16).zip(features.data.chunks_exact(CHANNELS)) {
         o[..10].copy_from_slice(f);
@@ -259,7 +260,7 @@ fn useless_features_do_no_harm() {
     assert_eq!(got.confidence.count_non_finite(), 0);
     assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) >= 0.97);
 
-    // Nothing but a constant: no pixel differs from another.
+    // With constant features only, no pixel differs from another.
     let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [3.0, 0.0]).unwrap();
     let got = segment(&flat, &plane_strokes(), None, &params).unwrap();
     assert!(got.confidence.data.iter().all(|c| (c - 0.5).abs() < 1e-3));
@@ -270,7 +271,7 @@ fn useless_features_do_no_harm() {
 fn a_channel_without_variance_under_the_strokes_decides_nothing() {
     let (features, faces) = room();
     let strokes = plane_strokes();
-    // The same under every stroke, and wild elsewhere, whole and fine: nothing is known of what it means.
+    // The added channel is constant under all strokes and varies strongly elsewhere, so it carries no information.
     let mut wide = Image::new(WIDTH, HEIGHT, CHANNELS + 1).unwrap();
     for (i, (o, f)) in wide.data.chunks_exact_mut(CHANNELS + 1).zip(features.data.chunks_exact(CHANNELS)).enumerate() {
         o[..CHANNELS].copy_from_slice(f);
@@ -306,16 +307,16 @@ fn strokes_half_off_the_photo_and_painted_twice_are_as_their_part_on_it() {
     let (features, _) = room();
     let strokes = plane_strokes();
     let plain = segment(&features, &strokes, None, &Params::default()).unwrap();
-    // Every stroke goes on beyond the photo.
+    // Extend every stroke by pixels off the photo.
     let mut beyond = strokes.clone();
     beyond.iter_mut().for_each(|s| s.pixels.extend((0..1000).map(|i| (WIDTH * HEIGHT) as u32 + 77 * i)));
     let got = segment(&features, &beyond, None, &Params::default()).unwrap();
     assert_eq!((got.confidence, got.samples), (plain.confidence, plain.samples));
-    // A polyline that enters from the left and leaves below has the pixels within.
+    // A polyline that enters the photo from the left and leaves it at the bottom has only pixels of the photo.
     let ends = [DVec2::new(-50.0, 100.0), DVec2::new(60.0, HEIGHT as f64 + 90.0)];
     let across = Stroke::polyline(&ends, 4.0, true, WIDTH, HEIGHT).unwrap();
     assert!(!across.pixels.is_empty() && across.pixels.iter().all(|&p| (p as usize) < WIDTH * HEIGHT));
-    // The same stroke again is no more than once.
+    // Painting the same strokes again changes nothing.
     let again = [&strokes[..], &strokes[..]].concat();
     let got = segment(&features, &again, None, &Params::default()).unwrap();
     assert_eq!((got.contradictory, got.samples), (0, plain.samples));
@@ -326,13 +327,14 @@ fn wholly_contradictory_strokes_are_an_error_and_nearly_so_are_learned_from() {
     let (features, _) = room();
     let strokes = plane_strokes();
     let not = |s: &Stroke| Stroke { positive: !s.positive, ..s.clone() };
-    // Everything painted as the one, then as the other: only the other is left, in both classes.
+    // Paint everything again with the opposite class: only the later strokes count.
     let turned: Vec<Stroke> = strokes.iter().chain(&strokes.iter().map(not).collect::<Vec<_>>()).cloned().collect();
     let got = segment(&features, &turned, None, &Params::default()).unwrap();
     let opposite = segment(&features, &strokes.iter().map(not).collect::<Vec<_>>(), None, &Params::default()).unwrap();
     assert!(iou(&got.mask, |i| opposite.mask.data[i] > 0.5) > 0.99);
     assert_eq!(got.contradictory, strokes.iter().map(|s| s.pixels.len()).sum::<usize>());
-    // One surface painted as both, side by side: nothing tells them apart, and that is said.
+    // Paint one surface in alternating rows of both classes. The classes are alike, so the expected error must be
+    // large.
     let row = |y: u32, positive: bool| Stroke {
         pixels: (0..60).map(|x| (20 + y) * WIDTH as u32 + 130 + x).collect(),
         positive,
@@ -350,14 +352,15 @@ fn channels_are_chosen_unless_they_are_given() {
     let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
     let chosen = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     assert!(SUBSETS.contains(&chosen.channels), "{:#b}", chosen.channels);
-    // No subset given by hand does better by much, and what is given is taken, also beyond the channels there are.
+    // No given subset does much better than the chosen one. Given channels are used; bits beyond the last channel are
+    // ignored.
     for subset in SUBSETS {
         let params = Params { channels: subset | 1 << 20, ..Params::default() };
         let given = segment(&features, &plane_strokes(), None, &params).unwrap();
         assert_eq!(given.channels, subset);
         assert!(iou(&chosen.mask, is_ceiling) >= iou(&given.mask, is_ceiling) - 0.01, "{subset:#b}");
     }
-    // Position tells nothing where every stroke's colour does, and colour alone is simplest.
+    // If colour alone separates the classes under all strokes, the simplest subset, colour, is chosen.
     let painted = Image::from_fn(WIDTH, HEIGHT, |x, y| {
         let hash = Rng::new(3, &[x as u64, y as u64]).next_f32();
         let lightness = if is_ceiling(y * WIDTH + x) { 80.0 } else { 20.0 };
@@ -369,7 +372,7 @@ fn channels_are_chosen_unless_they_are_given() {
     assert!(iou(&got.mask, is_ceiling) > 0.999);
 }
 
-/// Images of ten channels go by a way of their own; others by the general one.
+/// Images of ten channels are deinterleaved by a separate code path; its results must equal those of the general path.
 #[test]
 fn a_channel_that_is_not_looked_at_changes_no_bit() {
     let (features, _) = room();
@@ -391,7 +394,7 @@ fn refinement_smooths_what_is_of_one_colour_and_keeps_to_where_it_looks() {
     let plain = segment(&features, &plane_strokes(), None, &by_colour).unwrap();
     let refined = Params { refine_radius: 4, refine_tolerance: 8.0, ..by_colour.clone() };
     let got = segment(&features, &plane_strokes(), None, &refined).unwrap();
-    // By colour alone the noise of single pixels shows; their neighbours know better.
+    // With colour alone, the mask shows the noise of single pixels; the filter removes it.
     let (before, after) = (iou(&plain.mask, is_ceiling), iou(&got.mask, is_ceiling));
     assert!(after > before + 0.005, "{before} {after}");
     assert!(got.mask.data.iter().zip(&got.confidence.data).all(|(m, c)| (*m > 0.5) == (*c > 0.5)));
@@ -408,7 +411,7 @@ fn refinement_smooths_what_is_of_one_colour_and_keeps_to_where_it_looks() {
 #[test]
 fn the_largest_strokes_and_many_of_them_are_as_the_few() {
     let (features, faces) = room();
-    // A million pixels of strokes: everything painted, by a stroke for every row and face.
+    // Paint the whole photo: one stroke for each row and face.
     let mut strokes = Vec::new();
     for y in 0..HEIGHT {
         for face in 0..6 {
@@ -426,7 +429,7 @@ fn the_largest_strokes_and_many_of_them_are_as_the_few() {
 fn features_of_one_bit_are_told_apart() {
     let (features, faces) = room();
     let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
-    // The class itself, and bits that are as often set in both classes.
+    // One feature is the class itself; the others are a lightness threshold and a checkerboard.
     let bits = Image::from_fn(WIDTH, HEIGHT, |x, y| {
         [f32::from(is_ceiling(y * WIDTH + x)), f32::from(features.pixel(x, y)[0] > 75.0), f32::from((x + y) % 2 == 0)]
     });
@@ -437,12 +440,12 @@ fn features_of_one_bit_are_told_apart() {
 #[test]
 fn infinite_and_saturated_features_are_refused_or_used() {
     let (features, faces) = room();
-    // All pixels saturated: colour says nothing, geometry still does.
+    // All pixels are saturated white: colour carries no information, but geometry does.
     let mut white = features.clone();
     white.data.chunks_exact_mut(CHANNELS).for_each(|p| p[..3].copy_from_slice(&[100.0, 0.0, 0.0]));
     let got = segment(&white, &plane_strokes(), None, &Params::default()).unwrap();
     assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) > 0.95);
-    // Not finite where no stroke is, and under a stroke.
+    // One value that is not finite, first where no stroke lies, then under a stroke.
     for at in [(WIDTH * HEIGHT - 1) * CHANNELS, plane_strokes()[0].pixels[9] as usize * CHANNELS + 2] {
         for v in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let mut bad = features.clone();

@@ -1,4 +1,4 @@
-//! Reasons to doubt a mask, and the place where one more stroke helps most.
+//! Warnings about doubtful masks, and the place where another stroke would help most.
 
 use super::segmentation::Segmentation;
 use super::strokes::Stroke;
@@ -6,30 +6,31 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// Maximum share of the mask that may be unlike every stroke. [judged on 38 photos]
+/// Maximum share of the mask whose features are unlike those of every stroke. [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
-/// Maximum number of pixels that strokes of both classes cover, per sample. [judged on 38 photos]
+/// Maximum number of pixels under strokes of both classes, divided by the number of samples. [judged on 38 photos]
 const MAX_CONTRADICTORY: f64 = 0.05;
-/// Maximum number of stroke pixels outside the photo, per sample. [judged on 38 photos]
+/// Maximum number of stroke pixels outside the photo, divided by the number of samples. [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
 /// Maximum expected error of the mask. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
-/// Maximum share of the painted pixels that the mask may contradict. [judged on 38 photos]
+/// Maximum share of the painted pixels that the mask assigns to the wrong class. [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
-/// Minimum probability that a pixel painted as light is brighter than a pixel of the plane. It is below 0.83 on the
-/// three of 44 photos whose lamps are off or shine away from the camera, and above 0.85 on the others.
+/// Minimum probability that a pixel painted as light is brighter than a pixel of the plane. The probability is below
+/// 0.83 on the three of 44 photos whose lamps are off or shine away from the camera, and above 0.85 on the others.
 /// [judged on 44 photos]
 const MIN_BRIGHTER: f64 = 0.85;
 /// Maximum share of the plane that lamps may cover. [judged on 38 photos]
 const MAX_LIT: f64 = 0.4;
 
-/// Cells along the longer side of the photo among which the place of the next stroke is chosen.
+/// Number of grid cells along the longer side of the photo. [`Segmentation::warnings`] suggests the next stroke in the
+/// most doubtful cell.
 const CELLS: usize = 64;
 
 impl Segmentation {
-    /// Reasons to doubt the mask. A mask that the caller supplied is trusted unless it is empty.
+    /// Returns warnings about the mask. A mask that the caller supplied is trusted unless it is empty.
     pub fn warnings(&self) -> Vec<Warning> {
         let all = [
             self.is_empty(),
@@ -42,17 +43,17 @@ impl Segmentation {
         all.into_iter().flatten().collect()
     }
 
-    /// Whether the mask was learnt from strokes.
+    /// Whether strokes were used to compute the mask.
     fn is_learnt(&self) -> bool {
         self.samples != [0, 0]
     }
 
-    /// Whether the mask consists of lamps. The `unseen` regions of lamps lie outside the mask.
+    /// Whether the mask consists of lamps. For lamps, `unseen` marks doubtful regions, which lie outside the mask.
     fn is_of_lamps(&self) -> bool {
         self.is_learnt() && self.model.is_none()
     }
 
-    /// How unlike every stroke a pixel is, if it belongs to the mask or may belong to it; else 0.
+    /// The `unseen` value of a pixel that belongs to the mask, or that may belong to a lamp; 0 for other pixels.
     fn doubt(&self, pixel: usize) -> f32 {
         if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
     }
@@ -126,12 +127,12 @@ impl Segmentation {
         )
     }
 
-    /// Pixels of strokes relative to the samples that were drawn from them.
+    /// The number of pixels divided by the number of samples drawn from the strokes.
     fn per_sample(&self, pixels: usize) -> f64 {
         pixels as f64 / (self.samples[0] + self.samples[1]).max(1) as f64
     }
 
-    /// Whether the mask contradicts the strokes that it was made from.
+    /// Warns if the mask contradicts many pixels of the given strokes, from which it was made.
     pub fn missed<'a>(&self, strokes: impl Iterator<Item = &'a Stroke>) -> Option<Warning> {
         let is_missed = |stroke: &Stroke, p: u32| {
             self.mask.data.get(p as usize).is_some_and(|mask| (*mask > 0.5) != stroke.positive)
@@ -143,7 +144,7 @@ impl Segmentation {
             let count = wrong().count();
             painted += stroke.pixels.len();
             missed += count;
-            // Show the middle of the stroke that is missed most.
+            // The place to show is the middle of the wrong pixels of the stroke that has most of them.
             if count > largest.0 {
                 largest = (count, wrong().nth(count / 2));
             }
@@ -157,12 +158,12 @@ impl Segmentation {
         raised.flatten().map(|warning| warning.at(place))
     }
 
-    /// The pixel where one more stroke helps most: the most doubtful one of the most doubtful neighbourhood.
+    /// Finds the place where another stroke helps most: the most doubtful pixel of the most doubtful neighbourhood.
     fn next_stroke(&self) -> Option<DVec2> {
         let (width, height) = (self.mask.width, self.mask.height);
         let side = width.max(height).div_ceil(CELLS).max(1);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
-        // Sum over cells, then over the neighbours of each.
+        // Sum the doubt over cells; `around` then sums over a cell and its neighbours.
         let mut cells = vec![0.0f64; columns * rows];
         for y in 0..height {
             for x in 0..width {
@@ -188,7 +189,7 @@ impl Segmentation {
     }
 }
 
-/// Whether lights cover more of their plane than lamps do. Masks of different size are not compared.
+/// Warns if lights cover more of their plane than lamps usually do. Returns `None` for masks of different sizes.
 pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     let shape = |mask: &Image| [mask.width, mask.height, mask.channels];
     if shape(lights) != shape(plane) {
@@ -205,9 +206,10 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Warns if the lamps under the strokes are hardly brighter than the plane. Strokes of the plane may run over lamps, so
-/// the lamps are also compared with the negative strokes of the lights alone, which lie beside lamps. The first channel
-/// of the features is L*.
+/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the
+/// positive plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane
+/// stroke may cross lamps, whereas "not light" strokes lie beside them. The set that shows the greater difference
+/// counts. The first channel of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);
@@ -221,9 +223,9 @@ pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Optio
     warning.map(|warning| warning.at(Some(features.centre_of(darkest as usize))))
 }
 
-/// The probability that a pixel of the lamps is brighter than one of the plane, which is the area under the receiver
-/// operating characteristic of L* (Hanley and McNeil 1982), and a pixel of the lamp with the least probability. `None`
-/// without pixels of both.
+/// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the
+/// receiver operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of the lamp stroke with the
+/// least probability. `None` if there is no lamp pixel or no plane pixel.
 fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f64, u32)> {
     let lightness = |&p: &u32| features.data.get(p as usize * features.channels).copied();
     let mut plane: Vec<f32> = plane.iter().flat_map(|s| &s.pixels).filter_map(lightness).collect();
@@ -231,7 +233,7 @@ fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f
         return None;
     }
     plane.sort_unstable_by(f32::total_cmp);
-    // Pixels as bright as each other count half.
+    // Plane pixels of equal lightness count half.
     let darker = |l: f32| (plane.partition_point(|p| *p < l) + plane.partition_point(|p| *p <= l)) as f64 / 2.0;
     let (mut count, mut sum) = (0, 0.0);
     let mut least = (f64::INFINITY, 0);

@@ -1,4 +1,4 @@
-//! Detection of marks in a photo: saddles of brightness surrounded by four quadrants.
+//! Detects alignment marks in a photo: saddles of brightness surrounded by two black and two white quadrants.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,15 +6,15 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
 
-/// Maximum length of the longer side of the image in which marks are searched for.
+/// Maximum length, in pixels, of the longer side of the image in which marks are searched for.
 const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
 /// to about forty pixels across [origin not recorded].
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
 /// Maximum number of candidates.
 const MAX_CANDIDATES: usize = 24;
-/// Minimum share of the second harmonic in the variance of brightness along a circle around a mark. Two periods of a
-/// square wave have a share of 0.81 [origin not recorded].
+/// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
+/// mark. Two periods of a square wave have a share of 0.81 [origin not recorded].
 const MIN_HARMONIC: f64 = 0.55;
 /// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness
 /// [origin not recorded].
@@ -28,7 +28,7 @@ pub struct Candidate {
     strength: f64,
 }
 
-/// Positions that look like marks, strongest first.
+/// Finds positions that look like marks, strongest first.
 pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     let longest = grey.width.max(grey.height);
     let reduced = longest.min(MAX_SIDE) as f64 / longest as f64;
@@ -60,7 +60,7 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     Ok(kept)
 }
 
-/// Local maxima of the negated determinant of the Hessian.
+/// Finds saddles of brightness: local maxima of the negated determinant of the Hessian.
 fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let (width, height) = (image.width, image.height);
     let mut response = Image::new(width, height, 1)?;
@@ -100,7 +100,8 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
 /// Minimum response of a saddle; the response of an ideal mark is about 0.01 [origin not recorded].
 const MIN_RESPONSE: f32 = 2e-4;
 
-/// Strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if absent.
+/// Returns the strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if the
+/// pattern is absent.
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     const STEPS: usize = 32;
     let value = |i: usize| {
@@ -119,9 +120,9 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
-/// Sub-pixel refinement of a saddle: the point for which each surrounding gradient is perpendicular to the direction
-/// from its pixel to the point (Förstner and Gülch 1987). `None` if the gradients do not determine the point or the
-/// iteration diverges.
+/// Refines a saddle to sub-pixel precision: finds the point for which each surrounding gradient is perpendicular to
+/// the direction from its pixel to the point (Förstner and Gülch 1987). `None` if the gradients do not determine the
+/// point or the iteration diverges.
 pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {

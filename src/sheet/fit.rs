@@ -1,4 +1,4 @@
-//! Identification of the marks, and the map from the page to the photo.
+//! Identifies the marks among the candidates, and fits the map from the page to the photo.
 
 use super::detect::{Candidate, refine};
 use super::page::Page;
@@ -9,21 +9,21 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::DVec2;
 
-/// Minimum number of marks: fewer could be a coincidence.
+/// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
-/// Maximum distance of a mark from its predicted position, under the first and the refined map, as shares of the
-/// sheet's size in the photo [origin not recorded].
+/// Maximum distance between a mark and its predicted position, as a share of the sheet's diagonal in the photo: for
+/// predictions by the first map, and by the refined map [origin not recorded].
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
 pub struct Fit {
-    /// From pixels of the page to pixels of the photo.
+    /// Maps pixels of the page to pixels of the photo.
     pub to_photo: Homography,
-    /// Indices of the marks used.
+    /// Indices in [`Page::marks`] of the marks used.
     pub marks: Vec<usize>,
     /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Pixels of the photo per pixel of the page.
+    /// Number of photo pixels per page pixel, along a side.
     pub scale: f64,
 }
 
@@ -63,7 +63,7 @@ fn too_few(count: usize) -> Error {
     ))
 }
 
-/// Length of the page's diagonal in the photo.
+/// Returns the length of the page's diagonal in the photo, in pixels.
 fn extent(page: &Page, map: &Homography) -> f64 {
     let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(page.marks[m]));
     a.distance(c).max(b.distance(d))
@@ -75,8 +75,8 @@ struct Guess {
     misfit: f64,
 }
 
-/// The map under which most marks coincide with candidates. Each quadruple of candidates is tried as the corners, and
-/// as the midpoints of the sides: if one mark is missing, at least one of these quadruples is complete.
+/// Finds the map under which most marks coincide with candidates. Each quadruple of candidates is tried as the four
+/// corners and as the four midpoints of the sides: if one mark is missing, the corners or the midpoints are complete.
 fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
@@ -103,7 +103,7 @@ fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess
     Ok(best)
 }
 
-/// Orders four points as a convex quadrilateral, clockwise as seen (y down); `None` if they are not convex.
+/// Orders four points clockwise as seen in the photo (y down); `None` if they do not form a convex quadrilateral.
 fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let mut ordered = points;
@@ -115,7 +115,7 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     (0..4).all(|i| turns(i) > 1.0).then_some(ordered)
 }
 
-/// The marks that coincide with candidates under a map.
+/// Finds the marks that coincide with candidates under a map.
 fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     let tolerance = FIRST_TOLERANCE * extent(page, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);
@@ -131,8 +131,8 @@ fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     Guess { map, pairs, misfit }
 }
 
-/// The map that minimises the squared distances between the marks and their predicted positions in the photo, by
-/// Gauss-Newton from a good start.
+/// Finds the map that minimises the squared distances between the marks and their predicted positions in the photo, by
+/// Gauss-Newton steps from a good start.
 fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
     // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;
@@ -157,7 +157,7 @@ fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Ho
             }
         }
         let Some(step) = solve(matrix, right) else { break };
-        // The parameters row by row; the last entry is fixed to 1.
+        // The step holds the entries of `h` row by row; the last entry of `h` is fixed to 1.
         for (i, s) in step.iter().enumerate() {
             h.col_mut(i % 3)[i / 3] += s;
         }

@@ -1,5 +1,5 @@
-//! Print sheets (StyLit, section 4.2): the exemplar is printed at low contrast between alignment marks for an artist
-//! to paint over; a photo or scan of the painted sheet is registered to the exemplar by its marks.
+//! Print sheets (StyLit, section 4.2). The exemplar is printed at low contrast between alignment marks, for an artist
+//! to paint over. A photo or scan of the painted sheet is then registered to the exemplar by its marks.
 //!
 //! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which is
 //! invariant under perspective and can be located to a small fraction of a pixel. Ten marks surround the picture: at
@@ -31,7 +31,7 @@ use crate::{exec, rectify};
 use glam::{DVec2, Vec3};
 use page::Page;
 
-/// Width and height of a sheet in pixels.
+/// Returns the width and height of a sheet in pixels.
 pub fn size(params: &Params) -> Result<(usize, usize)> {
     params.check()?;
     let page = Page::new(params, 1, 1)?;
@@ -65,7 +65,7 @@ pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
 pub struct Aligned {
     /// Linear RGB at the picture's size; after removal of uneven illumination, paper is 1.
     pub image: Image,
-    /// From pixels of the picture to pixels of the photo.
+    /// Maps pixels of the picture to pixels of the photo.
     pub to_photo: Homography,
     /// Number of marks used.
     pub marks: usize,
@@ -75,8 +75,8 @@ pub struct Aligned {
     pub error: f64,
 }
 
-/// Finds the marks in a photo (linear RGB) of a sheet that was printed for a picture of `width × height` pixels with
-/// the same parameters, and resamples the photo onto the picture.
+/// Finds the marks in a photo (linear RGB) of a sheet, and resamples the photo onto the picture. The sheet must have
+/// been printed for a picture of `width × height` pixels with the same parameters.
 ///
 /// # Errors
 /// `Degenerate` if fewer than six marks are found in a consistent arrangement.

@@ -1,4 +1,4 @@
-//! The layout of the page: picture and marks.
+//! The layout of the page: positions of the picture and of the marks.
 
 use super::params::Params;
 use crate::error::{Error, Result};
@@ -10,8 +10,9 @@ use glam::{DMat3, DVec2};
 const RADIUS: f64 = 4.5;
 const CLEARANCE: f64 = 2.5;
 
-/// Positions of the marks on the border of a rectangle: four corners and four midpoints of sides, each in cyclic
-/// order, and two marks that break the symmetry: no rotation or reflection maps them to other marks [convention].
+/// Positions of the marks on the border of a rectangle, as shares of its sides: four corners and four midpoints of
+/// sides, each in cyclic order, and two marks that break the symmetry, so that no rotation or reflection maps the
+/// marks onto themselves [convention].
 const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.0],
     [1.0, 0.0],
@@ -25,14 +26,14 @@ const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.32],
 ];
 
-/// The page in pixels.
+/// The layout of the page, in page pixels.
 pub struct Page {
     pub width: usize,
     pub height: usize,
-    /// Centres of the marks in the order of [`MARKS`], and their radius.
+    /// Centres of the marks in the order of [`MARKS`] (`marks`), and their common `radius`.
     pub marks: [DVec2; 10],
     pub radius: f64,
-    /// Top-left corner and size of the picture, x and y.
+    /// Top-left corner (`corner`) and size (`size`) of the picture, each x and y.
     pub corner: [f64; 2],
     pub size: [f64; 2],
 }
@@ -73,19 +74,19 @@ impl Page {
         })
     }
 
-    /// From pixels of the picture to pixels of the page.
+    /// Returns the map from pixels of the picture to pixels of the page.
     pub fn from_picture(&self, width: usize, height: usize) -> Homography {
         let scale = DVec2::from(self.size) / DVec2::new(width as f64, height as f64);
         Homography(DMat3::from_translation(self.corner.into()) * DMat3::from_scale(scale))
     }
 
-    /// Brightness of a pixel of the page due to its marks alone; 1 away from them.
+    /// Returns the brightness of a pixel of the page due to its marks alone; 1 away from the marks.
     pub fn mark_shade(&self, x: usize, y: usize) -> f32 {
         let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         if self.marks.iter().all(|m| m.distance(centre) > self.radius + 1.0) {
             return 1.0;
         }
-        // Supersample the share of the pixel that is black.
+        // Estimate the share of the pixel that is black by supersampling.
         let mut black = 0;
         for i in 0..16 {
             let p = DVec2::new(x as f64 + (i % 4) as f64 / 4.0 + 0.125, y as f64 + (i / 4) as f64 / 4.0 + 0.125);

@@ -17,8 +17,8 @@ fn params() -> Params {
     Params { dpi: 100.0, ..Params::default() }
 }
 
-/// A photo of 1300 × 1000 pixels of a sheet whose corners lie at `corners`, on a dark table, with light that falls off
-/// to one side, and noise.
+/// Returns a photo of 1300 × 1000 pixels of a sheet, and the true map from the sheet to the photo. The sheet lies on a
+/// dark table, with its corners at `corners`. The light falls off to one side, and the photo has noise.
 fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     let (w, h) = (sheet.width as f64, sheet.height as f64);
     let page = [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(DVec2::from);
@@ -39,7 +39,8 @@ fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     (photo, to_photo)
 }
 
-/// Maximum distance, in pixels of the picture, between true and estimated positions of points of the picture.
+/// Returns the maximum distance, in pixels of the picture, between true and estimated positions of points of the
+/// picture.
 fn misalignment(aligned: &Aligned, page: &Page, to_photo: Homography) -> f64 {
     let truth = to_photo.after(page.from_picture(160, 120));
     let back = aligned.to_photo.inverse();
@@ -61,7 +62,7 @@ fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
         assert_eq!(aligned.marks, 10);
         let off = misalignment(&aligned, &page, to_photo);
         assert!(off < 0.05 && aligned.residual < 0.3, "turned {turn}: {off} {}", aligned.residual);
-        // After removal of uneven illumination, white is white everywhere.
+        // After removal of uneven illumination, all corners of the picture have their printed values.
         let white = |x: usize, y: usize| aligned.image.rgb(x, y) - print_of(&picture, x, y, &params);
         for (x, y) in [(4, 4), (155, 4), (155, 115), (4, 115)] {
             assert!(white(x, y).abs().max_element() < 0.06, "{}", white(x, y));
@@ -69,7 +70,7 @@ fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
     }
 }
 
-/// The printed value of a pixel of the picture.
+/// Returns the printed value of a pixel of the picture.
 fn print_of(picture: &Image, x: usize, y: usize, params: &Params) -> Vec3 {
     let faded = |v: f32| srgb_to_linear(1.0 - params.contrast * (1.0 - linear_to_srgb(v)));
     Vec3::from_array(picture.rgb(x, y).to_array().map(faded))
@@ -132,7 +133,7 @@ fn photos_without_a_sheet_are_an_error() {
     }
 }
 
-/// Paper that curves by four pixels of the sheet from its middle to its sides.
+/// The paper curves by four pixels of the sheet from its middle to its sides.
 #[test]
 fn a_curled_sheet_shows_in_the_residual() {
     let params = params();

@@ -13,8 +13,8 @@ widest! {
     }
 }
 
-/// Asserts that `work` gives identical results at every level. It returns pairs of a name and a text; the text
-/// represents every bit of a result.
+/// Asserts that `work` gives identical results at every SIMD level. `work` returns pairs: the name of a result, and a
+/// text that encodes every bit of it.
 fn same_at_all_levels(work: impl Fn() -> Vec<(String, String)>) {
     let mut levels = forced::levels();
     let lowest = forced::at(levels.next().unwrap(), &work);

@@ -1,8 +1,9 @@
-//! Sequences (section 5, future work): the matches of the previous frame, advected by the motion, are kept where they
-//! still fit, so that paint sticks to objects. Places that moved into different light or into view are matched anew.
+//! Stylises the frames of a sequence (section 5, future work). The matches of the previous frame, advected by the
+//! motion, are kept where they still fit, so that paint sticks to objects. Patches that moved into different light or
+//! came into view are matched anew.
 //!
-//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, the matches in a
-//! random set of blocks are kept in each frame, so that the frames flicker as if painted by hand (after the temporal
+//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
+//! keeps the matches of a random set of blocks, so that the frames flicker as if painted by hand (after the temporal
 //! noise control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
@@ -15,12 +16,12 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, halve};
 use crate::rng::Rng;
 
-/// Side in pixels of the blocks that are kept or discarded as a whole.
+/// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
-/// Advects the field of the previous frame into this frame: each patch takes the match of the patch from which its
-/// centre comes. `motion` has the resolution of the guides; this function halves it if the problem has half of that
-/// (`halved` is not 0).
+/// Advects the field of the previous frame into this frame: `motion` gives the position of a patch's centre in the
+/// previous frame, and the patch takes the match found there. `motion` has the resolution of the guides; this function
+/// halves `motion` if the problem has half that resolution (`halved` is not 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
@@ -45,8 +46,9 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     Ok(field)
 }
 
-/// Computes the distances of the advected matches, and selects the patches that keep their match: those whose error
-/// lies left of the knee, except in blocks chosen for new matches.
+/// Computes the distances of the advected matches, and selects the patches that keep their match. A patch keeps its
+/// match if the error is within the budget (left of the knee of the sorted errors), unless the patch lies in a block
+/// that is chosen for new matches.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;

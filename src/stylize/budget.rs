@@ -2,14 +2,15 @@
 //!
 //! The sorted matching errors follow a hyperbola `f(x) = 1 / (a - b x)` when both axes are scaled to `[0, 1]`. (Errors
 //! are scaled by their 99th percentile: the largest of a million errors is an outlier that would move the knee.) The
-//! knee, where `f′ = 1`, separates feasible from forced matches. Since `f′ = b f²`, the knee satisfies `a - b x = √b`:
-//! `k = a/b - √(1/b)`. The paper prints a plus sign, which lies beyond the pole at `a/b`.
+//! knee, where `f′ = 1`, separates feasible matches from matches that force a patch into an unsuitable position. Since
+//! `f′ = b f²`, the knee satisfies `a - b x = √b`: `k = a/b - √(1/b)`. The paper prints a plus sign, which puts the
+//! knee beyond the pole at `a/b`.
 //!
-//! If no hyperbola fits, for instance when the curve is a step because most exemplar patches have no suitable place
+//! If no hyperbola fits, for instance because the curve is a step, as most exemplar patches have no suitable place
 //! (Fig. 7), the knee is the point farthest below the diagonal. A curve that never runs below the diagonal has no
 //! knee: all of its errors are feasible.
 
-/// Minimum number of errors to fit a curve.
+/// Minimum number of errors to which a curve is fitted.
 const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
@@ -27,14 +28,14 @@ pub struct Hyperbola {
 }
 
 impl Hyperbola {
-    /// The knee, if it lies inside the data and left of the pole.
+    /// Returns the knee; `None` unless it lies inside the data and left of the pole.
     pub fn knee(self) -> Option<f64> {
         let pole = self.a / self.b;
         let knee = pole - (1.0 / self.b).sqrt();
         (self.b > 0.0 && pole > 1.0 && knee > 0.0 && knee < 1.0).then_some(knee)
     }
 
-    /// The share of the variance of `points` that the hyperbola explains.
+    /// Returns the share of the variance of `points` that the hyperbola explains.
     fn explained(self, points: &[(f64, f64)]) -> f64 {
         let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
         let variance: f64 = points.iter().map(|p| (p.1 - mean).powi(2)).sum();
@@ -45,13 +46,13 @@ impl Hyperbola {
     /// Fits points `(x, y)` in the unit square, sorted by `x`.
     ///
     /// The equation `1/y = a - b x` is linear in `a` and `b`. With weights `y⁴`, its squared residuals equal those of
-    /// `y` to first order. Three Gauss-Newton steps on the residuals of `y` follow. Returns `None` if the points do not
-    /// determine both `a` and `b`.
+    /// `y` to first order. Three Gauss-Newton steps on the residuals of `y` follow. Returns `None` if the points do
+    /// not determine both `a` and `b`.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let points = || points.iter().filter(|p| p.1 > 0.0);
         let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;
         for _ in 0..3 {
-            // df/da = -f², df/db = x f².
+            // The derivatives are df/da = -f² and df/db = x f².
             let step = solve(points().map(|&(x, y)| {
                 let f = 1.0 / (fit.a - fit.b * x);
                 ([-f * f, x * f * f], y - f)
@@ -85,14 +86,14 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
 /// The error budget of matches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Share of the matches left of the knee; 1 if there is no knee and all are feasible.
+    /// Share of the matches left of the knee; 1 if there is no knee, so that all matches are feasible.
     pub knee: f64,
     /// Sum of the errors left of the knee: T in Eq. 4.
     pub total: f64,
 }
 
-/// The budget of `errors`, which are in ascending order. If they are few or nearly all equal, or if their curve has no
-/// knee, all are feasible.
+/// Computes the budget of `errors`, which are in ascending order. If there are few errors, if they are nearly all
+/// equal, or if their curve has no knee, all are feasible.
 pub fn budget(errors: &[u32]) -> Budget {
     let sum = |errors: &[u32]| errors.iter().map(|&e| f64::from(e)).sum();
     let all = || Budget { knee: 1.0, total: f64::INFINITY };
@@ -167,17 +168,17 @@ mod tests {
         for errors in [vec![], vec![5], vec![1, 2, 3, 4, 5, 6, 900], vec![0; 100], vec![7; 100]] {
             assert_eq!(budget(&errors).total, f64::INFINITY, "{errors:?}");
         }
-        // A concave curve, whose slope falls; then one outlier in a flat curve, which no hyperbola fits but which must
-        // not fail.
+        // The first curve is concave: its slope falls. The second is flat with one outlier: no hyperbola fits it, and
+        // the budget must not fail.
         assert_eq!(budget(&curve(1000, |x| x.sqrt())).knee, 1.0);
         let mut outlier = vec![10u32; 1000];
         outlier[999] = u32::MAX - 1;
         let b = budget(&outlier);
         assert!(b.knee > 0.0 && b.knee <= 1.0 && b.total >= 0.0);
-        // A step: a fifth fits, the rest is forced (Fig. 7).
+        // A step: a fifth of the matches is feasible, and the others are forced into unsuitable positions (Fig. 7).
         let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
         assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
-        // Most errors are zero.
+        // In the last curve, most errors are zero.
         let mut zeros = vec![0u32; 1000];
         zeros[990..].iter_mut().enumerate().for_each(|(i, e)| *e = 1 + i as u32);
         assert!(budget(&zeros).knee > 0.9);

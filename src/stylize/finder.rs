@@ -1,4 +1,4 @@
-//! The nearest-patch searches: PatchMatch, or a k-d table.
+//! Searches for nearest patches, with PatchMatch or with a k-d tree over patch means.
 
 use super::level::Level;
 use super::params::{Finder, Params};
@@ -6,11 +6,11 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
 
-/// Number of patches in the table that are compared with each patch. Three times this number takes twice the time and
-/// lowers the energy (Eq. 3) by one per cent [bench stylit].
+/// Number of patches of the k-d tree that are compared with each patch. Three times this number takes twice the time
+/// and lowers the energy (Eq. 3) by one per cent [bench stylit].
 const TRIES: usize = 8;
 
-/// Data shared by the searches of one iteration.
+/// Data that the searches of one iteration share.
 pub(super) struct Nearest<'a> {
     level: &'a Level<'a>,
     sweeps: usize,
@@ -42,8 +42,8 @@ impl<'a> Nearest<'a> {
         Ok(Self { level, sweeps: params.sweeps, tables })
     }
 
-    /// Searches the exemplar for better matches of the target patches. `index` numbers the calls, so that each call has
-    /// other random numbers.
+    /// Searches the exemplar for better matches of the target patches. `index` is the number of the call; each call
+    /// uses other random numbers.
     pub fn forward(
         &self,
         search: &Search,

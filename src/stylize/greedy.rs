@@ -1,4 +1,4 @@
-//! Hertzmann et al., "Image Analogies" (2001), for comparison: sets each pixel once, in scan order.
+//! The algorithm of Hertzmann et al., "Image Analogies" (2001), for comparison: sets each pixel once, in scan order.
 
 use super::level::Level;
 use crate::error::Result;
@@ -6,13 +6,13 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
-/// Coherence parameter κ (Hertzmann et al., §3.2). At the finest level, a coherent match is taken if its distance is
-/// less than 1 + κ times the distance of the nearest match [origin not recorded].
+/// Coherence parameter κ (Hertzmann et al., §3.2). On the finest level, a coherent match is taken if its distance is
+/// less than (1 + κ) times the distance of the nearest match [origin not recorded].
 const COHERENCE: f64 = 5.0;
 
-/// Paints the centre of every patch from its nearest match, or from a match that continues the match of a neighbour
-/// painted earlier, if its distance is within the tolerance. Each pixel depends on the pixels before it in scan order,
-/// so all run on one thread.
+/// Paints the centre of every patch in scan order, from the patch's nearest match or from a coherent match, which
+/// continues the match of a neighbour painted earlier. A coherent match is preferred if its distance is within the
+/// tolerance of `COHERENCE`. Each pixel depends on the pixels before it, so the function runs on one thread.
 pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
     let patch = level.problem.patch;
     let half = patch / 2;
@@ -30,7 +30,8 @@ pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, dep
             let nearest = search.distance(x, y, px, py, u32::MAX);
             let mut limit = (f64::from(nearest) * tolerance).min(f64::from(u32::MAX)) as u32;
 
-            // Try to continue the neighbours set so far: three in the row above and the pixel to the left.
+            // Try to continue the matches of the neighbours painted so far: three in the row above and one to the
+            // left.
             for (dx, dy) in [(-1isize, 0isize), (-1, -1), (0, -1), (1, -1)] {
                 let (nx, ny) = (x as isize + dx, y as isize + dy);
                 if nx < 0 || ny < 0 || nx as usize >= field.width {

@@ -14,8 +14,8 @@ pub enum Range {
     /// and target together exceeds white, all values are scaled so that this percentile becomes white. Then they are
     /// clipped and sRGB-encoded, so that a highlight of a million counts as white and does not dominate.
     Light,
-    /// Linear data: normals, object codes, edge maps. The common range of all channels of both images is mapped to `[0,
-    /// 1]`.
+    /// Linear data: normals, object codes, edge maps. The common range of all channels of both images is mapped to
+    /// `[0, 1]`.
     Data,
 }
 
@@ -31,23 +31,24 @@ pub struct Guide<'a> {
     pub range: Range,
 }
 
-/// Maximum number of channels of all guides together. With the four channels of an artwork, they fill the 64 channels
-/// of an image.
+/// Maximum number of channels of all guides together. With the up to four channels of an artwork, they fill the 64
+/// channels of an image.
 pub const MAX_CHANNELS: usize = 60;
 
-/// All guides, interleaved.
+/// All guides, with their channels interleaved in one image per side.
 pub(super) struct Channels {
     pub source: Image,
     pub target: Image,
     /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1 (or 0).
     pub weights: Vec<f64>,
-    /// Pixels with a NaN or infinite sample.
+    /// Per pixel: whether one of its samples is NaN or infinite.
     pub broken_source: Vec<bool>,
     pub broken_target: Vec<bool>,
 }
 
 impl Channels {
-    /// Combines the guides, at half the resolution if `half`: all further work then handles a quarter of the pixels.
+    /// Combines the guides. If `half`, halves their resolution, so that all further work handles a quarter of the
+    /// pixels.
     pub fn new(guides: &[Guide], match_appearance: f32, half: bool, job: Job) -> Result<Self> {
         let first = guides.first().ok_or_else(no_guides)?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();
@@ -119,7 +120,7 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
     }
 }
 
-/// Replaces non-finite samples by 0 and returns which pixels had one.
+/// Replaces non-finite samples by 0. Returns for each pixel whether it had such a sample.
 fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     let (channels, row_len) = (image.channels, image.row_len());
     let mut broken = try_vec(image.width * image.height, false)?;
@@ -136,8 +137,8 @@ fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     Ok(broken)
 }
 
-/// A scale and offset, optionally followed by the sRGB curve. NaN and infinity stay unchanged, so that [`clear_broken`]
-/// finds them later.
+/// A scale and an offset, followed by the sRGB curve if `curve`. NaN and infinity stay unchanged, so that
+/// [`clear_broken`] finds them later.
 struct Normalisation {
     offset: f32,
     scale: f32,
@@ -155,12 +156,12 @@ impl Normalisation {
 }
 
 impl Guide<'_> {
-    /// The name of one side of the guide.
+    /// Returns the name of one side of the guide, for error messages.
     pub(super) fn side(&self, side: &str) -> String {
         format!("the {side} of guide {:?}", self.name)
     }
 
-    /// Checks that do not involve other guides.
+    /// Checks the guide without comparing it with other guides.
     pub fn check_alone(&self) -> Result<()> {
         check_range(&self.side("weight"), self.weight, 0.0, 1e6)?;
         if self.source.channels != self.target.channels {
@@ -196,7 +197,8 @@ impl Guide<'_> {
             Range::Data => Normalisation { offset: 0.0, scale: 0.0, curve: false },
             Range::Light if high <= 1.0 => Normalisation { offset: 0.0, scale: 1.0, curve: true },
             Range::Light => {
-                // Compute the percentile from at most a million samples. A maximum would depend on single pixels.
+                // Compute the percentile from at most a million samples. A maximum would depend on single bright
+                // pixels.
                 let step = ((self.source.data.len() + self.target.data.len()) >> 20).max(1);
                 let mut values: Vec<f32> = finite().step_by(step).collect();
                 let rank = (values.len() - 1) * 999 / 1000;

@@ -1,4 +1,5 @@
-//! One resolution of the problem, quantised for matching.
+//! The stylisation problem at one pyramid level: in floating point ([`Problem`]), and quantised for matching
+//! ([`Level`]).
 
 use super::guides::{Channels, no_guides};
 use super::params::{Input, Mode, Params, check_side};
@@ -10,19 +11,19 @@ use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use crate::patch::{Domain, Kernel, QuantisedImage, Quantiser, Search, halve, halve_mask};
 
-/// The problem at one resolution, in floating-point numbers. The next coarser problem is derived from it.
+/// The problem at one pyramid level, in floating-point numbers. The next coarser problem is derived from it.
 pub(super) struct Problem {
     pub patch: usize,
-    /// Artwork, encoded for display.
+    /// Artwork, encoded for display (sRGB).
     pub style: Image,
     pub guides: Channels,
-    /// Exemplar pixels that patches may be taken from.
+    /// Exemplar pixels from which patches may be taken; all if `None`.
     pub source_mask: Option<Vec<bool>>,
-    /// Target pixels to synthesise.
+    /// Target pixels to synthesise; all if `None`.
     pub target_mask: Option<Vec<bool>>,
-    /// Encoded colours outside `target_mask`.
+    /// Colours of the target outside `target_mask`, encoded for display.
     pub known: Option<Image>,
-    /// Number of non-finite pixels in the exemplar and in the target.
+    /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
 }
 
@@ -80,7 +81,7 @@ impl Problem {
         Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts })
     }
 
-    /// Shortest side of exemplar and target.
+    /// Returns the shortest side of exemplar and target, in pixels.
     pub fn shortest_side(&self) -> usize {
         let (s, t) = (&self.style, &self.guides.target);
         s.width.min(s.height).min(t.width).min(t.height)
@@ -91,7 +92,7 @@ impl Problem {
         (self.style.width, self.style.height) == (artwork.width, artwork.height)
     }
 
-    /// The known part of the target, black elsewhere; encoded for display.
+    /// Returns the known part of the target, encoded for display, and black elsewhere.
     pub fn blank_picture(&self) -> Result<Image> {
         match &self.known {
             Some(known) => known.try_clone(),
@@ -99,7 +100,7 @@ impl Problem {
         }
     }
 
-    /// The problem at half the resolution.
+    /// Returns the problem at half the resolution.
     pub fn halve(&self, job: Job) -> Result<Self> {
         let (source, target) = (&self.guides.source, &self.guides.target);
         Ok(Self {
@@ -145,7 +146,7 @@ fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<
     Ok(Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true)? }))
 }
 
-/// Thresholds a mask at 0.5; it must have the size of `of` and at least one pixel set.
+/// Thresholds a mask at 0.5. The mask must have the size of `of` and at least one pixel set.
 fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     mask.check_same_size(name, of, "the guides of its side")?;
@@ -182,16 +183,16 @@ fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Res
     Ok(encoded)
 }
 
-/// The problem at one resolution in integers.
+/// The problem at one pyramid level, with quantised guides and colours.
 pub(super) struct Level<'a> {
     pub problem: &'a Problem,
     pub source: QuantisedImage,
     pub target: QuantisedImage,
-    /// Exemplar patches that may be used, and target patches that need a match.
+    /// Exemplar patches that may be used (`allowed`), and target patches that need a match (`wanted`).
     pub allowed: Domain,
     pub wanted: Domain,
     colours: Vec<Quantiser>,
-    /// Squared difference of quantised values that corresponds to a difference of 1 at weight 1.
+    /// Squared difference of the quantised values of two samples that differ by 1, at weight 1.
     unit: f64,
     pub kernel: Kernel,
     pub seed: u64,
@@ -228,13 +229,13 @@ impl<'a> Level<'a> {
         Ok(Self { problem, source, target, allowed, wanted, colours: quantisers, unit, kernel: Kernel::detect(), seed })
     }
 
-    /// Stores the colours of the current picture.
+    /// Stores the colours of the current picture in the quantised target.
     pub fn set_picture(&mut self, picture: &Image, job: Job) -> Result<()> {
         self.target.fill(0, &self.colours, picture, job)
     }
 
-    /// Marks the wanted patches with a pixel that differs in `picture`; the distances of all other patches remain
-    /// valid.
+    /// Marks the wanted patches that contain a pixel whose colour differs in `picture`; the distances of all other
+    /// patches remain valid.
     pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Vec<bool>> {
         let (width, lanes) = (picture.width, self.target.lanes);
         let mut differs = try_vec(width * picture.height, false)?;
@@ -249,7 +250,7 @@ impl<'a> Level<'a> {
         Ok(touched)
     }
 
-    /// Stores the colour of one pixel.
+    /// Stores the colour of one pixel in the quantised target.
     pub fn set_pixel(&mut self, x: usize, y: usize, colour: &[f32]) {
         let start = (y * self.target.width + x) * self.target.lanes;
         for ((out, q), v) in self.target.data[start..].iter_mut().zip(&self.colours).zip(colour) {
@@ -257,13 +258,13 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The integer distance that corresponds to 1 per pixel of a patch, in the units of Eq. 1 with channels in `[0,
-    /// 1]`.
+    /// Returns the integer distance of two patches whose weighted squared difference (Eq. 1, channels in `[0, 1]`) is
+    /// 1 in every pixel.
     pub fn unit(&self) -> f64 {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }
 
-    /// The search for the nearest exemplar patches of target patches.
+    /// Returns the search for the nearest exemplar patch of each target patch.
     pub fn forward(&self) -> Search<'_> {
         Search {
             query: &self.target,
@@ -276,7 +277,7 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The search for the nearest target patches, among `free`, of exemplar patches.
+    /// Returns the search for the nearest target patch, among `free`, of each exemplar patch.
     pub fn reverse<'b>(&'b self, free: &'b Domain) -> Search<'b> {
         Search { query: &self.source, base: &self.target, allowed: free, seed: !self.seed, ..self.forward() }
     }

@@ -4,24 +4,25 @@
 //! An exemplar scene was rendered as guides A and painted as artwork A′; a target scene is rendered as guides B. From
 //! coarse to fine, patches of A′ are matched to positions in the target by current colour and guides (Eq. 1),
 //! overlapping patches are averaged (Algorithm 1), and both steps are repeated. StyLit differs from earlier methods in
-//! how matches are made. Each exemplar patch searches for its position in the target, not the other way round, so that
-//! no patch is overused and texture does not wash out. An error budget limits these matches, so that no patch is
-//! forced into an unsuitable position ([`budget`](self), [`retrieve`](self)).
+//! its matching. Each exemplar patch searches for its position in the target, not the other way round, so that no
+//! patch is overused and texture does not wash out. An error budget limits these matches, so that no patch is forced
+//! into an unsuitable position (`budget`, `retrieve`).
 //!
-//! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
-//! `finder` searches, `multires` runs from coarse to fine, `study` follows changes of the artwork, `animate` advances
-//! from frame to frame, `greedy` is Hertzmann's algorithm for comparison, `report` measures the result, `pilot`
-//! predicts time and energy from runs at low resolution.
+//! The modules: `guides` normalises the guides, `level` quantises one pyramid level, `finder` searches for nearest
+//! patches, `budget` finds the knee of the errors, `retrieve` matches under the budget, and `multires` runs from
+//! coarse to fine. `study` follows changes of the artwork, `animate` advances from frame to frame, and `greedy` is
+//! Hertzmann's algorithm for comparison. `report` measures the result, and `pilot` predicts time and energy from runs
+//! at low resolution.
 //!
 //! Colours are compared and averaged as encoded for display (sRGB), which approximates how paint is perceived.
 //!
-//! The defaults depart from the paper where measurements favour it; `Params::paper` holds the paper's settings, and
-//! `docs/notes/stylize.md` the measurements.
+//! The defaults depart from the paper where measurements favour it. `Params::paper` holds the paper's settings;
+//! `docs/notes/stylize.md` records the measurements.
 //!
-//! Limitations. The target may have light that the exemplar shows only in another context, such as a corner as dark as
-//! a cast shadow. There the guides select the paint of that other context. A guide that distinguishes the two
-//! (materials) or a lower `coarse_guides` helps. Paper around the painting counts as paint; exclude it by a
-//! `source_mask`.
+//! Limitations. The target may show a brightness that the exemplar shows only in another context: a corner of the
+//! target may be as dark as a cast shadow of the exemplar. The guides then select the paint of that other context. A
+//! guide that distinguishes the two contexts (materials) or a lower `coarse_guides` helps. Paper around the painting
+//! counts as paint; exclude it by a `source_mask`.
 //!
 //! Memory: with four guides of three channels, about 125 MiB per megapixel of the target, and the same for the
 //! exemplar, in addition to the input [bench stylit:sizes].

@@ -16,14 +16,14 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, unpack};
 use crate::rng::hash;
 
-/// Maximum number of patch pairs for which the initial field is found by exhaustive comparison.
+/// The initial field is found by exhaustive comparison if there are at most this many pairs of patches.
 const EXHAUSTIVE: usize = 1 << 24;
 
-/// Values that are the same on all levels of a run.
+/// Values that all levels of a run share.
 struct Setup<'a> {
     input: &'a Input<'a>,
     params: &'a Params,
-    /// Number of levels.
+    /// Number of pyramid levels of the run.
     levels: usize,
     /// Number of halvings from the artwork's size to the finest level: 1 for a preview, else 0.
     halved: usize,
@@ -35,13 +35,13 @@ struct Setup<'a> {
 struct State {
     field: Field,
     picture: Image,
-    /// For each target patch, whether it keeps the match of the previous frame; empty without motion.
+    /// For each target patch, whether it keeps its match of the previous frame; empty without motion.
     kept: Vec<bool>,
 }
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     let halved = usize::from(!problem.is_of(input.artwork));
-    // Continuing from a previous frame or result needs only the finest level.
+    // A run that continues the matches of a previous frame or result needs only the finest level.
     let moved = match (input.previous, input.motion) {
         (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
         _ => None,
@@ -73,7 +73,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
-        // Release levels that are done.
+        // Release the coarser levels, which are done.
         let popped = if l > 0 { coarser.pop() } else { None };
         let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);
@@ -103,10 +103,11 @@ fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job:
     Ok(level)
 }
 
-/// The first field and picture of level `l`, from the field of the next coarser level or of an earlier result.
+/// Returns the initial field and picture of level `l`, from the field of the next coarser level or of an earlier
+/// result.
 fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, job: Job) -> Result<State> {
     let (problem, params) = (level.problem, setup.params);
-    // Start from the coarser field, or from the guides alone.
+    // Start from the given field, or find a field by the guides alone.
     let (width, height) = (level.wanted.width, level.wanted.height);
     let mut field = match field {
         Some(coarse) if l + 1 < setup.levels => coarse.upsample(width, height, &level.allowed)?,
@@ -150,7 +151,7 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
         let passes = rematch(level, state, params, l, k, part(0.0, 0.9))?;
         report.passes.extend(passes);
         report.energy.push(energy(&state.field, level));
-        // The greedy mode paints while it matches.
+        // Paint by voting, except in the greedy mode, which has painted while matching.
         let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
         match params.mode {
             Mode::Greedy => restore_known(&mut state.picture, level.problem),
@@ -170,8 +171,9 @@ fn rematch(
     job: Job,
 ) -> Result<Option<Vec<Pass>>> {
     let State { field, picture, kept } = state;
-    // Distances can have changed only for patches that contain a changed pixel. The first polishing iteration is an
-    // exception: it rematches all patches, because they were assigned under the budget.
+    // The distance of a match changes only if the patch contains a changed pixel, so rematch only these patches. The
+    // first iteration of `Params::polish` is an exception: it rematches all patches, because they were assigned under
+    // the budget.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {
@@ -219,7 +221,8 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     Ok(Output { image, field, report })
 }
 
-/// Finds the nearest exemplar patch of each target patch that has changed; the others are up to date.
+/// Finds the nearest exemplar patch of each target patch that has changed. The matches of all other target patches are
+/// up to date.
 fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, round: usize, job: Job) -> Result<()> {
     let changed = |i: usize| changed[i];
     let search = level.forward();
@@ -228,7 +231,7 @@ fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, 
     if params.mode != Mode::Occurrence || params.occurrence == 0.0 {
         return nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), changed);
     }
-    // Usage penalties depend on all matches: any match may change.
+    // The usage penalty of a match depends on all other matches, so the match of any patch may change.
     let patch = level.problem.patch;
     let weight = f64::from(params.occurrence) * level.unit() / (patch * patch) as f64;
     let occurrence = Occurrence::new(field, &level.allowed, patch, weight)?;
@@ -236,8 +239,8 @@ fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, 
     nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), |i| level.wanted.contains_index(i))
 }
 
-/// Finds an initial field by the guides alone. Among equally close matches, the one at the same relative position is
-/// preferred, so that equal guides yield the identity.
+/// Finds an initial field by the guides alone, without colours. Among equally close matches, the match at the same
+/// relative position is preferred, so that equal guides yield the identity.
 fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> Result<Field> {
     let level = Level::new(problem, params, 0.0, seed, job.part(0.0, 0.01))?;
     let search = level.forward();

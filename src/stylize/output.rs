@@ -8,7 +8,7 @@ use crate::patch::Field;
 pub struct Output {
     /// The stylised target, linear colour.
     pub image: Image,
-    /// The exemplar patch of each target patch.
+    /// The match of each target patch: the exemplar patch that it shows.
     pub field: Field,
     pub report: Report,
 }
@@ -23,5 +23,5 @@ pub struct Glimpse<'a> {
     pub levels: &'a [LevelReport],
 }
 
-/// Callback for intermediate results.
+/// Callback that receives intermediate results.
 pub type Publish<'a> = &'a (dyn Fn(Glimpse) + Sync);

@@ -14,22 +14,22 @@ pub enum Mode {
     Uniform,
     /// Each target patch takes its nearest exemplar patch (Wexler et al. 2007, Kwatra et al. 2005).
     Nearest,
-    /// One pass in scan order, by best or by most coherent match (Hertzmann et al. 2001).
+    /// One pass in scan order: each pixel takes its best or its most coherent match (Hertzmann et al. 2001).
     Greedy,
     /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan
     /// et al. 2001).
     LitSphere,
-    /// Each target patch takes its nearest exemplar patch, with a penalty for frequently used ones (Kaspar et al.
-    /// 2015): see `Params::occurrence`. Single-threaded, and with PatchMatch only.
+    /// Each target patch takes its nearest exemplar patch, with a penalty for frequently used exemplar patches (Kaspar
+    /// et al. 2015): see `Params::occurrence`. Single-threaded, and with PatchMatch only.
     Occurrence,
 }
 
-/// The nearest-patch search.
+/// The algorithm that searches for nearest patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finder {
-    /// PatchMatch.
+    /// PatchMatch (Barnes et al. 2009).
     PatchMatch,
-    /// A k-d tree over patch means, which is not PatchMatch.
+    /// A k-d tree over patch means, an alternative to PatchMatch.
     Table,
 }
 
@@ -39,19 +39,19 @@ pub struct Input<'a> {
     pub artwork: &'a Image,
     /// The guides, each a pair of images: one aligned with the artwork (A), one with the target (B). At least one.
     pub guides: &'a [Guide<'a>],
-    /// One channel; patches are taken only from pixels above 0.5. If absent, from everywhere.
+    /// Mask of the artwork, one channel: patches are taken only from pixels above 0.5. If absent, from all pixels.
     pub source_mask: Option<&'a Image>,
-    /// One channel; only pixels above 0.5 are synthesised, the others are taken from `known`, or black. If absent, all
-    /// pixels.
+    /// Mask of the target, one channel: only pixels above 0.5 are synthesised; the others are taken from `known`, or
+    /// are black. If absent, all pixels are synthesised.
     pub target_mask: Option<&'a Image>,
-    /// The picture of the target outside `target_mask`. Patches are compared with its pixels, which never change. Same
-    /// channels as the artwork.
+    /// The picture of the target outside `target_mask`, linear, with the channels of the artwork. Patches are compared
+    /// with its pixels, which never change.
     pub known: Option<&'a Image>,
     /// The field of an earlier result for a target of the same size, as initial matches.
     pub previous: Option<&'a Field>,
     /// Displacement in pixels from each target pixel to the position of the same surface point in the frame of
-    /// `previous`: two channels, NaN where the point was not visible. The matches of the previous frame are moved along
-    /// this displacement, and the share `Params::coherence` of them is kept.
+    /// `previous`: two channels, NaN where the point was not visible. The matches of the previous frame are moved
+    /// along this displacement, and the share `Params::coherence` of them is kept.
     pub motion: Option<&'a Image>,
 }
 
@@ -70,48 +70,50 @@ pub struct Params {
     pub patch: usize,
     /// Weight μ of all guides together relative to all of the artwork's colours together, in `[0, 1e6]`.
     pub guide_weight: f32,
-    /// Factor on the weight of the guides on all levels except the finest, in `[0, 1000]`. Guides determine where paint
-    /// is placed, colours how it continues. The paper uses 1.
+    /// Factor on the weight of the guides on all levels except the finest, in `[0, 1000]`. Guides determine where
+    /// paint is placed, and colours determine how it continues. The paper uses 1.
     pub coarse_guides: f32,
-    /// Maximum number of resolution levels, each half of the next, in `[1, 16]`; fewer if the coarsest would be
-    /// smaller than 5 patches.
+    /// Maximum number of pyramid levels, in `[1, 16]`; each has half the resolution of the next finer one. There are
+    /// fewer levels if the coarsest would be smaller than 5 patches.
     pub levels: usize,
-    /// EM iterations on the second finest level, in `[1, 100]`.
+    /// EM iterations (matching, then voting) on the second finest level, in `[1, 100]`.
     pub iterations: usize,
     /// EM iterations on each coarser level, in `[1, 100]`.
     pub coarse_iterations: usize,
     /// EM iterations on the finest level, in `[1, 100]`.
     pub finest_iterations: usize,
-    /// Further EM iterations on the finest level, in `[0, 100]`. In `Mode::Budget` they start from the result under the
-    /// budget, and each patch takes its nearest match (Wexler et al. 2007); the paper has 0. In other modes they are
-    /// further iterations of the mode itself.
+    /// Further EM iterations on the finest level, in `[0, 100]`. In `Mode::Budget` they start from the result under
+    /// the budget, and each patch takes its nearest match (Wexler et al. 2007); the paper has 0. In other modes they
+    /// are further iterations of the mode itself.
     pub polish: usize,
     /// PatchMatch sweeps per retrieval, in `[1, 100]`.
     pub sweeps: usize,
-    /// Share of the target to match under the budget, in `[0, 1]`; the rest is then matched without a budget.
+    /// Share of the target patches that are matched under the budget, in `[0, 1]`. All other target patches are then
+    /// matched without the budget.
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`.
     pub passes: usize,
-    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if that
-    /// match is closer than its own. With 0 the paper's assignment is unchanged.
+    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
+    /// continued match is closer than the patch's own match. With 0, the paper's assignment is unchanged.
     pub settle: usize,
-    /// Cost of a seam between two neighbouring patches during the sweeps of `settle`, as a share of the mean error, in
-    /// `[0, 100]`.
+    /// Cost of a seam, that is, of two neighbouring patches whose matches do not continue each other, during the
+    /// sweeps of `settle`; as a share of the mean error, in `[0, 100]`.
     pub seam: f32,
     pub vote: Vote,
     /// The vote that forms the final picture from the final field.
     pub final_vote: Vote,
     /// Share of the previous frame's matches that are kept where they fit, in `[0, 1]`; no effect without motion. Use
-    /// a different `seed` for each frame, or the same blocks change every time.
+    /// a different `seed` for each frame; otherwise the same blocks change in every frame.
     pub coherence: f32,
     /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target,
     /// in `[0, 1]`: for targets under different light than the exemplar (Fig. 16).
     pub match_appearance: f32,
-    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty of a match to a patch of average usage. The unit is
-    /// that of Eq. 1: the sum over a patch of squared differences of channels in `[0, 1]`. With 0 the result equals
-    /// that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (Fig. 10n).
+    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty for a match to an exemplar patch of average usage.
+    /// The unit is that of Eq. 1: the sum over a patch of squared differences of channels in `[0, 1]`. With 0 the
+    /// result equals that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (Fig. 10n).
     pub occurrence: f32,
-    /// Half resolution, with guides compressed to their principal components: for interactive painting.
+    /// Whether to work at half the resolution, with guides compressed to their principal components: for interactive
+    /// painting.
     pub preview: bool,
     pub seed: u64,
 }
@@ -146,7 +148,7 @@ impl Default for Params {
 }
 
 impl Params {
-    /// The paper's settings: the budget's assignment unchanged, plain averages, six iterations and sweeps.
+    /// The paper's settings: the assignment under the budget unchanged, plain averages, six iterations and sweeps.
     pub fn paper() -> Self {
         Self {
             coarse_guides: 1.0,
@@ -163,12 +165,12 @@ impl Params {
         }
     }
 
-    /// Half the computation time of the default.
+    /// Settings that take half the computation time of the default.
     pub fn fast() -> Self {
         Self { iterations: 3, coarse_iterations: 6, polish: 0, ..Self::default() }
     }
 
-    /// For interactive painting.
+    /// Settings for interactive painting.
     pub fn preview() -> Self {
         Self { preview: true, iterations: 2, coarse_iterations: 3, passes: 3, ..Self::fast() }
     }

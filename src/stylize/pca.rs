@@ -9,11 +9,11 @@ use crate::job::Job;
 
 /// Share of the variance to keep [origin not recorded].
 const KEPT_VARIANCE: f64 = 0.995;
-/// Maximum number of components: together with three colour channels, they fill eight lanes.
+/// Maximum number of components: together with three colour channels, they fill the eight lanes of a SIMD register.
 const MAX_COMPONENTS: usize = 5;
 
-/// Replaces the channels by principal components. Each component is stretched to `[0, 1]` and weighted by the square of
-/// its former range, so that weighted distances change only by the dropped components.
+/// Replaces the channels by principal components. Each component is stretched to `[0, 1]` and weighted by the square
+/// of its former range, so that weighted distances change only by the dropped components.
 pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let n = guides.weights.len();
     if n <= MAX_COMPONENTS {
@@ -37,7 +37,7 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     Ok(())
 }
 
-/// Covariance of the weighted channels over exemplar and target, from about 2¹⁶ pixels.
+/// Computes the covariance of the weighted channels over exemplar and target, from about 2¹⁶ pixels.
 fn covariance(guides: &Channels, roots: &[f64]) -> Vec<f64> {
     let n = roots.len();
     let pixels = || guides.source.data.chunks_exact(n).chain(guides.target.data.chunks_exact(n));
@@ -68,7 +68,7 @@ fn covariance(guides: &Channels, roots: &[f64]) -> Vec<f64> {
     covariance
 }
 
-/// The first `count` components of an image; `vectors` are rows of length `roots.len()`.
+/// Projects an image onto the first `count` components; `vectors` are rows of length `roots.len()`.
 fn project(image: &Image, vectors: &[f64], roots: &[f64], count: usize, job: Job) -> Result<Image> {
     let n = roots.len();
     let mut out = Image::new(image.width, image.height, count)?;
@@ -101,7 +101,8 @@ fn stretch(source: &mut Image, target: &mut Image) -> Vec<f64> {
     weights
 }
 
-/// Eigenvalues of a symmetric matrix, largest first, and unit eigenvectors as rows (cyclic Jacobi rotations).
+/// Returns the eigenvalues of a symmetric matrix, largest first, and its unit eigenvectors as rows (cyclic Jacobi
+/// rotations).
 fn symmetric_eigen(mut m: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
     let mut v: Vec<f64> = (0..n * n).map(|i| if i % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
     for _ in 0..30 {
@@ -115,7 +116,7 @@ fn symmetric_eigen(mut m: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
                 if m[p * n + q] == 0.0 {
                     continue;
                 }
-                // The rotation that annihilates m[p][q].
+                // Compute the rotation that annihilates m[p][q].
                 let theta = (m[q * n + q] - m[p * n + p]) / (2.0 * m[p * n + q]);
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let t = if theta == 0.0 { 1.0 } else { t };
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn compressed_guides_keep_their_distances() {
-        // Nine channels of rank two.
+        // Test images with nine channels, all of them combinations of two.
         let image = |seed: usize| {
             Image::from_fn(31, 17, |x, y| {
                 let (a, b) = (((x * 7 + seed) % 31) as f32 / 31.0, ((y * 5 + seed) % 17) as f32 / 17.0);

@@ -1,4 +1,4 @@
-//! The picture of a level: painting it from the matches, and decoding it to linear colour.
+//! The picture of a level: painted from the matches, and decoded to linear colour.
 
 use super::level::Problem;
 use crate::error::Result;
@@ -8,7 +8,7 @@ use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
 use crate::patch::{Field, Vote, origin, vote};
 
-/// Paints the pixels for which `wanted` holds by a vote of their patches, and restores the known pixels.
+/// Paints the pixels for which `wanted` holds by a vote of the patches that cover them, and restores the known pixels.
 pub(super) fn paint(
     picture: &mut Image,
     field: &Field,
@@ -31,7 +31,7 @@ pub(super) fn restore_known(picture: &mut Image, problem: &Problem) {
     }
 }
 
-/// The picture in linear colour.
+/// Returns the picture in linear colour.
 pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     let mut out = picture.try_clone()?;
     let row_len = out.row_len();
@@ -41,11 +41,11 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The inputs that produced an encoded picture.
+/// The data from which an encoded picture was produced.
 pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,
-    /// The artwork and the known part of the target, linear.
+    /// The artwork and the known part of the target, both in linear colour.
     pub artwork: &'a Image,
     pub known: Option<&'a Image>,
 }

@@ -1,4 +1,5 @@
-//! Predictions of time and energy for settings, from pilot runs at reduced resolution.
+//! Predicts, for given settings, the run time and the final energy (the objective function, Eq. 3) from pilot runs at
+//! reduced resolution.
 
 use super::level::Problem;
 use super::multires;
@@ -9,13 +10,13 @@ use crate::job::Job;
 use std::time::Duration;
 
 /// Maximum number of pixels in a pilot run, counted in the exemplar or the target, whichever is smaller. The smaller
-/// image counts because a small exemplar has few patches per pixel: its energies at low resolutions would predict the
-/// energies at higher resolutions poorly.
+/// image counts because a small exemplar has few patches: its energies at low resolutions would predict the energies
+/// at higher resolutions poorly.
 const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
-/// Predicted time that settings take, and predicted energy of their result.
+/// Predicted run time of a stylisation in seconds, and predicted energy (Eq. 3) of its result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
     pub seconds: f64,
@@ -23,21 +24,22 @@ pub struct Prediction {
     pub energy: f64,
 }
 
-/// Maximum exponent by which the time per pixel grows with the number of pixels: larger fields converge more slowly
-/// [origin not recorded].
+/// The time per pixel grows with a power of the number of pixels, because larger fields converge more slowly. This is
+/// the maximum exponent [origin not recorded].
 const MAX_GROWTH: f64 = 0.12;
 
-/// Pilot runs of settings on one input.
+/// Pilot runs of several settings on one input.
 pub struct PilotRuns<'a> {
     input: Input<'a>,
     ladder: &'a [Params],
     usual: usize,
     clock: &'a (dyn Fn() -> Duration + Sync),
-    /// The problem, and its successive halves down to the lowest resolution used.
+    /// The problem at full resolution, followed by the problems at successively halved resolutions, down to the lowest
+    /// resolution used.
     problems: Vec<Problem>,
     preparing: f64,
-    /// Measurements at the highest pilot resolution: of the reference settings, and of other settings after
-    /// [`Self::refine`].
+    /// Measurements at the highest pilot resolution, one per element of `ladder`. The reference settings have one from
+    /// the start, other settings after [`Self::refine`]; until then `None`.
     near: Vec<Option<Prediction>>,
     /// Measurements of all settings at the next lower resolution.
     middle: Vec<Prediction>,
@@ -89,7 +91,7 @@ impl<'a> PilotRuns<'a> {
         Ok(pilot)
     }
 
-    /// The indices of the resolutions used, the highest first.
+    /// Returns the indices of the pilot resolutions in `problems`, the highest resolution first.
     fn tried(&self) -> [usize; RESOLUTIONS] {
         let lowest = self.problems.len() - 1;
         let nearest = self.problems.iter().position(is_near).unwrap_or(lowest);
@@ -103,7 +105,7 @@ impl<'a> PilotRuns<'a> {
         Ok(Prediction { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
     }
 
-    /// Runs settings at the highest pilot resolution too, unless done before.
+    /// Runs settings at the highest pilot resolution too, unless that was done before.
     ///
     /// # Errors
     /// Those of [`super::run`].
@@ -119,7 +121,7 @@ impl<'a> PilotRuns<'a> {
         self.near[settings].is_some()
     }
 
-    /// Predicted time and energy of settings at the full resolution.
+    /// Predicts time and energy of settings at the full resolution.
     ///
     /// Time grows linearly with the number of pixels. With slowly converging settings it grows by a slightly higher
     /// power, which is estimated from the two higher pilot resolutions. Energy falls as pixels become smaller, because
@@ -130,8 +132,8 @@ impl<'a> PilotRuns<'a> {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
         let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-        // If the settings ran at the middle resolution only, assume that their ratio to the reference settings is the
-        // same at the highest pilot resolution.
+        // If the settings ran at the middle resolution only, compute their time and energy there relative to the
+        // reference settings, and assume the same ratios at the highest pilot resolution.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
         let near = self.near[settings].unwrap_or(Prediction {
@@ -153,8 +155,8 @@ fn is_near(problem: &Problem) -> bool {
     pixels(&problem.style).min(pixels(&problem.guides.target)) <= MAX_PIXELS
 }
 
-/// Extrapolates the energies of three resolutions by `steps` further resolutions. From one resolution to the next, the
-/// logarithm of the energy changes by a constant fraction of its previous change (Aitken 1926).
+/// Extrapolates the energies at three resolutions by `steps` further resolutions. The logarithm of the energy changes
+/// from one resolution to the next; each change is a constant fraction of the previous change (Aitken 1926).
 fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
     let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn energies_go_on_as_they_have_begun() {
-        // Constant steps; decaying steps; no change.
+        // The cases are constant steps, decaying steps, and no change.
         assert!((extrapolate([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
         let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
         assert!((extrapolate([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");

@@ -1,4 +1,4 @@
-//! Measurements of a run: energy, coverage, patch usage, guide error.
+//! Measures a run: energy, coverage, patch usage, guide error.
 
 use super::level::{Level, Problem};
 use super::retrieve::Pass;
@@ -26,7 +26,7 @@ pub struct LevelReport {
 pub struct Usage {
     /// Share of the allowed exemplar patches that are used.
     pub used: f64,
-    /// Maximum number of uses of a single patch.
+    /// Number of uses of the patch that is used most often.
     pub max_uses: u32,
     /// Entropy of the usage in bits; at most log2 of the number of target patches.
     pub entropy: f64,
@@ -34,21 +34,22 @@ pub struct Usage {
 
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// Coarsest level first.
+    /// Reports of the levels, coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
-    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where the exemplar has nothing suitable (Fig. 17).
+    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
+    /// 17).
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
-    /// It is determined by the patch with the nearest centre; -1 if that patch has no match.
+    /// The patch with the nearest centre determines it; -1 if that patch has no match.
     pub sources: Image,
     /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,
     /// The patch width used.
     pub patch: usize,
-    /// Number of exemplar pixels left out because they are NaN or infinite, and number of target guide pixels set to 0
-    /// for the same reason.
+    /// Number of exemplar pixels left out because they are NaN or infinite (`broken_source`), and number of target
+    /// guide pixels set to 0 for the same reason (`broken_target`).
     pub broken_source: usize,
     pub broken_target: usize,
 }
@@ -75,12 +76,13 @@ impl Usage {
     }
 }
 
-/// Mean distance of matched patches, per pixel of a patch, in the units of Eq. 1 with channels in `[0, 1]`.
+/// Returns the mean distance of matched patches, per pixel of a patch, in the units of Eq. 1 with channels in
+/// `[0, 1]`.
 pub(super) fn energy(field: &Field, level: &Level) -> f64 {
     field.energy() / level.wanted.len().max(1) as f64 / level.unit()
 }
 
-/// The exemplar pixel that the patch with the nearest centre places at a target pixel.
+/// Returns the exemplar pixel that is painted at a target pixel by the patch with the nearest centre.
 fn source_of(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
     let nearest = |pixel: usize, count: usize| pixel.saturating_sub(patch / 2).min(count - 1);
     let (fx, fy) = (nearest(x, field.width), nearest(y, field.height));
@@ -89,7 +91,7 @@ fn source_of(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, 
     (at != NONE).then_some((px + x - fx, py + y - fy))
 }
 
-/// The guide error of each pixel.
+/// Computes the guide error of each target pixel: see [`Report::guide_error`].
 pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<Image> {
     let (source, target) = (&problem.guides.source, &problem.guides.target);
     let mut out = Image::new(target.width, target.height, 1)?;
@@ -105,8 +107,8 @@ pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<
     Ok(out)
 }
 
-/// For each target pixel, the position in the artwork from which its paint comes. The artwork was halved `halvings`
-/// times for matching.
+/// Computes for each target pixel the position in the artwork from which its paint comes. The artwork was halved
+/// `halvings` times for matching.
 pub(super) fn sources(field: &Field, problem: &Problem, halvings: usize, job: Job) -> Result<Image> {
     let target = &problem.guides.target;
     let mut out = Image::new(target.width, target.height, 2)?;

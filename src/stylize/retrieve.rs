@@ -2,17 +2,17 @@
 //!
 //! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
 //! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
-//! budget is spent. If two exemplar patches want the same target, the closer one takes it (the first, if equal). In the
-//! next pass, all exemplar patches are available again for the remaining targets. The passes end when enough of the
-//! target is covered or when a pass gains next to nothing; then each remaining target patch searches for its nearest
-//! exemplar patch instead.
+//! budget is spent. If two exemplar patches want the same target, the one with the smaller error takes it (the first,
+//! if equal). In the next pass, all exemplar patches are available again for the remaining targets. The passes end
+//! when enough of the target is covered or when a pass gains next to nothing; then each remaining target patch
+//! searches for its nearest exemplar patch instead.
 //!
 //! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
-//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match: if that match is
+//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
 //! closer than the patch's own, or if avoiding the seam outweighs the greater distance (`Params::settle`,
-//! `Params::seam`; not in the paper). This step searches for no new matches, so the usage of the exemplar stays as
-//! varied, in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (Eq. 3) to a third and keeps
-//! more of the texture.
+//! `Params::seam`; not in the paper). This step searches for no new matches, so the result uses as much of the
+//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (Eq. 3) to a
+//! third and keeps more of the texture.
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.
@@ -38,11 +38,12 @@ pub struct Pass {
     pub coverage: f64,
 }
 
-/// The passes end after the first pass that matches less than this share of the target [origin not recorded].
+/// The passes end after the first pass that matches less than this share of the wanted target patches
+/// [origin not recorded].
 const MIN_GAIN: f64 = 0.005;
 
-/// Matches every wanted target patch. `field` holds the matches or hints of the previous iteration and receives the
-/// result. Its distances are valid except where `changed` is set. Matches with `kept` set stay unchanged.
+/// Matches every wanted target patch. `field` holds the matches of the previous iteration, which start the search, and
+/// receives the result. Its distances are valid except where `changed` is set. Matches with `kept` set stay unchanged.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
@@ -82,13 +83,13 @@ pub(super) fn retrieve(
         }
     }
 
-    // Match the remaining patches by ordinary retrieval, starting from their matches in the previous iteration and from
+    // Match the remaining patches by ordinary retrieval. Start from their matches in the previous iteration and from
     // the matches of neighbouring patches.
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
     nearest.forward(&search, &mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
-    // Let patches continue their neighbours' matches where those fit better, including the cost of seams.
+    // Let patches continue their neighbours' matches where those fit better, with the cost of seams included.
     let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {
         search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
@@ -128,7 +129,8 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
     }
     free.compact();
 
-    // Turn matches whose target is now taken into hints: keep the position, but discard the distance.
+    // A match whose target is now taken becomes a hint for the next search: keep its position, but discard its
+    // distance.
     for (at, error) in reverse.at.iter().zip(&mut reverse.error) {
         if *at != NONE {
             let (x, y) = unpack(*at);

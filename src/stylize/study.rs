@@ -1,6 +1,6 @@
 //! Shading study (§4.2): while the artist continues painting, the parts of the result that come from changed parts of
 //! the artwork are synthesised anew, starting from the field of the last result. The time for matching and painting is
-//! proportional to the affected area; the guides and the artwork are quantised anew in full.
+//! proportional to the affected area. The guides and the artwork are quantised anew as a whole.
 
 use super::level::{Level, Problem, encode, encoded};
 use super::multires;
@@ -13,26 +13,26 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
 
-/// Iterations of matching and voting after a change.
+/// Number of iterations of matching and voting after a change.
 const ROUNDS: usize = 2;
-/// Radius of the random search in pixels; propagation reaches farther.
+/// Radius of the random search around a match, in pixels; propagation reaches farther.
 const SEARCH_RADIUS: usize = 16;
 
 /// A stylised target that follows changes of its artwork.
 pub struct Study {
     problem: Problem,
     params: Params,
-    /// The whole artwork, linear and encoded for display.
+    /// The whole artwork, in linear colour (`artwork`) and encoded for display (`encoded`).
     artwork: Image,
     encoded: Image,
-    /// The target outside its mask, linear.
+    /// The picture of the target outside its mask, in linear colour.
     known: Option<Image>,
     field: Field,
-    /// The last result, encoded for display and linear.
+    /// The last result, encoded for display (`picture`) and in linear colour (`image`).
     picture: Image,
     image: Image,
-    /// Artwork pixels changed since the last update of the result, and result pixels that are out of date as a
-    /// consequence. After a cancelled update, some pixels of both lists remain set.
+    /// Artwork pixels changed since the last update of the result (`pending`), and result pixels that are out of date
+    /// as a consequence (`old`). A cancelled update leaves some of these flags set.
     pending: Vec<bool>,
     old: Vec<bool>,
 }
@@ -64,8 +64,9 @@ impl Study {
     }
 
     /// Copies the pixels of `artwork` where the one-channel image `changed` is above 0.5, updates the result, and
-    /// returns the new picture in linear colour. `artwork` is linear and has the size of the first artwork. Non-finite
-    /// changes count as black. After an error, such as a cancellation, the next call completes the update.
+    /// returns the new picture in linear colour. `artwork` is linear and has the size of the first artwork. Changed
+    /// samples that are not finite count as black. After an error, such as a cancellation, the next call completes the
+    /// update.
     pub fn repaint(&mut self, artwork: &Image, changed: &Image, job: Job) -> Result<Image> {
         self.artwork.check_same_size("the first artwork", artwork, "artwork")?;
         self.artwork.check_same_size("artwork", changed, "changed")?;
@@ -79,8 +80,12 @@ impl Study {
         for i in (0..changed.data.len()).filter(|&i| changed.data[i] > 0.5) {
             self.pending[i] = true;
             let pixel = i * channels..(i + 1) * channels;
-            self.artwork.data[pixel.clone()].copy_from_slice(&artwork.data[pixel.clone()]);
-            self.encoded.data[pixel.clone()].iter_mut().zip(&artwork.data[pixel]).for_each(|(e, v)| *e = encoded(*v));
+            let painted = artwork.data[pixel.clone()].iter().map(|v| if v.is_finite() { *v } else { 0.0 });
+            for ((linear, display), v) in
+                self.artwork.data[pixel.clone()].iter_mut().zip(&mut self.encoded.data[pixel]).zip(painted)
+            {
+                (*linear, *display) = (v, encoded(v));
+            }
         }
         let halved;
         let changed = if self.problem.is_of(artwork) {
@@ -107,7 +112,7 @@ impl Study {
         Ok(image)
     }
 
-    /// For each target pixel, the position in the artwork from which its paint comes: see `Report::sources`.
+    /// Returns for each target pixel the position in the artwork from which its paint comes: see `Report::sources`.
     pub fn sources(&self, job: Job) -> Result<Image> {
         sources(&self.field, &self.problem, usize::from(!self.problem.is_of(&self.artwork)), job)
     }
@@ -120,7 +125,8 @@ struct Target<'a> {
     old: &'a mut [bool],
 }
 
-/// Rematches every target patch that shows a changed exemplar pixel, and repaints the pixels these patches cover.
+/// Rematches every target patch whose match contains a changed exemplar pixel, and repaints the pixels that these
+/// target patches cover.
 fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params, job: Job) -> Result<()> {
     let Target { field, picture, old } = target;
     let mut level = Level::new(problem, params, 1.0, params.seed, job.part(0.0, 0.05))?;

@@ -60,7 +60,7 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
         }
         let table = Params { finder: Finder::Table, ..Params::default() };
         assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
-        // Only the position distinguishes the patches.
+        // With constant guides, only the position distinguishes the patches.
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
         assert!(output.image == art);
@@ -88,8 +88,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// The wash-out of §2: under equal guides, smooth patches are near everything, and nearest-patch matching overuses
-/// them.
+/// The wash-out of §2: where guides are equal, smooth patches are close to all others, so nearest-patch matching
+/// overuses them.
 #[test]
 fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patches() {
     let a = Image::from_fn(90, 60, |_, y| [0.2 + 0.6 * y as f32 / 60.0]).unwrap();
@@ -104,7 +104,7 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     let (budget, nearest) = (with(Mode::Budget), with(Mode::Nearest));
     let (rich, poor) = (budget.report.usage, nearest.report.usage);
     assert!(rich.used > 1.1 * poor.used && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
-    // Mean squared difference of horizontal neighbours.
+    // Returns the mean squared difference of horizontal neighbours.
     let power = |image: &Image| {
         let differences = image.data.chunks_exact(3 * image.width).flat_map(|row| {
             row.chunks_exact(3).zip(row[3..].chunks_exact(3)).map(|(p, q)| f64::from(p[0] - q[0]).powi(2))
@@ -115,8 +115,8 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     assert!(kept > 1.1 * washed, "{kept} {washed}");
 }
 
-/// Fig. 7: the target has four times the exemplar's highlight. Uniform usage must fill it with something else; the
-/// budget reuses the highlight.
+/// Fig. 7: the target's highlight is four times as large as the exemplar's. Uniform usage must fill a part of it with
+/// other paint; the budget reuses the highlight.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
@@ -135,7 +135,7 @@ fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     assert!(wrong(Mode::Uniform) > 600, "{}", wrong(Mode::Uniform));
 }
 
-/// Light that the exemplar lacks is painted with something else, and the guide error shows where.
+/// Light that the exemplar lacks is painted from other parts of the exemplar, and the guide error shows where.
 #[test]
 fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
     let a = scene(72, 60, 36.0, 30.0, 20.0);
@@ -156,7 +156,7 @@ fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
     assert!(mean(true) > 20.0 * mean(false) && mean(true) > 0.05, "{} {}", mean(true), mean(false));
 }
 
-/// Kaspar et al. 2015: from plain EM at λ = 0 towards uniform usage.
+/// The penalty of Kaspar et al. (2015) leads from plain EM at λ = 0 towards uniform usage.
 #[test]
 fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(120, 100, 70.0, 55.0, 35.0));
@@ -166,16 +166,16 @@ fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     };
     let (none, plain) = (with(Mode::Occurrence, 0.0), with(Mode::Nearest, 0.1));
     assert!(none.image == plain.image && none.field == plain.field && none.report.levels == plain.report.levels);
-    // Test up to 0.1; there nearly all patches are used, and larger weights only permute them.
+    // Test weights up to 0.1, at which nearly all patches are used; larger weights only permute them.
     let runs = [0.0, 0.003, 0.01, 0.1].map(|weight| with(Mode::Occurrence, weight));
     let usage = runs.each_ref().map(|run| run.report.usage);
     assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
     assert!(usage[3].used > 0.95, "{usage:?}");
-    // The penalty costs similarity, which the energy reports; the penalty itself is not part of it. (At 0, fewer
-    // patches are searched again.)
+    // The penalty costs similarity, which the energy reports; the penalty itself is not part of the energy. (The run
+    // with weight 0 is left out, because it rematches fewer patches in each iteration.)
     let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
     assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
-    // The largest valid weight, and invalid ones.
+    // The largest valid weight yields finite colours, and invalid weights are errors.
     assert_eq!(with(Mode::Occurrence, 10.0).image.count_non_finite(), 0);
     for weight in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.1, 10.1] {
         let params = Params { occurrence: weight, ..Params::default() };
@@ -200,7 +200,8 @@ fn energy_per_iteration_falls_for_nearest_patches() {
 fn masks_keep_patches_out_and_pixels_unchanged() {
     let (a, b) = (scene(64, 48, 30.0, 22.0, 15.0), scene(64, 48, 34.0, 25.0, 15.0));
     let mut art = artwork(&a);
-    // Poison and mask the left third of the exemplar, and synthesise only the right half of the target.
+    // Fill the left third of the exemplar with a colour that must not appear, mask it, and synthesise only the right
+    // half of the target.
     for y in 0..48 {
         for x in 0..20 {
             art.pixel_mut(x, y).copy_from_slice(&[0.0, 10.0, 0.0]);
@@ -238,7 +239,8 @@ fn extremes_have_an_answer() {
     };
     for mode in MODES {
         let params = Params { mode, ..Params::default() };
-        // Targets and exemplars of one pixel, thinner than a patch, and much larger or smaller than the other.
+        // Targets and exemplars may have one pixel, be thinner than a patch, and be much larger or smaller than the
+        // other.
         for (w, h) in [(1, 1), (1, 40), (3, 2), (5, 5), (150, 4)] {
             let b = scene(w, h, 2.0, 2.0, 3.0);
             finite(stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap());
@@ -250,12 +252,12 @@ fn extremes_have_an_answer() {
         let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());
         let same = output.image.data.iter().zip(&art.data).filter(|(x, y)| x == y).count();
         assert!(mode == Mode::Uniform || same * 10 > art.data.len() * 8, "{mode:?} {same}");
-        // Saturated guides, with every pixel far beyond white.
+        // Test saturated guides, with every pixel far beyond white.
         let mut bright = a.clone();
         bright.data.iter_mut().for_each(|v| *v = 1e9 * (1.0 + *v));
         let output = finite(stylise(&input(&art, &[guide(&bright, &bright)]), &params).unwrap());
         assert!(mode == Mode::LitSphere || output.image == art, "{mode:?}");
-        // Zero weight, and extreme weights.
+        // Test zero weight and extreme weights.
         let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
         finite(stylise(&input(&art, &guides), &params).unwrap());
         for (guide_weight, coarse_guides) in [(0.0, 4.0), (1e6, 1000.0), (2.0, 0.0)] {
@@ -263,7 +265,7 @@ fn extremes_have_an_answer() {
             finite(stylise(&input(&art, &[guide(&a, &a)]), &params).unwrap());
         }
     }
-    // Exemplar and target of very different sizes, and constant guides.
+    // Test exemplar and target of very different sizes, and constant guides.
     let (small, large) = (scene(9, 12, 4.0, 5.0, 3.0), scene(310, 260, 150.0, 120.0, 90.0));
     let flat = |w, h, v| Image::from_fn(w, h, |_, _| [v]).unwrap();
     let fast = Params::fast();
@@ -278,7 +280,7 @@ fn extremes_have_an_answer() {
         finite(stylise(&input(&art, &[guide(&a, &b)]), &table).unwrap());
         finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &table).unwrap());
     }
-    // Forty channels.
+    // Test guides of forty channels.
     let wide =
         |s: f32| Image::from_fn(33, 21, |x, y| std::array::from_fn::<f32, 40, _>(|c| ((x * c + y) % 9) as f32 * s));
     let (wa, wb) = (wide(0.1).unwrap(), wide(0.09).unwrap());
@@ -298,7 +300,7 @@ fn values_that_are_no_numbers_are_left_out_and_counted() {
     let output = stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap();
     assert_eq!((output.report.broken_source, output.report.broken_target), (2, 1));
     assert_eq!(output.image.count_non_finite(), 0);
-    // A target without valid guides is painted; an exemplar without valid pixels cannot be painted from.
+    // A target without valid guides is still painted; an exemplar without valid pixels is an error.
     let lost = Image::from_fn(40, 30, |_, _| [f32::NAN; 3]).unwrap();
     let output = stylise(&input(&art, &[guide(&a, &lost)]), &Params::default()).unwrap();
     assert_eq!((output.report.broken_target, output.image.count_non_finite()), (40 * 30, 0));
@@ -385,7 +387,7 @@ fn a_cancel_is_answered_soon_wherever_it_comes() {
             assert_eq!(run.join().unwrap().unwrap_err().kind, ErrorKind::Cancelled);
             asked.elapsed()
         });
-        // The documented limit of 100 ms applies to an otherwise idle machine.
+        // The documented limit of 100 ms applies to an otherwise idle machine; allow more here.
         assert!(waited.as_millis() < 1000, "{waited:?} after {after}");
     }
 }
@@ -449,12 +451,21 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
         assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
 
-        // The next update completes a cancelled one.
+        // An update that was cancelled is completed by the next update.
         let stopped = Monitor::default();
         stopped.cancel();
         assert_eq!(late.repaint(&art, &changed, stopped.job()).unwrap_err().kind, ErrorKind::Cancelled);
         let nothing = Image::new(80, 60, 1).unwrap();
         assert!(late.repaint(&art, &nothing, Monitor::default().job()).unwrap() == after);
+
+        // Paint that is not finite counts as black.
+        let (mut bad, mut black) = (art.try_clone().unwrap(), art.try_clone().unwrap());
+        for (i, _) in changed.data.iter().enumerate().filter(|(_, c)| **c > 0.5) {
+            bad.data[3 * i..3 * i + 3].copy_from_slice(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
+            black.data[3 * i..3 * i + 3].fill(0.0);
+        }
+        let picture = study.repaint(&bad, &changed, Monitor::default().job()).unwrap();
+        assert!(picture == late.repaint(&black, &changed, Monitor::default().job()).unwrap());
     }
 }
 
@@ -465,7 +476,7 @@ fn paint_follows_its_object_in_proportion_to_the_coherence() {
     let art = artwork(&a);
     let first = stylise(&input(&art, &[guide(&a, &now)]), &Params::default()).unwrap();
     let motion = Image::from_fn(90, 70, |_, _| [-6.0, 3.0]).unwrap();
-    // The share of the ball with unchanged paint.
+    // Returns the share of the ball whose paint moved along with the ball, and the new frame.
     let same = |coherence: f32, preview: bool, seed: u64| {
         let params = Params { coherence, preview, seed, ..Params::default() };
         let start = if preview { stylise(&input(&art, &[guide(&a, &now)]), &params).unwrap() } else { first.clone() };
@@ -481,7 +492,7 @@ fn paint_follows_its_object_in_proportion_to_the_coherence() {
     assert!(all > 0.9 && all > boiled + 0.05 && boiled > none + 0.05, "{all} {boiled} {none}");
     assert_eq!(same(1.0, true, 2).1.width, 45);
 
-    // Without knowledge of the previous frame, the result is as good as new and free of NaN.
+    // If no point was visible in the previous frame, the result is computed anew and is free of NaN.
     let hidden = Image::from_fn(90, 70, |_, _| [f32::NAN; 2]).unwrap();
     let guides = [guide(&a, &next)];
     let moved = Input { previous: Some(&first.field), motion: Some(&hidden), ..input(&art, &guides) };

@@ -1,5 +1,5 @@
-//! Checks what a run needs before it begins: the settings of its stages, its inputs, and the earlier results that it
-//! uses.
+//! Checks before a run that everything it needs exists and is valid: the settings of its stages, its inputs, and the
+//! earlier results that it uses.
 
 use super::{Params, Stage, Transfer};
 use crate::error::{Error, ErrorKind, Result, check_range};
@@ -30,7 +30,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// If the run includes [`Stage::Emission`], checks that the scene has the surface to be lit.
+    /// If the run includes [`Stage::Emission`], checks that the scene has the surface that receives the lights.
     pub(super) fn check_surface(&self, from: Stage, to: Stage) -> Result<()> {
         match &self.input.scene {
             Some(scene) if (from..=to).contains(&Stage::Emission) => self.find_surface(scene).map(drop),
@@ -38,8 +38,9 @@ impl Transfer {
         }
     }
 
-    /// The plane of the scene that receives the lights. Parts of a ceiling that lie in one plane, as between beams, are
-    /// one surface and share one pattern, whichever objects they belong to. Parts in other planes are left as they are.
+    /// Finds the plane of the scene that receives the lights. Parts of a ceiling that lie in one plane, such as the
+    /// parts between beams, form one surface and share one pattern, even if they belong to different objects. Parts in
+    /// other planes get no lights.
     pub(super) fn find_surface(&self, scene: &Scene) -> Result<Surface> {
         match self.input.triangles[..] {
             [] => surface::find(scene, &self.input.surface),
@@ -76,7 +77,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// The stages whose results a stage needs. Features do not need a view.
+    /// The stages whose results a stage needs. Features use a view if there is one, but do not need it.
     fn stages_before(&self, stage: Stage) -> &'static [Stage] {
         match stage {
             Stage::View | Stage::Features => &[],
@@ -118,7 +119,7 @@ impl Params {
     }
 }
 
-/// Checks the rectangles without lamps of [`super::Input`].
+/// Checks the keep-out rectangles of [`super::Input::zones`].
 pub fn check_zones(zones: &[DVec4]) -> Result<()> {
     match zones.iter().position(|z| !(z.is_finite() && z.x <= z.z && z.y <= z.w)) {
         Some(i) => {
@@ -130,12 +131,12 @@ pub fn check_zones(zones: &[DVec4]) -> Result<()> {
     }
 }
 
-/// The error for a missing input or result; `what` tells how to provide it.
+/// Makes the error for a missing input or result; `what` tells how to provide it.
 pub(super) fn missing(what: &str) -> Error {
     Error::new(ErrorKind::InvalidOperation, format!("{what} first"))
 }
 
-/// The value, or an error if it is missing; `what` tells how to provide it.
+/// Returns the value, or an error if it is missing; `what` tells how to provide it.
 pub(super) fn need<'a, T>(value: &'a Option<T>, what: &str) -> Result<&'a T> {
     value.as_ref().ok_or_else(|| missing(what))
 }

@@ -1,23 +1,25 @@
-//! Estimates the values that a photo's clipped pixels had before they were clipped.
+//! Estimates the values of a photo's clipped pixels before clipping.
 //!
-//! A plane is lit by a mixture of two lights: that of its lamps and that which the room reflects. Its colours therefore
-//! lie roughly on a line. The unclipped pixels determine this line, and a clipped channel follows from an unclipped
-//! one. This is extrapolation, so the estimate never exceeds what the mean ratio of the channels gives; it is white at
-//! least. Where all channels are clipped, nothing more is known.
+//! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of its pixels
+//! therefore lie roughly on a line. The unclipped pixels determine this line, and a clipped channel follows from an
+//! unclipped one. Because this is extrapolation, the estimate is limited to the range from white to the value that the
+//! mean ratio of the channels gives. If all channels are clipped, nothing more is known than that they are at least
+//! white.
 
 use glam::{BVec3, DVec3, Vec3};
 
-/// Value from which on a channel of the photo itself counts as clipped: the two largest 8-bit values, decoded, do. In
-/// an unwarped photo, whose pixels are means of several, clipping shows at lower values already
+/// Minimum value at which a channel of the photo itself counts as clipped; the two largest 8-bit values reach it after
+/// decoding. In an unwarped photo, whose pixels are means of several photo pixels, clipping begins at lower values
 /// (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
-/// Minimum share of the pixels that must be unclipped in two channels for their line to be known.
+/// A line is fitted only if at least this share of the pixels is unclipped in both channels.
 const LEAST_WHOLE: f64 = 0.02;
-/// Relative variation of a plane's brightness up to which the line is drawn mainly towards black.
+/// Relative standard deviation of a plane's brightness below which the regularisation dominates: the fitted line then
+/// runs nearly through black.
 const EVEN: f64 = 0.05;
 
-/// The mean colour of some pixels, and for each channel the share of pixels that are only known to be white at least.
-/// If the pixels are of one plane, clipped values are replaced by estimates. `None` without pixels.
+/// Returns the mean colour of some pixels, and for each channel the share of pixels in which the channel is clipped
+/// and its value was not estimated. Clipped values are estimated only if `one_plane` is true. `None` without pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;
@@ -54,12 +56,12 @@ fn clipped(rgb: Vec3) -> BVec3 {
     rgb.cmpge(Vec3::splat(CLIPPED))
 }
 
-/// Two channels that differ.
+/// All ordered pairs of different channels.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..9).map(|i| (i % 3, i / 3)).filter(|(x, y)| x != y)
 }
 
-/// Sums over the pixels that are unclipped in two channels.
+/// Sums over the pixels that are unclipped in two channels x and y.
 #[derive(Clone, Copy, Default)]
 struct Moments {
     n: f64,
@@ -69,7 +71,7 @@ struct Moments {
     xy: f64,
 }
 
-/// The line by which one channel follows from another.
+/// The line that predicts one channel from another: `start + slope * x`, at most `ratio * x`.
 #[derive(Clone, Copy)]
 struct Line {
     start: f64,
@@ -93,7 +95,8 @@ impl Moments {
         self.xy += x * y;
     }
 
-    /// The line of least squares, drawn towards the line through black. `None` for fewer than `least` pixels.
+    /// Fits the line by least squares, regularised towards the line through black. `None` for fewer than `least`
+    /// pixels.
     fn line(&self, least: f64) -> Option<Line> {
         let (x, y) = (self.x / self.n, self.y / self.n);
         if self.n < least || !(x > 0.0) {

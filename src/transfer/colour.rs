@@ -1,8 +1,8 @@
-//! The target colour that follows from the photo.
+//! Computes the target colour of the surface from the photo.
 //!
-//! A clipped channel of a pixel is known only to be at least white. Often its value follows from the channels that are
-//! not clipped ([`clipping`]). If it does not, it counts as white. A channel that is unknown in most pixels gets a
-//! lower bound as its target instead of an exact value.
+//! A clipped channel of a pixel is known only to be at least white. Often its value follows from the unclipped
+//! channels ([`clipping`]); otherwise it counts as white. If a channel is unknown in most pixels, its target is a
+//! lower bound instead of an exact value.
 
 use super::clipping;
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ use crate::relight::Constraint;
 use crate::segment;
 use glam::{DVec3, Vec3};
 
-/// Which part of the photo the target surface is to look like (the paper's two variants, its Table 1).
+/// The part of the photo whose colour the target surface should have (the paper's two variants, its Table 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetColour {
     /// The plane that carries the lights, without the lights and their halo.
@@ -21,23 +21,23 @@ pub enum TargetColour {
     WholeImage,
 }
 
-/// The target that follows from the photo.
+/// The target colour, computed from the photo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Target {
     /// Mean linear colour, relative to the photo's white.
     pub colour: Vec3,
-    /// For each channel, whether the colour is its exact target or a lower bound.
+    /// For each channel, whether `colour` is an exact target or a lower bound.
     pub constraint: [Constraint; 3],
 }
 
 /// Width of the halo of glare around a lamp, as a share of the photo's longer side.
 const HALO: f32 = 0.01;
-/// If any value of a photo exceeds this, the photo goes beyond white (1), so it is not clipped at white.
+/// A photo with a value above this has a range beyond white (1), so it is not clipped at white.
 const WHITE: f32 = 1.001;
-/// Share of pixels with an unknown value above which a channel's target is a lower bound.
+/// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
 const MOSTLY: f64 = 0.5;
 
-/// The mean colour of the chosen part of the photo.
+/// Computes the mean colour of the chosen part of the photo.
 pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image, job: Job) -> Result<Target> {
     photo.check_same_size("the photo", plane, "the plane's mask")?;
     photo.check_same_size("the photo", lights, "the lights' mask")?;
@@ -59,12 +59,12 @@ pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: 
     })
 }
 
-/// Mean over the finite pixels that are selected.
+/// The mean colour of the selected pixels, without pixels that are not finite.
 fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<Target> {
     let colours = photo.data.chunks_exact(photo.channels).map(|p| Vec3::new(p[0], p[1], p[2])).enumerate();
     let selected = &selected;
     let pixels = colours.filter(move |(i, rgb)| selected(*i) && rgb.is_finite()).map(|(_, rgb)| rgb.max(Vec3::ZERO));
-    // A photo with a range beyond white is not clipped there.
+    // A photo with values above white is not clipped at white.
     if photo.data.iter().any(|v| *v > WHITE && v.is_finite()) {
         let (mut sum, mut count) = (DVec3::ZERO, 0.0);
         pixels.for_each(|rgb| (sum, count) = (sum + rgb.as_dvec3(), count + 1.0));

@@ -1,20 +1,21 @@
-//! Estimates how far the photo's camera was from the lit plane, from the size of the lamps. A photo alone tells lengths
-//! only up to a factor, but lamps come in few sizes, and cameras are held at few heights.
+//! Estimates the distance of the photo's camera from the lit plane, from the size of the lamps. A photo alone
+//! determines lengths only up to a factor, but lamps come in few sizes, and cameras are held at few heights.
 //!
-//! Applies Bayes' rule to the logarithm of the distance, on a grid. The prior covers rooms and halls. The likelihood of
-//! a lamp's two sides is a mixture of the usual sizes and of any size.
+//! The method applies Bayes' rule to the logarithm of the distance, on a grid. The prior covers rooms and halls. The
+//! likelihood of a lamp's two sides is a mixture of the usual lamp sizes and a broad distribution of all sizes.
 
-/// Range of the distances in the grid, in metres, and their number.
+/// Range of the distances in the grid, in metres, and number of grid points.
 const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
 
-/// Prior of the distance, a mixture of log-normals: weight, median in metres, and standard deviation of the logarithm.
-/// The first is for ceilings of 2.4 to 3.5 m over a camera at 1.2 to 1.7 m, the second for halls. [convention]
+/// Prior of the distance, a mixture of log-normal distributions: weight, median in metres, and standard deviation of
+/// the logarithm. The first is for ceilings of 2.4 to 3.5 m above a camera at 1.2 to 1.7 m, the second for halls.
+/// [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
-/// Usual lamps: the longer and the shorter side in metres, and the probability of this size. They are panels and
-/// troffers that replace tiles of 0.6 m (EN 13964, 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC
-/// 60081). [convention]
+/// Usual lamps: longer and shorter side in metres, and the probability of this size. They are panels and troffers that
+/// replace ceiling tiles of 0.6 m (EN 13964; 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC 60081).
+/// [convention]
 const SIZES: [[f64; 3]; 8] = [
     [0.6, 0.6, 0.18],
     [1.2, 0.6, 0.12],
@@ -27,21 +28,22 @@ const SIZES: [[f64; 3]; 8] = [
 ];
 /// Probability of a lamp of any other size.
 const OTHER: f64 = 0.5;
-/// Range of the sides of lamps of other sizes, in metres; the logarithm of each side is uniformly distributed.
+/// Range of the sides of lamps of other sizes, in metres. The logarithm of each side is uniformly distributed.
 /// [convention]
 const SIDES: [f64; 2] = [0.05, 3.0];
-/// Share of a lamp's side that shines; the rest is its frame. [convention]
+/// Luminous share of a lamp's side; the rest is its frame. [convention]
 const SHINES: f64 = 0.96;
-/// Standard deviation of the logarithm of a measured side: frames, blur, and the view's error. [bench photos:real]
+/// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view.
+/// [bench photos:real]
 const SIDE_ERROR: f64 = 0.07;
 
-/// A distance with its error.
+/// A distance with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// Distance in metres; where it is estimated, the median of the posterior.
+    /// The distance in metres; if it is an estimate, the median of the posterior.
     pub metres: f64,
-    /// Standard deviation of the logarithm of the distance, about its relative error; 0 where the caller sets the
-    /// distance, or a length from which it follows.
+    /// Standard deviation of the logarithm of the distance, about its relative error; 0 if the caller has set the
+    /// distance, or a length that determines it.
     pub error: f64,
 }
 
@@ -51,8 +53,8 @@ impl Distance {
         Self { metres, error: 0.0 }
     }
 
-    /// The distance estimated from the sides of the median lamp, the longer first, in units of the distance. Sides of
-    /// 0: there is no lamp, or none that is a rectangle.
+    /// Estimates the distance from the sides of the median lamp, the longer side first. The sides are given as
+    /// multiples of the distance; sides of 0 mean that there is no lamp, or no rectangular one.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);
         let step = (high - low) / STEPS as f64;
@@ -74,7 +76,7 @@ fn prior(log_metres: f64) -> f64 {
     PRIOR.iter().map(|[weight, median, deviation]| weight * normal(log_metres - median.ln(), *deviation)).sum()
 }
 
-/// Probability density of a lamp's two sides at a distance, over their logarithms.
+/// Probability density of the logarithms of a lamp's two sides, if the plane is at the given distance.
 fn likelihood(log_metres: f64, sides: [f64; 2]) -> f64 {
     let any = OTHER / (SIDES[1] / SIDES[0]).ln().powi(2);
     if !sides.iter().all(|side| side.is_finite() && *side > 0.0) {
@@ -96,8 +98,8 @@ fn normal(x: f64, deviation: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The error stays a part of the prior's, since usual sizes have equal shapes: 1.2 m x 0.6 m at 2.2 m looks as 0.6 m x 0.3 m
-    /// at 1.1 m.
+    /// The estimate keeps a part of the prior's error, because several usual sizes have equal proportions: a lamp of
+    /// 1.2 m x 0.6 m at 2.2 m looks like a lamp of 0.6 m x 0.3 m at 1.1 m.
     #[test]
     fn a_usual_lamp_tells_the_distance() {
         for (long, short) in [(0.6, 0.6), (1.2, 0.6), (1.2, 0.3)] {
@@ -120,7 +122,7 @@ mod tests {
         }
     }
 
-    /// The stated error covers: lamps and rooms drawn from the model itself, whose truth is known.
+    /// The stated error must cover the true error of lamps and rooms that are drawn from the model itself.
     #[test]
     fn stated_errors_cover_what_the_model_draws() {
         let mut rng = crate::rng::Rng::new(5, &[]);

@@ -1,4 +1,4 @@
-//! The parts of the surface's rectangle where lamps may lie.
+//! Finds the parts of the surface's rectangle in which lamps may lie.
 
 use crate::emission::Placement;
 use crate::error::Result;
@@ -9,13 +9,13 @@ use crate::scene::surface::Surface;
 use crate::segment;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
-/// Texels by which triangles are widened, so that none is lost between two of them.
+/// Width in texels by which triangles are enlarged, so that no texel is lost between two triangles.
 const CRACK: f64 = 1e-3;
-/// A surface that covers this share of its rectangle covers all of it.
+/// A surface whose area is at least this share of its rectangle's area counts as the full rectangle.
 const FULL: f32 = 0.9999;
 
-/// The placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if all texels are
-/// open. `untouched` is the surface before it was turned; the zones are given along its axes.
+/// Computes the placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if
+/// light is allowed at all texels. `untouched` is the surface before rotation; the zones are given along its axes.
 pub(super) fn of(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),
@@ -32,11 +32,12 @@ pub(super) fn of(
     let (width, height) = (size.x as usize, size.y as usize);
     let density = size.as_dvec2() / surface.size.as_dvec2();
 
-    // Find the texels that the surface covers. If its edge cuts lamps, keep every texel that may be seen in part.
+    // Find the texels that the surface covers. If its edge may cut lamps, keep every texel that may be visible in
+    // part.
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Mark where lamps may not lie: in zones and, with a margin, off the surface. Then grow these parts by the margin.
+    // Mark the places without lamps: zones and, with a margin, places off the surface. Then dilate them by the margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -62,14 +63,14 @@ pub(super) fn of(
     Ok(Some(ground))
 }
 
-/// Converts a point of one surface, in metres from its corner, to the same coordinates of another surface in its plane.
+/// Converts a point on one surface, in metres from its corner, to coordinates of another surface in the same plane.
 fn on_other(from: &Surface, to: &Surface, at: DVec2) -> DVec2 {
     let point = from.origin.as_dvec3() + from.u_axis.as_dvec3() * at.x + from.v_axis.as_dvec3() * at.y;
     let offset = point - to.origin.as_dvec3();
     DVec2::new(offset.dot(to.u_axis.as_dvec3()), offset.dot(to.v_axis.as_dvec3()))
 }
 
-/// The texels whose centre lies in a triangle of the surface, or within `slack` texels of it.
+/// Whether the centre of each texel lies in a triangle of the surface, or within `slack` texels of one.
 fn coverage(scene: &Scene, surface: &Surface, size: UVec2, slack: f64) -> Result<Vec<bool>> {
     let (width, height) = (size.x as usize, size.y as usize);
     let mut covered = try_vec(width * height, false)?;
@@ -82,7 +83,7 @@ fn coverage(scene: &Scene, surface: &Surface, size: UVec2, slack: f64) -> Result
         if (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) < 0.0 {
             corners.swap(1, 2);
         }
-        // Distances to the three edges, positive inside.
+        // Compute the edges; a point inside has positive signed distances from all three.
         let edges = [0, 1, 2].map(|i| {
             let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
             (corners[i], along)
@@ -109,7 +110,7 @@ mod tests {
     use crate::scene::{Mesh, surface};
     use glam::Vec3;
 
-    /// An L of 6 × 4 m less its corner of 2 × 2 m, seen from below, beneath it a floor.
+    /// An L-shaped ceiling of 6 × 4 m without a corner of 2 × 2 m, and a floor below it.
     fn l_shaped() -> (Scene, Surface) {
         let corners = [[0., 0.], [6., 0.], [6., 2.], [4., 2.], [4., 4.], [0., 4.]];
         let ceiling = Mesh {
@@ -140,10 +141,11 @@ mod tests {
         let of = |margin: f64, zones: &[DVec4]| {
             of(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
         };
-        // 4 of 24 m², less the texel's breadth along its two inner edges.
+        // 4 of 24 m² are hidden, minus a strip of one texel along the two inner edges.
         let cut = of(-1.0, &[]);
         assert!((share(&cut, Placement::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Placement::KeepOut) == 0.0);
-        // With a margin of 0.3 m what is open is the L shrunk by it, whose inner corner is a quarter of a disc.
+        // With a margin of 0.3 m, the open part is the L shrunk by the margin, with a quarter of a disc at the inner
+        // corner.
         let kept = of(0.3, &[]);
         let exact = 5.4 * 3.4 - (2.0 * 2.0 + std::f64::consts::FRAC_PI_4 * 0.09 - 0.09);
         assert!(
@@ -151,7 +153,7 @@ mod tests {
             "{}",
             share(&kept, Placement::Open) * 24.0
         );
-        // A zone of 2 × 1 m within the L.
+        // A zone of 2 × 1 m inside the L.
         let zone = of(-1.0, &[DVec4::new(1.0, 2.5, 3.0, 3.5)]);
         assert!((share(&zone, Placement::KeepOut) * 24.0 - 2.0).abs() < 0.05);
         assert_eq!(zone[300 * 600 + 200], Placement::KeepOut);
@@ -175,7 +177,8 @@ mod tests {
 
     #[test]
     fn parts_of_a_ceiling_between_beams_share_one_pattern() {
-        // Two slabs of one material, 2.5 m wide each, with a beam of 1 m between them; the beam's underside is lower.
+        // Two slabs of one material, each 2.5 m wide, with a beam of 1 m between them. The underside of the beam is
+        // lower.
         let slab = |name: &str, x: f32, width: f32, y: f32, material: usize| Mesh {
             name: name.into(),
             material,
@@ -197,11 +200,12 @@ mod tests {
             ..Scene::default()
         };
         let by_name = surface::find(&scene, "Plaster").unwrap();
-        // By triangles, the beam's among them: that is another plane, and left out.
+        // Select the surface by triangles, including those of the beam: the beam lies in another plane and must be
+        // left out.
         let listed: Vec<(usize, usize)> = (0..3).flat_map(|mesh| [(mesh, 0), (mesh, 1)]).collect();
         assert_eq!(surface::from_triangles(&scene, &listed).unwrap(), by_name);
         assert_eq!(by_name.triangles, [(0, 0), (0, 1), (1, 0), (1, 1)]);
-        // One rectangle, so one pattern, over both; where the beam is nothing is seen.
+        // Both slabs must share one rectangle, and so one pattern. The beam's part of the rectangle is hidden.
         assert!((by_name.size.element_product() - 24.0).abs() < 1e-3, "{}", by_name.size);
         let size = UVec2::new(600, 400);
         let ground = of(&scene, (&by_name, &by_name), -1.0, &[], size, Monitor::default().job()).unwrap().unwrap();

@@ -1,9 +1,9 @@
 //! The lighting transfer: takes a photo, a few strokes and a 3D scene, and lights the scene as in the photo
 //! ("Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization").
 //!
-//! Runs the stages in order and passes data between them; the stages do not know each other. The caller can read every
-//! intermediate result, replace it, and resume the run at any stage. A better depth map, a hand-drawn mask or known
-//! vanishing points can thus replace the result of a stage.
+//! A transfer runs the stages in order and passes data between them; the stages do not depend on each other's code.
+//! The caller can read and replace every intermediate result, and resume the run at any stage. A better depth map, a
+//! hand-drawn mask or known vanishing points can thus replace the result of a stage.
 
 mod check;
 mod clipping;
@@ -39,25 +39,25 @@ use glam::{DVec4, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The steps of the transfer, in the order they run.
+/// The stages of the transfer, in the order in which they run.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// Lines, vanishing points and the photo's camera.
+    /// Finds lines, vanishing points and the photo's camera.
     View = 0,
-    /// Ten channels per pixel.
+    /// Computes ten feature channels per pixel.
     Features = 1,
-    /// The mask of the plane that carries the lights.
+    /// Finds the mask of the plane that carries the lights.
     Plane = 2,
-    /// The mask of the lights on this plane.
+    /// Finds the mask of the lights on this plane.
     Lights = 3,
-    /// The plane seen straight on.
+    /// Unwarps the plane to a fronto-parallel image.
     Unwarp = 4,
-    /// The emissive texture, laid onto the scene's surface.
+    /// Synthesises the emissive texture, and places it on the scene's surface.
     Emission = 5,
-    /// The colour and intensity of the emission.
+    /// Solves for the colour and the intensity of the emission.
     Relight = 6,
-    /// The picture.
+    /// Renders the picture.
     Render = 7,
 }
 
@@ -72,28 +72,28 @@ pub const STAGES: [Stage; 8] = [
     Stage::Render,
 ];
 
-/// Share of the whole run's time that each stage is expected to take, for the progress bar only.
+/// Expected share of each stage in the time of a whole run, for the progress bar only.
 const WEIGHTS: [f64; 8] = [0.06, 0.06, 0.03, 0.03, 0.06, 0.12, 0.14, 0.5];
 
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     /// Linear RGB, 1 = display white.
     pub photo: Option<Arc<Image>>,
-    /// Focal length in pixels as the photo's file states it, and its standard deviation.
+    /// Focal length in pixels from the metadata of the photo's file, and its standard deviation.
     pub photo_focal: Option<[f64; 2]>,
-    /// Depth of the photo, if the caller has it.
+    /// Depth map of the photo, if the caller has one.
     pub depth: Option<(Arc<Image>, DepthKind)>,
     pub strokes: StrokeSet,
-    /// An emissive texture to use as it is, stretched over the surface, instead of one synthesised from the photo.
+    /// An emissive texture to stretch over the surface as it is, instead of one synthesised from the photo.
     pub texture: Option<Arc<Image>>,
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
-    /// The (mesh, triangle) pairs that receive the lights instead of `surface`, if there are any.
+    /// The (mesh, triangle) pairs that receive the lights. If the list is not empty, it is used instead of `surface`.
     pub triangles: Vec<(usize, usize)>,
-    /// Rectangles of the surface without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
+    /// Keep-out rectangles of the surface, without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
     pub zones: Vec<DVec4>,
-    /// The camera of the picture. If absent, the scene's first camera is used; if the scene has none, a camera is
+    /// The camera of the picture. If absent, the scene's first camera is used; if the scene has no camera, one is
     /// chosen.
     pub camera: Option<Camera>,
 }
@@ -103,21 +103,22 @@ pub struct Params {
     pub rectify: rectify::Params,
     pub unwarp: rectify::UnwarpParams,
     pub features: features::Params,
-    /// First phase: the plane.
+    /// Settings of the first phase of segmentation, which finds the plane.
     pub plane: segment::Params,
-    /// Second phase: the lights on this plane.
+    /// Settings of the second phase of segmentation, which finds the lights on this plane.
     pub lights: segment::Params,
-    /// The transfer sets `width`, `height`, `scale` and `offset`, from the surface's size and the three settings below.
+    /// Settings of the texture. The transfer sets `width`, `height`, `scale` and `offset`, from the surface's size,
+    /// `pattern`, `plane_distance` and `max_texels`.
     pub emission: emission::Params,
-    /// How the pattern lies on the surface.
+    /// Size, rotation, offset and margin of the pattern on the surface.
     pub pattern: Pattern,
-    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`. It sets the size of the pattern
-    /// with [`Scale::Distance`]. 0: estimated from the size of the lamps.
+    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`. With [`Scale::Distance`], it
+    /// determines the size of the pattern. 0: estimated from the size of the lamps.
     pub plane_distance: f64,
     /// Longest side of the emissive texture in texels, in `[1, 16384]`.
     pub max_texels: usize,
     pub target: TargetColour,
-    /// Luminance in cd/m² that the photo's white stands for, in `[1e-6, 1e9]`.
+    /// Luminance of the photo's white in cd/m², in `[1e-6, 1e9]`.
     pub white_luminance: f32,
     pub relight: relight::Params,
     pub render: render::Params,
@@ -157,30 +158,31 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view that was found from lines alone, if the lamps have led to another one.
+    /// The view found from lines alone, if the lamps have led to a different `view`.
     pub view_by_lines: Option<Arc<View>>,
-    /// Whether the caller has set the view; such a view is not corrected.
+    /// Whether the caller has set the view. Such a view is not corrected.
     pub view_is_given: bool,
     pub features: Option<Arc<Features>>,
-    /// Lamps that were found beyond the plane as it was first laid out. The room was enlarged to hold them, and they
-    /// serve as examples of the plane.
+    /// Lamps found beyond the plane of the first room layout. The room was enlarged to contain them, and they serve as
+    /// examples of the plane.
     pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
     pub emission: Option<Arc<Emission>>,
-    /// The distance of the photo's camera from its plane that the size of the pattern implies; absent for a given
-    /// texture.
+    /// The distance of the photo's camera from its plane that corresponds to the size of the pattern; absent if the
+    /// caller supplies the texture.
     pub distance: Option<Distance>,
-    /// The texture on the surface at the photo's own strength: `white_luminance` times its linear values.
+    /// The scene with the texture on its surface before relighting: the emission is `white_luminance` times the
+    /// texture's values.
     pub unsolved: Option<Arc<LitScene>>,
     /// Mean colour that the surface should have, relative to the photo's white.
     pub target: Option<Vec3>,
     pub solution: Option<Solution>,
-    /// The scene with the solved emission. It also has a chosen camera if the scene had none.
+    /// The scene with the solved emission. If the scene had no camera, it also has a chosen one.
     pub lit: Option<Arc<LitScene>>,
     pub film: Option<Arc<Film>>,
-    /// Seconds each stage took when it last ran.
+    /// Seconds that each stage took in its latest run.
     pub seconds: [f64; STAGES.len()],
 }
 
@@ -193,11 +195,11 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Runs the stages `from..=to`. The earlier results that they need must exist, from an earlier run or from the
-    /// caller.
+    /// Runs the stages `from..=to`. The earlier results that these stages need must exist, from an earlier run or from
+    /// the caller.
     ///
-    /// `publish` is called with the results whenever a stage ends, and while the picture is being rendered. After a
-    /// cancellation or an error, the results hold all that was finished.
+    /// Calls `publish` with the results whenever a stage ends, and while the picture is being rendered. After a
+    /// cancellation or an error, the results contain everything that was finished.
     pub fn run(&mut self, from: Stage, to: Stage, job: Job, mut publish: impl FnMut(&Results)) -> Result<()> {
         self.check(from, to)?;
         self.check_surface(from, to)?;
@@ -240,7 +242,8 @@ impl Transfer {
         .map_err(|e| self.with_likely_unit(stage, e).context(format_args!("stage {stage:?}")))
     }
 
-    /// If a stage fails on a scene of implausible size, adds this size to the error, because it is the likely cause.
+    /// If a stage fails on a scene of implausible size, mentions the size in the error, because it is the likely
+    /// cause.
     fn with_likely_unit(&self, stage: Stage, error: Error) -> Error {
         let is_cause = stage >= Stage::Emission && error.kind != ErrorKind::Cancelled;
         match self.input.scene.as_ref().filter(|_| is_cause).and_then(|scene| scene.implausible_size()) {

@@ -1,4 +1,4 @@
-//! How the pattern of lights lies on the surface: its size, its rotation, its offset, and where it is left out.
+//! The pattern of lights on the surface: size, rotation, offset, and margins without lamps.
 
 use super::distance::Distance;
 use crate::emission::{self, Measure};
@@ -8,45 +8,47 @@ use crate::scene::surface::Surface;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// What sets the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
+/// The quantity that determines the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// By the distance of the photo's camera from the lit plane: [`super::Params::plane_distance`], or an estimate from
-    /// the lamps.
+    /// The distance of the photo's camera from the lit plane: [`super::Params::plane_distance`] or, if that is 0, an
+    /// estimate from the lamps.
     Distance,
-    /// By the length of a lamp's longer side, the median over the photo's lamps.
+    /// The length of a lamp's longer side, the median over the photo's lamps.
     Lamp(f64),
-    /// By the shorter period of the lamps' lattice; without a lattice, by the median distance from a lamp to its
-    /// nearest neighbour.
+    /// The shorter period of the lamps' lattice; without a lattice, the median distance from a lamp to its nearest
+    /// neighbour.
     Spacing(f64),
-    /// The surface is as many lamps wide as the photo's plane.
+    /// The surface's width: it holds as many lamps side by side as the photo's plane.
     Across,
 }
 
-/// Minimum share of its bounding box that a rectangular lamp covers: halfway between a disc and a full box.
-/// [convention]
+/// A lamp counts as rectangular if it covers more than this share of its bounding box: halfway between a disc and a
+/// full box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// Ratio of the surface's length to that of the plane in the photo, above which it is an error that the texels cannot
-/// show the pattern of the plane: a hall of 600 m beside 6 m of a ceiling. [convention]
+/// A pattern is refused as too small for the texels if it exceeds this limit and falls below `MIN_SHOWN_TEXELS`. The
+/// limit is the maximum ratio of the surface's length to the length of the plane in the photo: for example a hall of
+/// 600 m and 6 m of a ceiling. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
-/// Minimum number of texels along the plane in the photo for its pattern to show: two lamps with a gap each.
-/// [convention]
+/// Minimum number of texels along the plane in the photo at which its pattern is visible: two lamps with a gap beside
+/// each. [convention]
 const MIN_SHOWN_TEXELS: f64 = 4.0;
 
-/// How the pattern lies on the surface.
+/// Size, rotation, offset and margin of the pattern on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`; 0: the size of an unwarped pixel, or the least size that `max_texels` allows.
+    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel, or the minimum size that `max_texels`
+    /// allows.
     pub texel_size: f64,
-    /// Turn of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
+    /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,
     /// Shift of the pattern along its own axes in metres, each in `[-1e6, 1e6]`.
     pub offset: DVec2,
-    /// Minimum distance in metres of lamps from the surface's edge and from the zones of the input, in `[-1, 1e6]`;
-    /// lamps that are nearer are left out. Below 0 the surface's edge cuts lamps.
+    /// Minimum distance in metres of lamps from the surface's edge and from the zones of the input, in `[-1, 1e6]`.
+    /// Closer lamps are left out. If negative, the surface's edge cuts lamps instead.
     pub margin: f64,
 }
 
@@ -56,11 +58,11 @@ impl Default for Pattern {
     }
 }
 
-/// The size of an unwarped pixel on the surface.
+/// The size of the pattern, expressed by an unwarped pixel.
 pub(super) struct Sizing {
     /// Metres per unwarped pixel.
     pub pixel: f64,
-    /// The distance of the photo's camera from its plane at which the pattern has that size.
+    /// The distance of the photo's camera from its plane that gives the pattern this size.
     pub distance: Distance,
     /// The measurements of the exemplar, if the size depends on them.
     pub measured: Option<Measure>,
@@ -90,8 +92,9 @@ impl Pattern {
         Ok(())
     }
 
-    /// The size of an unwarped pixel on the surface. `pixel` is the size of an unwarped pixel if the photo's camera is
-    /// at distance 1 from its plane. `plane_distance` is the actual distance in metres; 0: estimated from the lamps.
+    /// Computes the size of an unwarped pixel on the surface. `pixel` is its size if the photo's camera is at distance
+    /// 1 from its plane. `plane_distance` is the actual distance in metres; 0 means that it is estimated from the
+    /// lamps.
     pub(super) fn sizing(
         &self,
         (pixel, plane_distance): (f64, f64),
@@ -112,7 +115,7 @@ impl Pattern {
         };
         let distance = match self.scale {
             Scale::Distance => {
-                // Only rectangles are used, because discs come in every size.
+                // Use rectangles only, because discs come in every size.
                 let is_rectangle = measured.lamp_fill > MIN_FILL;
                 Distance::of_lamps(measured.lamp_sides.map(|side| if is_rectangle { side * pixel } else { 0.0 }))
             }
@@ -123,8 +126,8 @@ impl Pattern {
         Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
-    /// Texels of the given size, or as fine as unwarped pixels, but no more than `max_texels` along the longer side.
-    /// The unwarped photo is `pixels` pixels long, each of `pixel` metres.
+    /// Chooses the texels of the surface: of the given size or, without one, of the size of an unwarped pixel; at most
+    /// `max_texels` along the longer side. The unwarped photo is `pixels` pixels long, each of `pixel` metres.
     pub(super) fn texel_grid(
         &self,
         surface: &Surface,
@@ -141,8 +144,8 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // Refuse here what the synthesis would refuse with a message that does not tell the user what is wrong. Also
-        // refuse a pattern that no texel can show, which would take minutes.
+        // Refuse scales here that the synthesis would refuse with a message in which the user cannot see the cause.
+        // Also refuse a pattern too small for the texels, which would take minutes.
         let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
         let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
         if is_lost || !emission::SCALES.contains(&(texel / pixel)) {
@@ -180,20 +183,22 @@ mod tests {
 
     #[test]
     fn a_scene_in_another_unit_is_named_as_the_cause() {
-        // 8 m in millimetres, with pixels of 2 mm, and with pixels so large that the synthesis could scale them.
+        // A surface of 8 m in millimetres, read as 8000 m, with pixels of 2 mm and of 2 cm; the synthesis could scale
+        // only the latter.
         for pixel in [0.002, 0.02] {
             let grid = |size, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).map(|_| ());
             let error = grid(Vec2::new(8000.0, 6000.0), 2048).unwrap_err();
             assert!(error.message.contains("8000 m long") && error.message.contains("unit of the scene"), "{error}");
             assert_eq!(grid(Vec2::new(8.0, 6.0), 2048), Ok(()));
-            // A coarse texture of a usual room is one.
+            // A coarse texture for a room of usual size is allowed.
             assert_eq!(grid(Vec2::new(8.0, 6.0), 8), Ok(()));
         }
     }
 
     #[test]
     fn lamps_keep_their_size_in_metres() {
-        // A pixel is 2 cm: 300 × 150 texels of it, or 100 × 50 of 6 cm, each three pixels wide.
+        // With pixels of 2 cm, the surface has 300 × 150 texels of one pixel, or 100 × 50 texels of three pixels (6
+        // cm).
         let grid = |size, pixel, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).unwrap();
         let fine = grid(Vec2::new(6.0, 3.0), 0.02, 2048);
         assert_eq!((fine.width, fine.height), (300, 150));

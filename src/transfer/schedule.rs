@@ -1,4 +1,4 @@
-//! The luminaire schedule: every lamp of the solved texture as a fixture in the room.
+//! The luminaire schedule: lists every lamp of the solved texture as a fixture in the room.
 
 use super::check::need;
 use super::{LitScene, Results, Transfer};
@@ -9,14 +9,14 @@ use crate::photometry::temperature;
 use glam::{DVec2, Vec3};
 use std::f64::consts::PI;
 
-/// One lamp on the surface.
+/// One lamp on the surface, with its photometric data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fixture {
-    /// Centre in metres.
+    /// Centre in scene coordinates, in metres.
     pub position: Vec3,
-    /// Direction the lamp shines in.
+    /// Unit vector in the main direction of the light.
     pub normal: Vec3,
-    /// Direction of the long axis.
+    /// Unit vector along the lamp's long axis.
     pub axis: Vec3,
     /// Lengths along and across the axis in metres.
     pub size: DVec2,
@@ -24,27 +24,27 @@ pub struct Fixture {
     pub area: f64,
     /// Mean luminance per channel in cd/m².
     pub radiance: Vec3,
-    /// Luminous flux in lumens: a Lambertian lamp sends out π × luminance × area.
+    /// Luminous flux in lumens: π × luminance × area, because the lamp is Lambertian.
     pub flux: f64,
-    /// Correlated colour temperature in kelvin, and distance from the blackbody locus
-    /// ([`crate::photometry::temperature::Temperature`]); 0 for a lamp that is off.
+    /// Correlated colour temperature in kelvin, and Duv, the distance from the blackbody locus
+    /// ([`crate::photometry::temperature::Temperature`]); both 0 for a lamp that is off.
     pub cct: f64,
     pub duv: f64,
-    /// Index of the lamp's kind, as in [`crate::emission::Luminaire`].
+    /// Number of the lamp's kind, as in [`crate::emission::Luminaire`].
     pub kind: u32,
-    /// Corners of the outline in metres.
+    /// Corners of the outline in scene coordinates, in metres.
     pub outline: Vec<Vec3>,
 }
 
 impl Transfer {
-    /// The lamps of the lit scene.
+    /// Lists the lamps of the lit scene. Errors: the emission or the solution is missing.
     pub fn fixtures(&self) -> Result<Vec<Fixture>> {
         self.results.fixtures()
     }
 }
 
 impl Results {
-    /// See [`Transfer::fixtures`].
+    /// Lists the lamps of the lit scene; see [`Transfer::fixtures`].
     pub fn fixtures(&self) -> Result<Vec<Fixture>> {
         let emission = need(&self.emission, "run stage Emission")?;
         let lit = need(&self.lit, "run stage Relight")?;

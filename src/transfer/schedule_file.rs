@@ -1,5 +1,5 @@
-//! The luminaire schedule as a file: CSV for spreadsheets, with a row for each fixture; JSON for programs, with the
-//! outlines.
+//! Writes the luminaire schedule to a file: CSV for spreadsheets, with one row per fixture; JSON for programs,
+//! including the outlines.
 //!
 //! Numbers have seven significant digits, about the precision of `f32`.
 
@@ -43,13 +43,13 @@ fn row(fixture: &Fixture) -> [f64; 19] {
     })
 }
 
-/// A number that every reader accepts: without an exponent, never `NaN`.
+/// Formats a number so that every reader accepts it: without an exponent; NaN and infinite values become 0.
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(0.0);
     if rounded.is_finite() { rounded.to_string() } else { "0".into() }
 }
 
-/// Comma-separated values with a head line that names quantities and units.
+/// Formats the fixtures as comma-separated values, with a header line that names quantities and units.
 pub fn to_csv(fixtures: &[Fixture]) -> String {
     let mut out = COLUMNS.join(",");
     out.push('\n');
@@ -60,7 +60,7 @@ pub fn to_csv(fixtures: &[Fixture]) -> String {
     out
 }
 
-/// `{"fixtures": [{"x_m": …, "outline_m": [[x, y, z], …]}, …]}`.
+/// Formats the fixtures as `{"fixtures": [{"x_m": …, "outline_m": [[x, y, z], …]}, …]}`.
 pub fn to_json(fixtures: &[Fixture]) -> String {
     let mut out = String::from("{\"fixtures\": [");
     for (i, fixture) in fixtures.iter().enumerate() {

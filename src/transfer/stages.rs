@@ -1,4 +1,4 @@
-//! The stages of the transfer. Each takes its input from earlier results, runs, and stores its result.
+//! The stages of the transfer. Each stage takes its input from earlier results, runs, and stores its result.
 
 use super::check::need;
 use super::distance::Distance;
@@ -14,14 +14,14 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum factors by which a wall may move away to hold lamps beyond it. The second one is for uncertain layouts: the
-/// plane was proposed because strokes were missing, or the lines do not determine the camera.
+/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. The second factor is for
+/// uncertain layouts: the plane was proposed because strokes were missing, or lines do not determine the camera.
 /// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
-/// Maximum number of corrections of the view. The second correction uses the lamps that the first has shown.
-/// [bench photos:tune]
+/// Maximum number of corrections of the view. The second correction uses the lamps that were found after the first
+/// one. [bench photos:tune]
 const LAMP_ROUNDS: i32 = 2;
 
 impl Transfer {
@@ -35,11 +35,11 @@ impl Transfer {
         Ok(())
     }
 
-    /// Computes the features. If `layout` is given, it is used instead of laying out the room anew.
+    /// Computes the features. A given `layout` is used instead of a new estimate of the room's layout.
     pub(super) fn compute_features(&mut self, layout: Option<features::Layout>, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
-        // Strokes on the plane are evidence about the whole room.
+        // Strokes on the plane are also evidence for the layout of the room.
         let painted = self.input.strokes.plane_strokes();
         let strokes: Vec<_> =
             painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
@@ -77,8 +77,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Corrects the view where the lamps contradict it, and enlarges the room if lamps lie beyond their plane as it was
-    /// laid out. After each of these changes, finds the plane and the lights anew.
+    /// Corrects the view if the lamps contradict it, and enlarges the room if lamps lie beyond the plane of its
+    /// layout. After each of these changes, finds the plane and the lights again.
     pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
         for round in 0..LAMP_ROUNDS {
             let part = job.part(0.3 * f64::from(round), 0.3 * f64::from(round + 1));
@@ -89,7 +89,8 @@ impl Transfer {
         self.enlarge_room(job.part(0.6, 1.0))
     }
 
-    /// If lines do not determine the view, takes the view in which the lamps are alike; returns whether it did so.
+    /// If lines do not determine the view, replaces it by the view in which the lamps have equal sizes. Returns
+    /// whether it was replaced.
     fn correct_view(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(false);
@@ -109,8 +110,8 @@ impl Transfer {
         Ok(true)
     }
 
-    /// Enlarges the room if lamps lie beyond their plane as it was laid out, and finds plane and lights in the larger
-    /// room.
+    /// If lamps lie beyond the plane of the room's layout, enlarges the room, and finds the plane and the lights in it
+    /// again.
     fn enlarge_room(&mut self, job: Job) -> Result<()> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
@@ -157,7 +158,7 @@ impl Transfer {
             }
         };
 
-        // Remove lamps where there is no surface, or no room for lamps.
+        // Remove lamps where the surface has a hole, or where no lamp may be.
         let size = UVec2::new(emission.texture.width as u32, emission.texture.height as u32);
         if let Some(ground) =
             ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))?
@@ -165,7 +166,7 @@ impl Transfer {
             emission.restrict(&ground, job.part(0.93, 0.95))?;
         }
 
-        // Place the texture on the surface, as bright as the photo shows the lamps.
+        // Place the texture on the surface, with the luminance that the lamps have in the photo.
         let mut lit = (**scene).clone();
         let strength = Vec3::splat(self.params.white_luminance);
         let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
@@ -176,13 +177,13 @@ impl Transfer {
         Ok(())
     }
 
-    /// Synthesises the texture from the unwarped lights, with as many texels as the surface needs.
+    /// Synthesises the texture from the unwarped lights, with the number of texels that the surface needs.
     fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<(Emission, Distance)> {
         let photo = need(&self.input.photo, "set the photo")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
 
-        // Warp the mask of the lights like the photo.
+        // Unwarp the mask of the lights with the photo's homography.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
@@ -244,8 +245,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// The camera from which a lit scene is rendered: the input's camera, else the scene's first camera, else a chosen
-    /// one.
+    /// The camera from which a lit scene is rendered: the camera of the input, else the scene's first camera, else the
+    /// camera that [`viewpoint::choose`] returns.
     pub(crate) fn viewpoint(&self, world: &World, lit: &LitScene) -> Camera {
         let own = self.input.camera.as_ref().or(lit.scene.cameras.first());
         own.cloned().unwrap_or_else(|| viewpoint::choose(world, &lit.surface))
@@ -262,7 +263,7 @@ impl Transfer {
             results.film = Some(Arc::new(film.clone()));
             publish(&results);
         });
-        // Keep the unfinished picture if the rendering is cancelled.
+        // Keep the unfinished picture if the rendering is cancelled or fails.
         self.results.film = results.film;
         self.results.film = Some(Arc::new(film?));
         Ok(())
@@ -270,7 +271,7 @@ impl Transfer {
 }
 
 impl Results {
-    /// Restores the view and the room to their state before lamps were found.
+    /// Restores the view and the room layout to their state before the lamps changed them.
     pub(super) fn forget_lamps(&mut self) {
         self.beyond.clear();
         if let Some(view) = self.view_by_lines.take() {
@@ -280,14 +281,14 @@ impl Results {
 }
 
 impl LitScene {
-    /// The same scene with another strength of the emission, in cd/m² per channel.
+    /// Returns the scene with another strength of the emission, in cd/m² per channel.
     pub fn with_strength(&self, strength: Vec3) -> Self {
         let mut scene = (*self.scene).clone();
         scene.materials[self.placed.material].emission = strength;
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 
-    /// The same lamps in white light of the same luminance, with which the colour of the solution is compared.
+    /// Returns the scene with white lamps of equal luminance, for comparison with the colour of the solution.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
         let material = &mut scene.materials[self.placed.material];

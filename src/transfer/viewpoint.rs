@@ -1,4 +1,4 @@
-//! Chooses a camera for scenes without one: in that corner of the room under the lit surface from which most is seen.
+//! Chooses a camera for scenes without one: in the corner of the room below the lit surface with the most open view.
 
 use crate::render::World;
 use crate::scene::surface::Surface;
@@ -9,12 +9,13 @@ use glam::{Vec2, Vec3};
 const FOV_Y: f32 = 0.9;
 /// Distances from a corner that are tried, as shares of the surface's sides.
 const INSETS: [f32; 2] = [0.08, 0.2];
-/// Distances from the surface that are tried, as shares of the distance to the far end of the scene.
+/// Distances below the surface that are tried, as shares of the scene's depth below the surface.
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Number of rays by which a view is judged: across and down.
+/// Number of rays that measure how open a view is: across and down.
 const RAYS: [usize; 2] = [12, 8];
 
-/// The candidate with the longest mean line of sight; each line of sight counts up to the size of the surface.
+/// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
+/// count as this diagonal.
 pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);
@@ -32,14 +33,14 @@ pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     best.1.unwrap_or_else(|| candidate(surface, 0, INSETS[0], HEIGHTS[0] * depth))
 }
 
-/// Extent of the scene on the room's side of the surface.
+/// Maximum distance of the scene's vertices from the surface, on the side of the room.
 fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
     let points = scene.meshes.iter().flat_map(|m| &m.positions);
     let depth = points.map(|p| (*p - surface.origin).dot(surface.normal)).fold(0.0, f32::max);
     if depth > 0.0 { depth } else { surface.size.max_element() / 2.0 }
 }
 
-/// In a corner of the surface, `below` metres from it, looking at the opposite corner.
+/// A camera near a corner of the surface, `below` metres from the surface, which looks at the opposite corner.
 fn candidate(surface: &Surface, corner: usize, inset: f32, below: f32) -> Camera {
     let at = |u: f32, v: f32| {
         let on_surface = Vec2::new(u, v) * surface.size;
@@ -58,7 +59,7 @@ fn openness(world: &World, camera: &Camera, cap: f32) -> f32 {
         let y = ((i / RAYS[0]) as f32 + 0.5) / RAYS[1] as f32;
         let direction: Vec3 = camera.direction(x, y, 16.0 / 9.0).normalize();
         let hit = world.accel().closest(&world.ray(camera.position, direction), |_| true);
-        // Leaving the scene is no better than seeing its far end.
+        // A ray that leaves the scene counts half the maximum.
         sum += hit.map_or(cap / 2.0, |h| h.t.min(cap));
     }
     sum

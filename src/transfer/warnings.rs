@@ -1,12 +1,12 @@
-//! All reasons to doubt a transfer: the warnings of its stages in order, each with its stage.
+//! Collects the warnings of all stages of a transfer.
 
 use super::{Results, Stage};
 use crate::segment::{self, StrokeSet};
 use crate::warning::Warning;
 
 impl Results {
-    /// Reasons to doubt the results that exist, in the order of the stages. `strokes` are the strokes that made the
-    /// masks.
+    /// Returns the warnings about the existing results, in the order of the stages, each with its stage. `strokes` are
+    /// the strokes from which the masks were made.
     pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Stage, Warning)> {
         let mut all = Vec::new();
         let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (stage, warning)));
@@ -55,7 +55,7 @@ mod tests {
     use crate::warning::Code;
     use std::sync::Arc;
 
-    /// The codes of a plane and its lights, columns `0..plane` and `0..lights` of ten.
+    /// The warnings about two masks of ten columns: the plane covers columns `0..plane`, the lights cover `0..lights`.
     fn codes(plane: usize, lights: usize) -> Vec<(Stage, Code)> {
         let mask = |columns: usize| {
             let mask = Image::from_fn(10, 4, |x, _| [f32::from(x < columns)]).unwrap();

@@ -1,18 +1,18 @@
 #!/bin/sh
-# Compares the functions and structs of the header with the recorded ones of this minor version (baseline.abi), by abidiff:
-# functions may be added, and nothing that is there may change or go. abidw cannot read the debug information of Rust, so
-# both are of a library of empty functions that is made from the header.
+# Compares the functions and structs of the header with those recorded for this minor version (baseline.abi), by
+# abidiff. Functions may be added, but existing ones may neither change nor disappear. abidw cannot read the debug
+# information of Rust, so the check compiles a C library of empty functions from the header and analyses that.
 #
-#   check.sh SOURCE WORK            exits with 77 where there is no abidiff
-#   check.sh SOURCE WORK --record   records the functions and structs as they are: for a new minor version, or where a struct
-#                                   has grown at its end
+#   check.sh SOURCE WORK            checks; exits with 77 if abidiff is not installed
+#   check.sh SOURCE WORK --record   records the present functions and structs: for a new minor version, or after a
+#                                   struct has grown at its end
 set -eu
 source="$1" work="$2" record="${3:-}"
 command -v abidiff >/dev/null && command -v abidw >/dev/null || exit 77
 mkdir -p "$work"
 cd "$work"
 
-# A body for every function that the header declares.
+# Write an empty body for every function that the header declares.
 {
   echo '#include <luxfer.h>'
   echo '#include <luxfer.h>' | cc -E -P -x c -I"$source/include" - | tr '\n' ' ' | sed 's/; */;\n/g; s/} */}\n/g' |
@@ -21,7 +21,7 @@ cd "$work"
 } >functions.c
 cc -std=c99 -g -O0 -shared -fPIC -Wno-unused-parameter -I"$source/include" functions.c -o functions.so
 
-# None is missed: the library exports the same.
+# Check that no function was missed: the bodies are as many as the declarations that are not inline.
 declared="$(grep -c 'luxfer_[a-z0-9_]*(.*[{]' functions.c)"
 wanted="$(cat "$source"/include/luxfer.h "$source"/include/luxfer/*.h | grep -cE '^[a-z].* \*?luxfer_[a-z0-9_]+\(')"
 inline="$(cat "$source"/include/luxfer.h "$source"/include/luxfer/*.h | grep -cE '^static inline .*luxfer_[a-z0-9_]+\(' || true)"

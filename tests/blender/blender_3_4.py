@@ -1,4 +1,7 @@
-"""What the add-on takes from Blender 4.2 and newer, where Blender 3.4 has it by another name: for pictures of it only."""
+"""Lets the add-on run in Blender 3.4, where some of the functions of Blender 4.2 that it uses have other names.
+
+Only for taking pictures of the add-on.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from luxfer_lighting import convert
 
 
 def fill_in() -> None:
-    """Blender and the add-on fit each other from here on."""
+    """Adapts Blender and the add-on to each other."""
     np.bool = bool  # Blender's importer of glTF is older than numpy
     convert.LINEAR, convert.EMISSION = "Linear", "Emission"
     bpy.types.UILayout.progress = progress
@@ -20,12 +23,12 @@ def fill_in() -> None:
 
 
 def progress(layout: bpy.types.UILayout, factor: float, text: str) -> None:
-    """A text in place of a bar."""
+    """Shows a text instead of a progress bar."""
     layout.label(text=text)
 
 
 class Coordinates:
-    """layer.uv[k].vector for layer.data[k].uv"""
+    """Provides `layer.uv[k].vector`, which is `layer.data[k].uv` in Blender 3.4."""
 
     def __init__(self, layer: bpy.types.MeshUVLoopLayer):
         self._layer = layer

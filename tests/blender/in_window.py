@@ -1,5 +1,8 @@
-"""In a Blender with a window, started by test_window.py: the transfer runs behind the interface, Esc cancels it, Ctrl+Z takes the
-light away and Shift+Ctrl+Z brings it back. Prints what test_window.py looks at."""
+"""Runs in a Blender with a window, started by test_window.py, and prints results that test_window.py checks.
+
+The transfer runs while the interface stays usable, Esc cancels it, Ctrl+Z removes the light and Shift+Ctrl+Z restores
+it.
+"""
 
 import sys
 import time
@@ -33,7 +36,7 @@ def run() -> Steps:
     yield lambda: work.current() is None
     print("cancelled", time.monotonic() - began, work.message, materials(), flush=True)
 
-    yield 0.5  # the operator sees it
+    yield 0.5  # time for the operator to notice the key
     with over(view):
         bpy.ops.luxfer.transfer("INVOKE_DEFAULT")
     longest, last = 0.0, time.monotonic()

@@ -1,4 +1,4 @@
-"""What the tests of the add-on share: paths, a closed room in Blender, and pictures by Cycles."""
+"""Helpers for the tests of the add-on: paths, a closed room in Blender, and renderings by Cycles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIZE = (6.0, 4.0, 2.8)  # metres
 
 
 def material(name: str, colour: tuple[float, float, float]) -> bpy.types.Material:
-    """A matt one: roughness 1, no reflecting layer."""
+    """A matt material: roughness 1, no specular layer."""
     out = bpy.data.materials.new(name)
     out.use_nodes = True
     surface = next(n for n in out.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
@@ -36,7 +36,7 @@ def plane(name: str, corners: list[tuple[float, float, float]], look: bpy.types.
 
 
 def build() -> bpy.types.Scene:
-    """An empty .blend with a closed room: coloured walls, a box, a camera that sees floor and ceiling."""
+    """Builds a closed room in an empty .blend: coloured walls, a box, a camera that sees the floor and the ceiling."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     x, y, z = SIZE
@@ -51,7 +51,7 @@ def build() -> bpy.types.Scene:
     plane("Right", [(x, 0, 0), (x, 0, z), (x, y, z), (x, y, 0)], green)
     plane("Back", [(0, y, 0), (x, y, 0), (x, y, z), (0, y, z)], white)
     plane("Front", [(0, 0, 0), (0, 0, z), (x, 0, z), (x, 0, 0)], white)
-    for wall in ("Back", "Front"):  # as glTF has them: seen from both sides
+    for wall in ("Back", "Front"):  # visible from both sides, as double-sided glTF materials
         bpy.data.objects[wall].data.materials[0].use_backface_culling = False
     lens = bpy.data.cameras.new("Camera")
     lens.lens = 14
@@ -65,7 +65,8 @@ def build() -> bpy.types.Scene:
 
 
 def unbiased(scene: bpy.types.Scene) -> None:
-    """Has Cycles leave no light out, of which its defaults leave much, and filter pixels as ours are filtered."""
+    """Makes Cycles unbiased: removes the limits on light that it sets by default, and uses the pixel filter of
+    luxfer."""
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.use_denoising = False
@@ -77,7 +78,7 @@ def unbiased(scene: bpy.types.Scene) -> None:
 
 
 def cycles(scene: bpy.types.Scene, samples: int) -> np.ndarray:
-    """The scene by Cycles, linear, rows from the top."""
+    """Renders the scene with Cycles; returns linear values, top row first."""
     unbiased(scene)
     scene.cycles.samples = samples
     scene.render.image_settings.file_format = "OPEN_EXR"

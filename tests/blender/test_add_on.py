@@ -1,4 +1,5 @@
-"""The add-on in a Blender without a window (bpy from PyPI): its operators on a scene made here, the result by Cycles."""
+"""Tests the add-on in a Blender without a window (bpy from PyPI): its operators on a test scene, with results by
+Cycles."""
 
 import os
 import time
@@ -22,13 +23,13 @@ class AddOn(unittest.TestCase):
         self.addCleanup(luxfer_lighting.unregister)
 
     def load_photo(self):
-        """The generated photo and its strokes, as a user would have them."""
+        """Loads the generated photo and its strokes into the add-on, as a user would."""
         demo = luxfer.DemoPhoto(work.context()).run(**EXEMPLAR)
         photo, strokes = (demo.image(which).numpy(np.uint8, "srgb") / np.float32(255) for which in ("picture", "strokes"))
         settings = self.scene.luxfer
         settings.photo = convert.store("photo", photo, linear=False)
         bpy.ops.luxfer.new_strokes()
-        painted = strokes.max(-1) > 0  # what is drawn is in pure colours, all else is black
+        painted = strokes.max(-1) > 0  # strokes have pure colours, the rest is black
         pale = convert.pixels(settings.strokes)[..., :3]
         settings.strokes = convert.store(lighting.STROKES, np.where(painted[..., None], strokes, pale), linear=False)
         settings.target = bpy.data.objects["Ceiling"]
@@ -53,14 +54,15 @@ class AddOn(unittest.TestCase):
         self.assertEqual(lit["luxfer_base"], "White")
         self.assertGreater(len(bpy.data.texts[lighting.LAMPS].as_string().splitlines()), 2)
 
-        # Nits: the strongest channel of the emission, and an image of floats.
+        # The emission strength, in cd/m², is that of the strongest channel; the emission texture is a float image.
         surface = next(n for n in lit.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
         self.assertAlmostEqual(
             surface.inputs["Emission Strength"].default_value, max(found.emission), delta=1e-4 * max(found.emission)
         )
         self.assertTrue(bpy.data.images["Luxfer light Ceiling"].is_float)
 
-        # Ours, of the scene as it is exported now; and Cycles', in batches whose scatter is its error.
+        # Render the scene as it is exported now with luxfer; and with Cycles, in batches whose scatter gives the
+        # error.
         room = convert.scene(work.context(), self.scene)
         render = luxfer.Render(work.context(), room)
         render.set_camera(**convert.camera(self.scene))
@@ -80,7 +82,7 @@ class AddOn(unittest.TestCase):
         far = []
         for name in ("Ceiling", "Floor"):
             where = seen == names.index("Ceiling (lights)" if name == "Ceiling" else name)
-            where[1:-1, 1:-1] &= where[:-2, 1:-1] & where[2:, 1:-1] & where[1:-1, :-2] & where[1:-1, 2:]  # not its edges
+            where[1:-1, 1:-1] &= where[:-2, 1:-1] & where[2:, 1:-1] & where[1:-1, :-2] & where[1:-1, 2:]  # no edges
             self.assertGreater(where.sum(), 100)
             mine, other = ours[where].mean(0), theirs[where].mean(0)
             my_error = np.sqrt(variance[where].sum(0)) / where.sum()
@@ -139,7 +141,7 @@ class AddOn(unittest.TestCase):
         self.assertEqual(len(bpy.data.materials), before)
 
     def test_escape_ends_the_work(self):
-        """Of an operator that runs behind the interface, which gets Blender's events here from the test."""
+        """The test passes events to the modal operator in place of Blender."""
         self.load_photo()
         reports = []
         operator = SimpleNamespace(report=lambda kind, text: reports.append(text))
@@ -151,7 +153,7 @@ class AddOn(unittest.TestCase):
         self.assertEqual(reports, ["Cancelled"])
 
     def test_panels_name_what_exists(self):
-        """Drawn into a stub of a layout that looks up every property, operator and icon it is given."""
+        """Draws the panels into a stub of a layout, which checks that every property, operator and icon exists."""
         icons = bpy.types.UILayout.bl_rna.functions["prop"].parameters["icon"].enum_items
 
         class Layout:
@@ -200,7 +202,7 @@ class AddOn(unittest.TestCase):
         self.assertGreater((masks != photo).any(-1).mean(), 0.05)
 
     def follow(self):
-        """What the timer does until there is nothing new; what it took."""
+        """Calls the timer's function until the preview is up to date; returns the time in seconds."""
         start = time.monotonic()
         self.assertIsNotNone(live.step())
         while live.preview is not None and live.preview.job is not None:
@@ -237,7 +239,7 @@ class AddOn(unittest.TestCase):
         version = live.preview.version
         self.follow()
         self.assertEqual(live.preview.version, version, "nothing new was painted")
-        bpy.ops.luxfer.preview_masks()  # the photo is not reduced: the same masks
+        bpy.ops.luxfer.preview_masks()  # the photo is not reduced, so the masks are the same
         np.testing.assert_array_equal(convert.pixels(bpy.data.images[lighting.MASKS]), shown)
 
         bpy.ops.luxfer.new_strokes()
@@ -261,7 +263,7 @@ class AddOn(unittest.TestCase):
         self.assertLessEqual(width * height / n**2, 5_000)
         self.assertGreater(width * height / (n - 1) ** 2, 5_000)
 
-        # Another photo is another preview; and none is made while the processors are needed.
+        # Another photo gets a new preview; but no preview is computed while an operator needs the processors.
         work.start("Masks", lambda: (lighting.mask_steps(lighting.prepared(self.scene), lighting.photo_pixels(self.scene)), 1))
         before = live.preview
         self.scene.luxfer.photo = self.scene.luxfer.photo.copy()
@@ -307,7 +309,7 @@ class AddOn(unittest.TestCase):
             luxfer.Image(work.context(), picture, "srgb").save(os.path.join(folder, "stylised.png"))
         self.assertGreater(picture.std(), 0.02)
 
-        # Its guides by Cycles instead: another picture, but much the same paint.
+        # With guides by Cycles instead, the picture differs, but uses similar paint.
         settings.guides_by = "CYCLES"
         before = {name: getattr(self.scene.render, name) for name in ("engine", "filepath", "use_compositing")}
         asked = self.scene.view_layers[0].use_pass_diffuse_direct
@@ -353,8 +355,11 @@ class AddOn(unittest.TestCase):
         self.assertFalse(os.path.exists(rendering._folder.name))
 
     def test_guides_by_cycles_are_those_of_the_library(self):
-        """Of a room with a glossy ball: each kind of light has the same mean and the same shape. Cycles' indirect is all that
-        comes to a matt thing after another bounce, and its glossy ball scatters more than once (Turquin)."""
+        """In a room with a glossy ball, each light component has the same mean and the same shape in both renderers.
+
+        Two differences are expected: Cycles' indirect pass has all light that reaches a matt surface after another
+        bounce, and its glossy BSDF includes multiple scattering (Turquin).
+        """
         self.hang_lamp()
         mesh = bpy.data.meshes.new("Ball")
         shape = bmesh.new()
@@ -409,7 +414,7 @@ class AddOn(unittest.TestCase):
 
 class Conversion(unittest.TestCase):
     def test_the_camera_sees_what_blender_s_sees(self):
-        """Depth of a tilted view of the room by both."""
+        """Compares the depth of a tilted view of the room in both renderers."""
         scene = build()
         scene.camera.rotation_euler = (1.2, 0.3, 0.4)
         room = convert.scene(context := luxfer.Context(), scene)
@@ -432,7 +437,8 @@ class Conversion(unittest.TestCase):
         self.assertEqual(wrong, 0)
 
     def test_lights_are_as_bright_as_in_cycles(self):
-        """On a floor straight below, alone: of each kind, and of area lights each shape."""
+        """Compares the brightness of a floor straight below one light, for each kind of light and each shape of area
+        light."""
         context = luxfer.Context()
         for kind, shape in (
             ("POINT", ""),

@@ -1,4 +1,4 @@
-"""The extension as it is given to users: built, installed from its .zip into a Blender of its own folder, and used."""
+"""Tests the extension as users get it: builds it, installs its .zip into a fresh Blender profile, and uses it."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Blender's compositor finds the layers of our OpenEXR files by their names, and the values in them."""
+"""Tests that Blender's compositor finds the layers of luxfer's OpenEXR files by name and reads the right values."""
 
 import tempfile
 import unittest
@@ -31,7 +31,7 @@ class Layers(unittest.TestCase):
                 np.testing.assert_array_equal(found[:, :, :channels], expected, name)
 
     def compositor(self, path):
-        """A compositor that reads a file and passes one of its layers on."""
+        """Builds a compositor that reads a file and outputs one of its layers."""
         scene = bpy.context.scene
         tree = bpy.data.node_groups.new("Layers", "CompositorNodeTree")
         tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
@@ -50,7 +50,7 @@ class Layers(unittest.TestCase):
         return read
 
     def composed(self, socket, path):
-        """What comes out of the compositor, rows downwards."""
+        """The output of the compositor for a socket, top row first."""
         tree = socket.node.id_data
         tree.links.clear()
         tree.links.new(socket, tree.nodes["Group Output"].inputs[0])

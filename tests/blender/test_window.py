@@ -1,4 +1,5 @@
-"""The add-on behind a window, where there are Xvfb and a Blender to draw one (BLENDER names another than `blender`)."""
+"""Tests the add-on in a Blender with a window; skipped without Xvfb or Blender (BLENDER names its program; default:
+`blender`)."""
 
 import os
 import unittest

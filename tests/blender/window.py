@@ -1,7 +1,9 @@
-"""A Blender with a window, used by a program: by in_window.py and docs/in_blender.py, for both of which xvfb.py starts it.
+"""Lets a program control a Blender with a window, by simulated pointer and keys.
 
-What happens is a generator that yields what it waits for: seconds, or a function that says whether it is time. A timer of
-Blender's goes on with it, so the interface draws and works as under a user's hands, whose pointer and keys are simulated.
+Used by in_window.py and docs/in_blender.py; xvfb.py starts this Blender.
+
+The program is a generator. It yields a number of seconds to wait, or a function that returns True when to continue. A
+timer of Blender resumes the generator, so meanwhile the interface draws and works as usual.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ import luxfer  # noqa: E402
 import luxfer_lighting  # noqa: E402
 from luxfer_lighting import convert, lighting, work  # noqa: E402
 
-WHITE = 100.0  # cd/m² that is shown as white
+WHITE = 100.0  # luminance in cd/m² that is shown as white
 
 Wait = float | Callable[[], bool]
 Steps = Generator[Wait, None, None]
@@ -44,7 +46,7 @@ def window() -> bpy.types.Window:
 
 
 def areas() -> list[bpy.types.Area]:
-    """From left to right, and then from the bottom up."""
+    """The areas of the window, from left to right and then from the bottom up."""
     return sorted(window().screen.areas, key=lambda area: (area.x, area.y))
 
 
@@ -53,14 +55,14 @@ def region(area: bpy.types.Area, kind: str = "WINDOW") -> bpy.types.Region:
 
 
 def over(area: bpy.types.Area):
-    """The context of an area, which a timer has none of."""
+    """Sets an area as the context; the functions of a timer have no area in theirs."""
     return bpy.context.temp_override(window=window(), screen=window().screen, area=area, region=region(area))
 
 
 def lay_out_window() -> Steps:
-    """Nothing but an Image Editor on the left and a 3D view on the right."""
+    """Arranges the window: only an Image Editor on the left and a 3D view on the right."""
     preferences = bpy.context.preferences
-    preferences.system.use_region_overlap = False  # sidebars stand beside pictures, not on them
+    preferences.system.use_region_overlap = False  # sidebars are beside the pictures instead of covering them
     preferences.view.smooth_view = 0
     yield 0.5
     for area in areas():
@@ -77,7 +79,7 @@ def lay_out_window() -> Steps:
 
 
 def place(demo: str) -> None:
-    """A scene of the library's in place of what there is."""
+    """Replaces all objects by a demonstration scene of the library."""
     bpy.data.batch_remove(bpy.data.objects)
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, f"{demo}.glb")
@@ -98,7 +100,7 @@ def place(demo: str) -> None:
 
 
 def show_camera(area: bpy.types.Area) -> None:
-    """What the camera sees, and nothing else, in a 3D view."""
+    """Shows only the camera's picture in a 3D view."""
     space = area.spaces.active
     space.region_3d.view_perspective = "CAMERA"
     space.region_3d.view_camera_zoom = 29
@@ -107,7 +109,7 @@ def show_camera(area: bpy.types.Area) -> None:
 
 
 def load_photo(width: int, height: int) -> None:
-    """The photo of a generated office, whose light the ceiling of the room is to get."""
+    """Sets the photo of the generated office as exemplar, and the room's ceiling as target."""
     settings = bpy.context.scene.luxfer
     photo = luxfer.DemoPhoto(work.context()).run(width=width, height=height, samples=8).image("picture")
     settings.photo = convert.store("Office", photo.numpy(np.uint8, "srgb")[..., :3] / np.float32(255), linear=False)
@@ -116,7 +118,7 @@ def load_photo(width: int, height: int) -> None:
 
 
 def draw_line(kind: str, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """The same without a brush."""
+    """Draws a stroke directly into the pixels of the strokes image, without a brush."""
     picture = convert.pixels(bpy.data.images[lighting.STROKES])[..., :3].copy()
     height, width, _ = picture.shape
     rows, columns = np.mgrid[:height, :width]
@@ -126,7 +128,7 @@ def draw_line(kind: str, start: tuple[float, float], end: tuple[float, float]) -
 
 
 def at(area: bpy.types.Area, share: tuple[float, float]) -> tuple[int, int]:
-    """Where in the window a place of an Image Editor's picture is."""
+    """The window position of a point of the picture in an Image Editor; the point is a share of width and height."""
     inside = region(area)
     x, y = inside.view2d.view_to_region(share[0], 1 - share[1], clip=False)
     return inside.x + x, inside.y + y
@@ -148,7 +150,7 @@ def click(place: tuple[int, int]) -> Steps:
 
 
 def drag(area: bpy.types.Area, start: tuple[float, float], end: tuple[float, float]) -> Steps:
-    """Draws a line on an Image Editor's picture."""
+    """Draws a line on the picture in an Image Editor with the simulated pointer."""
     path = np.linspace(at(area, start), at(area, end), 8)
     pointer("MOUSEMOVE", "NOTHING", path[0])
     yield 0.1
@@ -161,7 +163,7 @@ def drag(area: bpy.types.Area, start: tuple[float, float], end: tuple[float, flo
 
 
 def use(steps: Steps, seconds: float) -> None:
-    """Registers the add-on and goes through the steps; then Blender ends, with status 1 if one of them has failed."""
+    """Registers the add-on and runs the steps; then Blender exits, with status 1 if a step has failed."""
     end, waits = time.monotonic() + seconds, 0.0
 
     def step() -> float:
@@ -179,7 +181,7 @@ def use(steps: Steps, seconds: float) -> None:
             traceback.print_exc()
             status = 1
         sys.stdout.flush()
-        os._exit(status)  # Blender would ask whether to save
+        os._exit(status)  # skip Blender's question whether to save
 
     if bpy.app.version < (4, 2):
         import blender_3_4

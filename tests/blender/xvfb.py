@@ -1,4 +1,4 @@
-"""Starts a Blender with a window, on a virtual screen: Xvfb keeps what is drawn in memory."""
+"""Starts a Blender with a window on a virtual screen: Xvfb draws into memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SIZE = "1280", "800"
 
 
 def missing() -> str | None:
-    """Why there can be no window."""
+    """The reason why no window can be opened; None if it can."""
     for program in (BLENDER, "xvfb-run", "Xvfb"):
         if shutil.which(program) is None:
             return f"there is no {program}"
@@ -26,8 +26,10 @@ def missing() -> str | None:
 
 
 def run(program: Path, library: Path, *arguments: Path) -> subprocess.CompletedProcess:
-    """Runs a program in Blender; its arguments are the file where the screen is, and others. The light is drawn by Mesa's
-    software, so that it is the same on any machine."""
+    """Runs a program in Blender. Its arguments are the file with the contents of the screen, then `arguments`.
+
+    Mesa draws in software, so the pictures are the same on any machine.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         environment = {**os.environ, "LUXFER_LIBRARY": str(library), "LIBGL_ALWAYS_SOFTWARE": "1", "TMPDIR": scratch}
         screen = f"-nocursor -screen 0 {'x'.join(SIZE)}x24 -fbdir {scratch}"

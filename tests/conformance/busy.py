@@ -1,7 +1,8 @@
-"""Plays programs while a long job of their context always runs, and compares the time of each call with that of the same
-call without the job: calls that return when their work is done never wait for a job.
+"""Tests that quick calls, which finish their work before they return, never wait for a running job.
 
-    python3 busy.py --seconds 600 --seed 1     plays random programs for that long, and prints the slowest calls
+Plays programs twice, with and without a long job in each context, and compares the time of each call.
+
+    python3 busy.py --seconds 600 --seed 1     plays random programs for 600 seconds, and prints the slowest calls
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ LIMIT = 0.05
 
 
 class Busy(Player):
-    """Plays a program on contexts that each have an endless rendering, and times its calls."""
+    """Plays a program and times its calls; if `is_busy`, each context has an endless rendering meanwhile."""
 
     def __init__(self, journal: int, is_busy: bool) -> None:
         super().__init__(journal)
@@ -39,14 +40,15 @@ class Busy(Player):
 
     def call(self, call: Call, may_release: bool = True) -> None:
         known = len(self.contexts)
-        # A job that the program waits for has to run, which it does after the endless one.
+        # End the endless job first: a job for which the program waits runs only after it.
         waits = call[0] == "luxfer_job_wait"
         if waits:
             self.end()
         start = time.monotonic()
         super().call(call, may_release)
         taken = time.monotonic() - start
-        # The last reference to a stage may end its job, and of a context its threads: both are work.
+        # Do not time releases: releasing the last reference may end a job or the threads of a context, which is real
+        # work.
         self.seconds.append(0.0 if waits or is_release(call[0]) else taken)
         if self.is_busy and (waits or len(self.contexts) > known):
             self.start()
@@ -67,7 +69,7 @@ class Busy(Player):
             check(library.luxfer_render_start(render, ctypes.addressof(params), ctypes.addressof(job)))
             self.endless[context] = (render.value, job.value)
             fraction, patience = ctypes.c_double(), time.monotonic() + 5
-            # Another job of the program may run before it.
+            # Another job of the program may run before the endless one.
             while fraction.value == 0 and time.monotonic() < patience:
                 check(library.luxfer_job_get_progress(job, ctypes.addressof(fraction), None))
                 time.sleep(0.001)
@@ -92,7 +94,7 @@ def check(status: int) -> None:
 
 @dataclass(frozen=True, order=True)
 class Delay:
-    """How much longer a call of a program takes beside the job."""
+    """By how much a running job delays a call of a program."""
 
     seconds: float
     function: str
@@ -118,7 +120,7 @@ def times(calls: list[Call], is_busy: bool) -> list[float]:
 
 
 def delays(calls: list[Call], program: object) -> list[Delay]:
-    """The least delay of each call, of as many rounds as it takes to get below the limit."""
+    """The smallest delay of each call in up to ROUNDS rounds; stops when all delays are below the limit."""
     idle = [min(rounds) for rounds in zip(*(times(calls, False) for _ in range(2)))]
     busy = times(calls, True)
     for _ in range(1, ROUNDS):

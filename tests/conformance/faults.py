@@ -1,6 +1,6 @@
-"""Arguments that are wrong, and programs made of right ones and wrong ones by chance.
+"""Makes wrong arguments for calls, and random programs of calls with right and wrong arguments.
 
-What only a caller could know is never a fault here: an array shorter than its count, memory that is not there.
+Errors that the library cannot detect are left out: arrays shorter than their count, and pointers to invalid memory.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def is_count(name: str) -> bool:
 
 
 def numbers(kind: str, name: str) -> list[Argument]:
-    """Values for a number of that type and name."""
+    """Extreme values for a number of type `kind` and name `name`."""
     if kind in ("float", "double"):
         return [plain(x) for x in REALS]
     if is_count(name):
@@ -43,7 +43,7 @@ def numbers(kind: str, name: str) -> list[Argument]:
 
 
 def broken_fields(struct: Argument) -> list[Argument]:
-    """The struct with one member after the other set to what it should not be."""
+    """Variants of a struct, in each of which one member has a wrong value."""
     _, name, fields, base = struct
     out = []
 
@@ -73,7 +73,7 @@ def broken_fields(struct: Argument) -> list[Argument]:
 
 
 def broken(field, right: Argument, others: list[Argument]) -> list[Argument]:
-    """What may be handed over in place of the right argument; others are handles of other objects."""
+    """Wrong arguments that may replace the right one; `others` are handles of other objects."""
     if is_handle(field):
         return [["null"], ["junk", 0], ["junk", 1], *others]
     if makes(field):
@@ -92,7 +92,7 @@ def broken(field, right: Argument, others: list[Argument]) -> list[Argument]:
 
 
 def every_fault(calls: list[Call]) -> list[Call]:
-    """The program with all wrong versions of a call before each call, which must leave it possible."""
+    """The program with all wrong variants of each call inserted before that call, which must still succeed."""
     out: list[Call] = []
     live: dict[str, list[Argument]] = {}
     number = 1_000_000
@@ -114,7 +114,8 @@ def every_fault(calls: list[Call]) -> list[Call]:
                         variant[k] = ["new", number]
                         made.append(number)
                 out.append([function, *variant])
-                # Jobs are busy and contexts have threads; whatever was made after all goes.
+                # A wrong call may succeed after all: release its objects, because jobs and contexts would occupy
+                # threads.
                 out += [["luxfer_release", ["object", n]] for n in made]
         out.append(call)
         for field, argument in zip(fields, arguments):
@@ -124,12 +125,12 @@ def every_fault(calls: list[Call]) -> list[Call]:
 
 
 def endless(field, argument: Argument) -> bool:
-    """Whether it asks to wait for ever, for a job that may take as long."""
+    """Whether an argument is a timeout that would make the call wait for ever, or very long."""
     return field.name == "timeout_ms" and argument[0] == "number" and not 0 <= argument[1] <= 10_000
 
 
 def random_fault(call: Call, pool: dict[str, list[Argument]], rng: random.Random) -> Call:
-    """The call with one argument replaced: by another object of its kind, or by something wrong."""
+    """The call with one argument replaced by another object of its kind or by a wrong value."""
     function, *arguments = call
     fields = FUNCTIONS[function]
     if not fields:
@@ -146,7 +147,7 @@ def random_fault(call: Call, pool: dict[str, list[Argument]], rng: random.Random
 
 
 def random_program(scenarios: dict[str, list[Call]], seed: int) -> list[Call]:
-    """Two scenarios shuffled into each other, with calls left out, doubled, moved and spoiled."""
+    """Interleaves two random scenarios, then omits, repeats, moves and damages some of the calls."""
     rng = random.Random(seed)
     first, second = (copy.deepcopy(calls) for calls in rng.sample(list(scenarios.values()), 2))
     renumber(second, 10_000)

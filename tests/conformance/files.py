@@ -1,9 +1,9 @@
-"""Damaged files: the library's own PNG, EXR, GLB and EULUMDAT files, parts of renderings, an IES file and a Radiance HDR, with
-bytes and numbers changed by chance, and texts made of the symbols that light path expressions and strokes are written in.
-Whatever loads is used.
+"""Loads damaged files: PNG, EXR, GLB and EULUMDAT files and parts of renderings, all written by the library, an IES
+file and a Radiance HDR, in which random bytes and numbers have been changed; and random texts made of the symbols of
+light path expressions and strokes. Files that load are also used.
 
-    python3 files.py FIRST COUNT JOURNAL   loads the files of these seeds in this process
-    python3 files.py --seconds 600         goes on with ever new seeds, in processes of their own
+    python3 files.py FIRST COUNT JOURNAL   loads the files of COUNT seeds from FIRST in this process
+    python3 files.py --seconds 600         loads files of new seeds for 600 seconds, in child processes
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ WORDS = [0, 1, 2, 0x7F, 0x80, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 
 
 
 def radiance(width: int, height: int, rng: random.Random) -> bytes:
-    """A picture whose rows are not compressed."""
+    """A random Radiance HDR picture without compression."""
     head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
     return head + rng.randbytes(4 * width * height)
 
@@ -46,7 +46,7 @@ SYMBOLS = [
 
 
 def places(tree, path=()):
-    """Paths to everything in a JSON tree."""
+    """The paths of all values in a JSON tree."""
     found = [path] if path else []
     items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for key, value in items:
@@ -82,7 +82,7 @@ def damaged_bytes(data: bytes, rng: random.Random) -> bytes:
         if not data:
             break
         at, dice = rng.randrange(len(data)), rng.random()
-        # Headers are where lies are told.
+        # Half of the changes go to the header, where sizes and offsets are.
         at = rng.randrange(min(len(data), 200)) if rng.random() < 0.5 else at
         if dice < 0.3:
             data[at] ^= 1 << rng.randrange(8)
@@ -115,7 +115,7 @@ def check(seed: int, status: int, start: float) -> None:
 
 
 class Loader:
-    """Loads damaged files in one context."""
+    """Loads damaged files in one context, which must survive them all."""
 
     def __init__(self) -> None:
         import luxfer
@@ -146,7 +146,7 @@ class Loader:
             path = Path(folder, "a.ldt")
             luxfer.Distribution.load_memory(self.context, ies, "ies").save(path)
             self.distributions.append((path.read_bytes(), 1))
-        # Two halves of a rendering: one stays whole, the other does not.
+        # Two parts of a rendering: one stays intact, the other gets damaged.
         self.halves = tempfile.TemporaryDirectory()
         self.whole, self.other = (str(Path(self.halves.name, name)) for name in ("whole.part", "other.part"))
         self.size = {"width": 9, "height": 5, "samples": 4}
@@ -181,7 +181,7 @@ class Loader:
             self.use(out, is_scene, seed)
 
     def shine(self, seed: int, rng: random.Random) -> None:
-        """A file of a luminaire with bytes or numbers changed."""
+        """Loads a luminaire file in which bytes or numbers have been changed."""
         data, kind = rng.choice(self.distributions)
         if rng.random() < 0.5:
             words = data.split(b" ")
@@ -196,7 +196,7 @@ class Loader:
             self.library.luxfer_release(out)
 
     def add_up(self, seed: int, rng: random.Random) -> None:
-        """A half of a rendering with bytes changed, beside the other half."""
+        """Merges a damaged part of a rendering with an intact one."""
         from luxfer import _params
 
         Path(self.other).write_bytes(damaged_bytes(self.part, rng))
@@ -225,7 +225,7 @@ class Loader:
             check(seed, self.library.luxfer_strokes_add_text(handle, text.encode()), start)
 
     def use(self, thing, is_scene: bool, seed: int) -> None:
-        """What loads must work, too."""
+        """Uses an object that was loaded from a damaged file, and releases it."""
         library = self.library
         if not is_scene:
             library.luxfer_release(thing)
@@ -236,7 +236,7 @@ class Loader:
             ray.direction[axis] = -1
             ray.t_max = 1e9
         needs = abi.luxfer_requirements()
-        # A scene may be valid as a file and still not be one that can be traced.
+        # A scene that loads may still be unfit for tracing: the calls may fail, but only with a status.
         start = time.monotonic()
         check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
         check(seed, library.luxfer_scene_get_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
@@ -257,7 +257,8 @@ def load(first: int, count: int, journal: str) -> None:
 
 
 def run(first: int, count: int) -> str | None:
-    """Loads the files of these seeds in a process of its own; what went wrong, if anything did."""
+    """Loads the files of `count` seeds from `first` in a child process; returns a description of the failure, or
+    None."""
     with tempfile.TemporaryDirectory() as folder:
         journal = Path(folder, "journal")
         command = [sys.executable, Path(__file__).resolve(), str(first), str(count), journal]

@@ -1,7 +1,7 @@
-"""Plays programs in processes of their own, and cuts one that fails down to the calls it needs.
+"""Plays programs in child processes, and reduces a program that fails to the calls that are needed for the failure.
 
-    python3 play.py --seconds 600 --seed 1     plays random programs for that long, and writes failures to failure-SEED.json
-    python3 play.py --replay failure-1.json    plays one again
+    python3 play.py --seconds 600 --seed 1     plays random programs for 600 s, writes failures to failure-SEED.json
+    python3 play.py --replay failure-1.json    plays a failed program again
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ HANG = 600
 
 @dataclass
 class Failure:
-    """How a process ended that should not have, and in which call of which program."""
+    """How a process failed, and in which call of which program."""
 
     program: int
     call: int
@@ -57,7 +57,7 @@ def play(programs: list[list[Call]], threads: int = 1, hang: float = HANG) -> Fa
 
 
 def minimise(calls: list[Call], threads: int, patience: float = 60) -> list[Call]:
-    """Leaves out calls while it still fails, in ever smaller pieces (Zeller and Hildebrandt's ddmin, 2002)."""
+    """Removes calls, in ever smaller pieces, while the program still fails (ddmin: Zeller and Hildebrandt 2002)."""
     end = time.monotonic() + patience
     size = len(calls) // 2
     while size and time.monotonic() < end:
@@ -73,7 +73,7 @@ def minimise(calls: list[Call], threads: int, patience: float = 60) -> list[Call
 
 
 def report(calls: list[Call], failure: Failure, threads: int, seed: object) -> str:
-    """Cuts the program down, writes it to a file, and says what happened."""
+    """Reduces the failed program, writes it to a file, and returns a text that describes the failure."""
     calls = minimise(calls, threads)
     again = play([calls], threads) or failure
     name = f"failure-{seed}.json"

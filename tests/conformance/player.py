@@ -1,14 +1,15 @@
-"""Plays programs (script.py) in this process and holds every call to what the header promises of all calls:
+"""Plays programs (script.py) in this process and checks for every call what the header promises for all calls:
 
-- it returns a status, and neither LUXFER_INTERNAL nor LUXFER_UNKNOWN;
-- after a failure nothing is written to where results belong, and the context has a message;
-- after success every handle asked for is there;
-- it returns soon, unless it is asked to wait.
+- The call returns a status other than LUXFER_INTERNAL and LUXFER_UNKNOWN.
+- If the call fails, its outputs are unchanged and the context has a message.
+- If the call succeeds, every handle that it creates is set.
+- The call returns soon, unless it is asked to wait.
 
     python3 player.py FILE JOURNAL
 
-FILE has a program in each line, as {"threads": n, "calls": [...]}. Before each call its place is put down in JOURNAL, which
-so tells what the process died of. The process ends with 0, or with 3 and the broken promise in the last line of JOURNAL.
+Each line of FILE is a program: {"threads": n, "calls": [...]}. Before each call, the player writes the numbers of the
+program and the call to JOURNAL, so that after a crash the call is known. The exit code is 0, or 3 for a broken
+promise, which is then in the last line of JOURNAL.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ PATIENCE = 20.0
 MEMORY = 6 << 30
 
 for name, (result, arguments) in abi.FUNCTIONS.items():
-    # Pointers go in as they are.
+    # Pass pointers as plain addresses, without conversion by ctypes.
     is_pointer = [hasattr(t, "contents") or t is ctypes.c_char_p for _, t in arguments]
     function = getattr(library, name)
     function.restype = result
@@ -66,13 +67,13 @@ def address(thing) -> int:
 
 
 class Player:
-    """One program: its objects and the memory its calls have used."""
+    """State of a program that is played: its objects, and the memory that its calls use."""
 
     def __init__(self, journal) -> None:
         self.journal = journal
         self.handles: dict[int, tuple[str, int, int]] = {}  # number: kind, address, references
         self.contexts: list[int] = []
-        self.kept: list = []  # memory lives as long as the program
+        self.kept: list = []  # memory that calls have used; it is kept as long as the program runs
         self.ticks = 0
         self.callbacks = {
             "go": abi.luxfer_progress_fn(lambda user, fraction: 0),
@@ -92,7 +93,7 @@ class Player:
         return int(self.ticks % 3 == 0)
 
     def call_again(self, user, fraction) -> int:
-        """Any function may be called from a callback."""
+        """Progress callback that calls the library: a callback may call any function."""
         self.ticks += 1
         for kind, handle, _ in list(self.handles.values()):
             if kind == "luxfer_job":
@@ -109,7 +110,7 @@ class Player:
 
     def struct(self, name: str, fields: dict, base: str) -> int:
         kind = getattr(abi, name)
-        # More than the struct, as its size may say so.
+        # More memory than the struct, because its size field may state more.
         room = ctypes.create_string_buffer(ROOM)
         value = kind.from_buffer(room)
         if base == "init":
@@ -119,7 +120,7 @@ class Player:
         for field, argument in fields.items():
             member = members[field]
             if member.stars:
-                # Written as the address it is, whatever ctypes calls the member.
+                # Write the address itself, whatever type ctypes has for the member.
                 at = getattr(kind, field).offset
                 ctypes.c_void_p.from_buffer(room, at).value = self.value(argument)
             elif member.dims:
@@ -131,7 +132,7 @@ class Player:
         return address(value)
 
     def value(self, argument):
-        """The argument as it is handed over."""
+        """Converts an argument of a program to the value that is passed to the C function."""
         kind, *rest = argument
         if kind == "number":
             return rest[0]
@@ -172,7 +173,7 @@ class Player:
         if releases and not may_release:
             return
         values = [self.value(a) for a in arguments]
-        # NULL is what ctypes has for a callback that is none.
+        # ctypes needs a null function pointer, not None, for a missing callback.
         handed = [
             getattr(abi, f.type)() if f.type in CALLBACKS and v is None else v
             for v, f in zip(values, fields)
@@ -186,7 +187,7 @@ class Player:
             return
         if not 0 <= status <= 13 or status in (abi.LUXFER_INTERNAL, abi.LUXFER_UNKNOWN):
             raise Broken(f"{function} returned {status}: {[self.message(c) for c in self.contexts]}")
-        # A job is asked to end in 100 ms; nothing but waiting takes long.
+        # A cancelled job ends within about 100 ms, so no call except waiting takes long.
         if taken > PATIENCE and function != "luxfer_job_wait":
             raise Broken(f"{function} took {taken:.1f} s")
         first = fields[0] if fields else None
@@ -216,7 +217,8 @@ class Player:
                     self.contexts.remove(handle)
 
     def play(self, calls, threads: int, number: int) -> None:
-        """Plays the calls, in turns on so many threads, where nothing is released before the end."""
+        """Plays the calls, distributed over `threads` threads; with several threads, objects are released only at the
+        end."""
         failures: list[BaseException] = []
 
         def some(thread: int) -> None:
@@ -224,7 +226,7 @@ class Player:
                 for i in range(thread, len(calls), threads):
                     os.pwrite(self.journal, f"{number:8} {i:8}\n".encode(), 18 * thread)
                     self.call(calls[i], may_release=threads == 1)
-            except BaseException as failure:  # noqa: BLE001: told by the thread that waits
+            except BaseException as failure:  # noqa: BLE001: the main thread raises it
                 failures.append(failure)
 
         if threads == 1:

@@ -1,4 +1,4 @@
-"""Short programs that use the library as it is meant to be used; between them they call every function of the header."""
+"""Short programs that use the library correctly. Together they call every function of the header."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ ROOM = ["room", 0x5A]
 
 
 class Scenario(Script):
-    """A program that begins with a context."""
+    """A program that begins by creating a context; its methods add calls to the program."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -18,7 +18,7 @@ class Scenario(Script):
         return self.make("image_create", self.context, view(width, height, channels, fill))
 
     def room(self) -> Argument:
-        """A floor and a ceiling that emits, seen by a camera."""
+        """Adds a scene with a floor, a ceiling that emits light, and a camera."""
         scene = self.make("scene_create", self.context)
         self.call("scene_add_material", scene, struct("material_params", name="Paint", base_color=array("float", 0.5, 0.4, 0.3)), ROOM)
         self.call("scene_add_material", scene, struct("material_params", name="Lamp", emission=array("float", 50, 40, 30)), None)
@@ -33,14 +33,14 @@ class Scenario(Script):
         return scene
 
     def photograph(self) -> tuple[Argument, Argument]:
-        """A photo of the generated office, and strokes on it."""
+        """Adds a photo of the generated office and an image with strokes for it."""
         stage = self.make("demo_photo_create", self.context)
         self.references(stage)
         self.run("demo_photo_start", stage, struct("demo_photo_params", width=180, height=120, samples=2))
         return self.make("demo_photo_get_image", stage, 0), self.make("demo_photo_get_image", stage, 1)
 
     def painted(self, drawing: Argument) -> Argument:
-        """The strokes of a drawing of that photo."""
+        """Adds the strokes of such an image."""
         strokes = self.make("strokes_create", self.context, 180, 120)
         self.call("strokes_add_image", strokes, drawing)
         return strokes
@@ -91,7 +91,7 @@ def scenes() -> Scenario:
     s.make("scene_load", s.context, "a.glb", None)
     s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None, None)
     scaled = s.make("scene_load", s.context, "a.glb", struct("scene_load_params", unit=100.0))
-    warnings = s.make("get_warnings", scaled)  # 200 m are too high for a room
+    warnings = s.make("get_warnings", scaled)  # it warns: 200 m is too high for a room
     s.call("warnings_get", warnings, 0, *report("warning"))
     candidates = s.make("scene_get_candidates", scaled)
     s.references(candidates)
@@ -152,7 +152,7 @@ def jobs() -> Scenario:
 
 
 def photo() -> Scenario:
-    """Perspective, features and segmentation."""
+    """The stages that read a photo: rectification, features and segmentation."""
     s = Scenario()
     photo, strokes = s.photograph()
     even = s.image(180, 120, 1, 1.0)
@@ -202,7 +202,7 @@ def emission() -> Scenario:
     s.run("emission_start", stage, struct("emission_params", width=48, height=40))
     s.make("emission_get_image", stage, 0)
     s.call("emission_get_report", stage, *report("emission_report"))
-    warnings = s.make("get_warnings", stage)  # there are no whole lamps
+    warnings = s.make("get_warnings", stage)  # it warns that there are no whole lamps
     s.references(warnings)
     s.call("warnings_get_count", warnings, ROOM)
     s.call("warnings_get", warnings, 0, *report("warning"))
@@ -247,7 +247,7 @@ def rendering() -> Scenario:
 
 
 def light() -> Scenario:
-    """Lux on grids and meshes, and the emission that meets a target."""
+    """Illuminance on grids and meshes, and relighting: the emission that meets a target."""
     s = Scenario()
     scene, stage = s.room(), s.make("illuminance_create", s.context)
     s.references(stage)
@@ -270,7 +270,7 @@ def light() -> Scenario:
 
 
 def lamps() -> Scenario:
-    """Powers of lamps for goals, and what a surface means to one."""
+    """Powers of lamps that meet goals, and the importance of a surface for a goal."""
     s = Scenario()
     scene, stage = s.room(), s.make("lamps_create", s.context)
     s.references(stage)
@@ -355,7 +355,7 @@ def transfer() -> Scenario:
     s.call("transfer_get_solution", stage, *report("relight_report"))
     s.call("transfer_get_fixture", stage, 0, *report("fixture"))
     s.call("transfer_save_fixtures", stage, "lamps.csv")
-    # Intermediate results in place of its own.
+    # Replace intermediate results of the transfer by those of single stages.
     rectify = s.make("rectify_create", s.context)
     s.call("rectify_set_photo", rectify, photo)
     s.run("rectify_start", rectify, struct("rectify_params"))

@@ -1,16 +1,17 @@
-"""Programs of calls to the C ABI as plain data, so that they can be written to a file, mutated, cut and played again.
+"""Programs of calls to the C ABI as plain data, so that they can be saved, mutated, reduced and played again.
 
-A program is a list of calls, a call [function, argument...]. Arguments:
+A program is a list of calls; a call is [function, argument...]. The arguments:
 
-    ["number", n]              by value; also for callbacks: ["callback", name], see player.py
+    ["number", n]              the number n, by value
+    ["callback", name]         a callback of player.py
     ["null"]                   NULL
-    ["object", k]              the handle that was made under the number k; NULL if it was not, or is released
-    ["new", k]                 where a handle is to be put, which then has the number k
-    ["bytes", hex]             text or a file: these bytes, and a zero behind them
-    ["array", type, [n...]]    numbers of a ctypes type
-    ["room", byte]             memory for results, filled with that byte
-    ["struct", name, {field: argument}, base]   base is "init" (the defaults) or "raw" (zeros)
-    ["junk", offset]           memory that holds no handle
+    ["object", k]              the handle with the number k; NULL if it was never created, or is released
+    ["new", k]                 pointer to where the call writes a new handle, which gets the number k
+    ["bytes", hex]             pointer to these bytes (a text or a file), followed by a zero byte
+    ["array", type, [n...]]    pointer to numbers of a ctypes type
+    ["room", byte]             pointer to memory for results, filled with this byte
+    ["struct", name, {field: argument}, base]   pointer to a struct; base is "init" (the defaults) or "raw" (zeros)
+    ["junk", offset]           pointer to memory that holds no handle
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ Call = list
 
 
 def plain(value) -> Argument:
-    """What a scenario writes, as an argument."""
+    """Converts a Python value in a scenario to an argument."""
     if value is None:
         return ["null"]
     if isinstance(value, (int, float)):
@@ -56,7 +57,7 @@ def struct(kind: str, base: str = "init", /, **fields) -> Argument:
 
 
 def report(kind: str) -> tuple[Argument, int]:
-    """A struct for results, and its size: more than any version has, as a newer host may pass."""
+    """A struct for results, and a size larger than in any version, as a newer host may pass it."""
     return struct(kind, "raw"), 1024
 
 
@@ -65,7 +66,7 @@ def array(kind: str, *numbers) -> Argument:
 
 
 def view(width: int, height: int, channels: int = 3, fill: float = 0.5, **fields) -> Argument:
-    """An image of one colour, its left half darker."""
+    """A view of a uniform image whose left half is darker."""
     pixels = [fill * (0.5 if 2 * x < width else 1) for y in range(height) for x in range(width) for _ in range(channels)]
     return struct(
         "image_view", width=width, height=height, channels=channels, byte_size=4 * len(pixels), data=array("float", *pixels), **fields
@@ -73,7 +74,7 @@ def view(width: int, height: int, channels: int = 3, fill: float = 0.5, **fields
 
 
 class Script:
-    """Writes a program: `s.make("image_create", context, view)` adds the call, and gives the object."""
+    """Builds a program: `s.make("image_create", context, view)` adds a call and returns the object it creates."""
 
     def __init__(self) -> None:
         self.calls: list[Call] = []
@@ -92,7 +93,7 @@ class Script:
         return thing
 
     def finish(self, job: Argument) -> None:
-        """Waits for a job, and lets go of it."""
+        """Adds calls that wait for a job and release it."""
         self.call("job_wait", job, 60_000, None, None)
         self.call("release", job)
 

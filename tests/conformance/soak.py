@@ -1,7 +1,7 @@
-"""Long use in one process: jobs started, cancelled and let go of, contexts made and released, whole small transfers. Neither
-memory nor threads nor open files may grow.
+"""Tests long use in one process: jobs are started, cancelled and released, contexts created and released, and small
+transfers run. Memory, threads and open files of the process must not grow.
 
-    python3 soak.py [--cycles 10000] [--transfers 1000]    prints what the process holds as it goes on; ends with 1 if it grows
+    python3 soak.py [--cycles 10000] [--transfers 1000]    prints the growth; the exit code is 1 if the process grows
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SLACK = 1.0
 
 
 class MallocInfo(ctypes.Structure):
-    """`struct mallinfo2` of glibc."""
+    """The struct mallinfo2 of glibc: statistics of its allocator."""
 
     _fields_ = [(name, ctypes.c_size_t) for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()]
 
@@ -34,8 +34,10 @@ libc.mallinfo2.restype = MallocInfo
 
 
 def held() -> tuple[float, int, int]:
-    """MiB that are allocated, threads, and open files. Resident memory would not do: what the allocator keeps for later comes and
-    goes by tens of MiB."""
+    """Allocated MiB, number of threads, and number of open files.
+
+    Resident memory would be useless, because the memory that the allocator keeps in reserve varies by tens of MiB.
+    """
     gc.collect()
     heap = libc.mallinfo2()
     status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
@@ -49,7 +51,7 @@ def room(context: luxfer.Context) -> luxfer.Scene:
 
 
 class Soak:
-    """What is done again and again, in contexts of its own and in one that stays."""
+    """The work that is repeated, in a permanent context and in temporary ones."""
 
     def __init__(self) -> None:
         self.context = luxfer.Context(num_threads=2)
@@ -57,11 +59,11 @@ class Soak:
         photo = luxfer.DemoPhoto(self.context).run(width=150, height=100, samples=2)
         self.photo, self.strokes = photo.image("picture"), photo.image("strokes")
         self.target = luxfer.Scene.demo(self.context, "target-room")
-        # A scene keeps what it is traced with from the first render that gets so far.
+        # Render once first, because a scene then keeps its acceleration structure.
         luxfer.Render(self.context, self.scene).run(width=8, height=8, samples=1)
 
     def cancel(self, cycle: int) -> None:
-        """A job that is let go of, asked to end, or left to end, at another moment each time."""
+        """Starts a job; then closes or cancels it, or lets it end, after a time that varies from cycle to cycle."""
         render = luxfer.Render(self.context, self.scene)
         job = render.start(width=48, height=32, samples=1 + (cycle % 5) * 1000)
         try:
@@ -80,12 +82,12 @@ class Soak:
         try:
             stage.run(max_texels=64, target="whole-image", relight={"paths": 1024, "seed": cycle}, render={"width": 24, "height": 16, "samples": 2})
         except errors.Error as error:
-            # So small a photo may not have an answer; it must have the same one every time.
+            # For so small a photo these two errors are possible results; any other error is a failure.
             if not isinstance(error, (errors.Degenerate, errors.Unreachable)):
                 raise
 
     def repeat(self, what, cycles: int, rounds: int = 5) -> list[tuple[float, int, int]]:
-        """What the process holds after each of so many equal parts of the cycles."""
+        """Runs the cycles in `rounds` equal parts; returns the resources of the process after each part."""
         out = []
         for part in range(rounds):
             for cycle in range(part * cycles // rounds, (part + 1) * cycles // rounds):
@@ -95,7 +97,7 @@ class Soak:
 
 
 def growth(seen: list[tuple[float, int, int]]) -> str | None:
-    """What has grown in the second half; in the first everything is set up that stays."""
+    """Describes growth since half-time, or returns None. In the first half, permanent resources are still set up."""
     (memory, threads, files), last = seen[len(seen) // 2], seen[-1]
     if last[0] > memory + SLACK:
         return f"memory grew from {memory:.2f} to {last[0]:.2f} MiB"

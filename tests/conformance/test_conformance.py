@@ -1,5 +1,5 @@
-"""Every function of the C ABI with every argument wrong in turn, and programs made by chance: whatever a host does, it gets a
-status and a message, and goes on living. `play.py` plays more programs, as long as wanted."""
+"""Tests that whatever a host calls, it gets a status and a message and survives: every function of the C ABI with each
+argument wrong in turn, and random programs. `play.py` plays more random programs, for any time."""
 
 import unittest
 
@@ -36,7 +36,7 @@ class Conformance(unittest.TestCase):
         self.check([faults.random_program(USUAL, seed) for seed in range(1000, 1040)], threads=3)
 
     def test_calls_never_wait_for_a_job_that_runs(self):
-        for seed in (3032, 3038, 3055, 3057, 3073):  # programs that seldom wait
+        for seed in (3032, 3038, 3055, 3057, 3073):  # seeds of programs that seldom wait for jobs
             with self.subTest(seed):
                 slowest = max(busy.delays(faults.random_program(USUAL, seed), seed))
                 self.assertLess(slowest.seconds, busy.LIMIT, slowest)

@@ -1,6 +1,7 @@
-// The C boundary as a C++ program sees it, through the header and the shared library that a plug-in would use. What Rust
-// can check as well is in tests/abi_contract.rs; here are the linkage, the macros, threads of the host, and callbacks that
-// call back. It calls the C functions and not bindings/cpp, which would not let it pass wrong handles or release one early.
+// Contract of the C boundary for a C++ program that uses the header and the shared library as a plug-in does. Tests
+// what needs a real C or C++ caller: linkage, macros, threads of the host, and callbacks that call the library. The
+// rest is in tests/abi_contract.rs. The program calls the C functions, because bindings/cpp would prevent wrong
+// handles and early releases.
 #include "check.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ luxfer_image *new_image(luxfer_context *context, std::uint32_t width, std::uint3
     return image;
 }
 
-// A lamp over a floor, and a camera.
+// Creates a scene with a floor, a lamp above it and a camera.
 luxfer_scene *new_scene(luxfer_context *context) {
     luxfer_scene *scene = nullptr;
     CHECK_OK(luxfer_scene_create(context, &scene));
@@ -107,7 +108,7 @@ void wrong_handles_are_errors() {
     CHECK_OK(luxfer_release(image));
 }
 
-// Errors of one host thread are not those of another.
+// Each host thread has its own latest error message.
 void messages_belong_to_threads() {
     luxfer_context *context = new_context(1);
     std::vector<std::thread> hosts;
@@ -129,7 +130,7 @@ void messages_belong_to_threads() {
     CHECK_OK(luxfer_release(context));
 }
 
-// A callback may call any function, even release the very job it is told about.
+// A progress callback may call any function, and may even release the job whose progress it receives.
 struct Reentrant {
     luxfer_context *context;
     luxfer_render *render;
@@ -152,7 +153,7 @@ std::int32_t reenter(void *user, double) {
         CHECK_OK(luxfer_release(seen.job));
         return 1;
     }
-    CHECK(false); // Not called again after it has asked to cancel.
+    CHECK(false); // A callback must not be called again after it has asked to cancel.
     return 1;
 }
 
@@ -165,7 +166,7 @@ void callbacks_may_call_back() {
     CHECK(seen.calls == 1);
 }
 
-// A job is released from one thread while another cancels it through a reference of its own.
+// One thread releases a job while another thread, which has its own reference, cancels it.
 void references_of_two_threads() {
     luxfer_context *context = new_context(2);
     for (int i = 0; i < 20; ++i) {
@@ -184,7 +185,8 @@ void references_of_two_threads() {
     CHECK_OK(luxfer_release(context));
 }
 
-// Layers are asked for by expression and found by name; a slip is told with its column.
+// Layers are requested by light path expressions and found by name. The message for a wrong expression states the
+// column.
 void layers_are_found_by_name() {
     luxfer_context *context = new_context(2);
     luxfer_render *render = new_render(context);
@@ -209,7 +211,7 @@ void layers_are_found_by_name() {
     CHECK_OK(luxfer_release(context));
 }
 
-// The same bits on one thread and on three.
+// A rendering with one thread and one with three threads are equal to the bit.
 void threads_do_not_change_results() {
     std::vector<float> first;
     for (std::uint32_t threads : {1u, 3u}) {
@@ -219,7 +221,7 @@ void threads_do_not_change_results() {
         CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
         luxfer_image *image = nullptr;
         CHECK_OK(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image));
-        // Everything but the image goes; its pixels stay.
+        // The image keeps its pixels after everything else is released.
         CHECK_OK(luxfer_release(job));
         CHECK_OK(luxfer_release(render));
         CHECK_OK(luxfer_release(context));

@@ -1,6 +1,6 @@
-// Bad input through the C interface: each ends with a status and a message that says what to do; nothing is lost and the
-// same objects go on working afterwards. It calls the C functions and not bindings/cpp, to see every status and that no
-// output is written.
+// Bad input through the C interface: each call ends with a status and with a message that says what to do, writes no
+// output and leaks nothing, and the objects stay usable. The program calls the C functions and not bindings/cpp, so
+// that it sees every status and every output.
 #include "check.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 luxfer_context *context = nullptr;
 
-// The latest message says each of these words.
+// Whether the latest error message contains each of these words.
 bool says(std::initializer_list<const char *> words) {
     const std::string text = check::message(context);
     for (const char *word : words)
@@ -48,7 +48,7 @@ luxfer_status run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage la
     return ended;
 }
 
-// Appends what it is given to a vector of bytes.
+// Writing function for luxfer_scene_export_memory: appends the data to a vector of bytes.
 int32_t append(void *user, const void *data, size_t size) {
     auto *bytes = static_cast<std::vector<unsigned char> *>(user);
     const auto *start = static_cast<const unsigned char *>(data);
@@ -62,12 +62,12 @@ void files() {
     CHECK(says({"no such file.png"}));
     const unsigned char png[] = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a, 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0x7f, 0xff,
                                  0xff, 0xff, 0x7f, 0xff, 0xff, 0xff, 8, 2, 0, 0, 0, 0, 0, 0, 0};
-    // A side of 2^31 - 1 pixels is beyond the limit, whatever the rest of the file holds.
+    // A width of 2^31 - 1 pixels exceeds the limit, whatever the rest of the file contains.
     CHECK_STATUS(luxfer_image_load_memory(context, png, sizeof png, LUXFER_COLOUR_SRGB, &image), LUXFER_UNSUPPORTED);
     CHECK_STATUS(luxfer_image_load_memory(context, "text", 4, LUXFER_COLOUR_SRGB, &image), LUXFER_FORMAT);
     CHECK(image == nullptr);
 
-    // A good GLB, cut at many places, and with a length that lies.
+    // A valid GLB, truncated at many places, and with a wrong length in its header.
     luxfer_scene *room = nullptr, *scene = nullptr;
     std::vector<unsigned char> glb;
     CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
@@ -115,20 +115,20 @@ void strokes_and_surfaces() {
     CHECK_STATUS(run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW), LUXFER_INVALID_OPERATION);
     CHECK(says({"photo"}));
 
-    // No lines to be found.
+    // A uniform photo, in which no lines can be found.
     luxfer_image *grey = picture(96, 64, [](uint32_t, uint32_t) { return 0.5f; });
     CHECK_OK(luxfer_transfer_set_photo(transfer, grey));
     CHECK_STATUS(run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW), LUXFER_DEGENERATE);
     CHECK(says({"line"}));
 
-    // Pixels that are no numbers are passed over.
+    // NaN pixels are ignored.
     luxfer_image *noisy = picture(96, 64, [](uint32_t x, uint32_t y) {
         return x % 7 == 3 && y % 5 == 1 ? std::nanf("") : x > 48 ? 0.8f : 0.1f + 0.002f * float(y);
     });
     CHECK_OK(luxfer_transfer_set_photo(transfer, noisy));
     CHECK_OK(run(transfer, LUXFER_STAGE_FEATURES, LUXFER_STAGE_FEATURES));
 
-    // No strokes; then one class only; then both.
+    // Segment without strokes, then with strokes of one class only, then of both classes.
     CHECK_STATUS(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE), LUXFER_DEGENERATE);
     CHECK(says({"stroke"}));
     const float right[] = {60, 10, 90, 50}, left[] = {10, 10, 40, 50};
@@ -143,7 +143,7 @@ void strokes_and_surfaces() {
     CHECK_OK(luxfer_release(strokes));
     CHECK_OK(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE));
 
-    // A surface of another name, and what is called too early.
+    // A misspelt surface name, and results that are requested too early.
     CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     luxfer_surface surface;
     CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
@@ -154,7 +154,7 @@ void strokes_and_surfaces() {
     luxfer_image *early = nullptr;
     CHECK_STATUS(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &early), LUXFER_NOT_READY);
 
-    // No emitter to solve for.
+    // A relighting without a scene, and so without an emitter to solve for.
     luxfer_relight *relight = nullptr;
     luxfer_job *job = nullptr;
     CHECK_OK(luxfer_relight_create(context, &relight));

@@ -1,4 +1,4 @@
-// The little that the harnesses need of a test framework: checks that count, say where they failed, and go on.
+// A small test framework for the harnesses: a failed check prints its place, is counted, and does not end the program.
 #pragma once
 
 #include <luxfer.h>
@@ -31,7 +31,7 @@ inline std::string message(luxfer_context *context) {
     return text;
 }
 
-// To be returned from main.
+// Prints whether all checks passed; returns the exit code for main.
 inline int summary(const char *name) {
     std::printf("%s: %s\n", name, failures == 0 ? "all checks passed" : "FAILED");
     return failures == 0 ? 0 : 1;

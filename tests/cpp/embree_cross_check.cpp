@@ -1,9 +1,9 @@
-// The library's nearest hits against Embree's, on the furnished demonstration room with its lights placed.
+// Compares the library's nearest hits with Embree's, in the furnished demonstration room with lamps on its ceiling.
 //
-// Both use watertight triangle tests in f32, rounded differently. They agree on a ray if they name the same triangle, or
-// distances that differ by no more than 1e-5 of the distance: at a shared edge either triangle is right. The few rays that
-// remain start within millimetres or centimetres of two surfaces in one plane (a skirting on its wall), where the rounding
-// of coordinates alone is more than 1e-5 of the distance.
+// Both use watertight triangle tests in f32, but round differently. They agree on a ray if they name the same
+// triangle, or if the distances differ by at most 1e-5 of the distance: at a shared edge, either triangle is right.
+// The few remaining rays start within millimetres or centimetres of two coplanar surfaces (such as a skirting board on
+// its wall), where the rounding of coordinates alone exceeds 1e-5 of the distance.
 #include "embree_scene.hpp"
 #include "lit_room.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t RAYS = 1000000;
 
-// Origins uniform in the room, directions uniform on the sphere.
+// Random rays: origins are uniform in the room, directions uniform on the sphere.
 std::vector<luxfer_ray> make_rays() {
     std::mt19937_64 random(20240607);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -56,7 +56,7 @@ int main() {
         const bool both = hit.mesh != LUXFER_NONE && other.hit.geomID != RTC_INVALID_GEOMETRY_ID;
         if (both && hit.mesh == other.hit.geomID && hit.triangle == other.hit.primID) {
             ++same_triangle;
-            // The same triangle must mean the same point of it, too.
+            // If the triangles are equal, distances and barycentric coordinates must agree too.
             const double off = std::abs(double(hit.t) - other.ray.tfar);
             outside += off > 1e-5 * std::max(1.0, double(hit.t));
             worst_weight = std::max(worst_weight, double(std::abs(hit.u - other.hit.u)));
@@ -72,7 +72,7 @@ int main() {
     std::printf("on the same triangle: %zu distances differ by more than 1e-5 m or 1e-5 of themselves, barycentric "
                 "coordinates by at most %.1e\n",
                 outside, worst_weight);
-    CHECK(same_triangle + same_distance + disagreed > RAYS * 9 / 10); // the room is closed but for the door's gaps
+    CHECK(same_triangle + same_distance + disagreed > RAYS * 9 / 10); // the room is closed except for gaps
     CHECK(disagreed * 10000 <= RAYS);
     CHECK(outside * 10000 <= RAYS);
     return check::summary("embree_cross_check");

@@ -1,4 +1,4 @@
-// A scene as Embree sees it: geometry i is mesh i, primitives are its triangles.
+// A scene for Embree: geometry i is mesh i of the scene, and its primitives are the mesh's triangles.
 #pragma once
 
 #include "scene_copy.hpp"
@@ -52,7 +52,7 @@ public:
         return query;
     }
 
-    // Whether anything lies on the segment, its ends left out.
+    // Whether anything lies on the segment between the points, end points excluded.
     bool blocked(Vec from, Vec to) const {
         const Vec d = to - from;
         RTCRay ray = {};

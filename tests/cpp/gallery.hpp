@@ -1,7 +1,8 @@
-// A scene of every kind of material under every kind of light, described by arrays.
+// A scene with every kind of material and every kind of light, described by arrays.
 //
-// Panels of 1 x 1 m lie in rows over a matt floor; those that let light through hang 40 cm above it. The camera looks down
-// on them. A lamp, a point light, a spot light and a distant light shine, and an image of a sky all around.
+// Panels of 1 x 1 m lie in rows above a matt floor; panels that transmit light hang 40 cm above it. The camera looks
+// down on the panels. The lights are a lamp (an area light), a point light, a spot light, a distant light, and an
+// environment image of a sky.
 #pragma once
 
 #include "scene_copy.hpp"
@@ -16,7 +17,8 @@ struct Panel {
     bool textured, bumpy, layered, hangs;
 };
 
-// Roughnesses in 31sts: of these the library has the reflecting layer's albedo without interpolating.
+// Roughnesses are multiples of 1/31, because the library's table of the reflecting layer's albedo has its entries
+// there: no interpolation error disturbs the comparison.
 inline const std::vector<Panel> &panels() {
     static const std::vector<Panel> list = {
         {"coated", 0, 10 / 31.0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.6, 0.3, 0.1}, false, false, false, false},
@@ -43,20 +45,21 @@ constexpr float SKY_STRENGTH = 2.0f;
 struct Gallery {
     luxfer::Context context = luxfer::Context::create();
     luxfer::Scene scene = luxfer::Scene::create(context);
-    // The same numbers for whoever traces the scene without the library. Rows of RGBA.
+    // The images and lights again as plain numbers, for a tracer that does not use the library.
     TextureCopy colours, normals, layers, sky;
     luxfer::LightParams point, spot, distant;
     Vec lamp_corner = {-1.0, 3.5, -0.5}, lamp_u = {1.5, 0, 0}, lamp_v = {0, 0, 1}, lamp_emission = {30, 25, 20};
 
     Gallery() {
-        // Patterns: some of the colours' alphas are below the cutoff; normals lean by up to some 20 degrees.
+        // Patterns: some alphas of the colours are below the cutoff; normals are tilted by up to about 20 degrees.
         colours = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
             return c == 3 ? ((x + y) % 3 == 0 ? 0.1f : 1.0f) : 0.4f + 0.15f * float((x * 3 + y * 5 + c) % 4);
         });
         normals = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
             return c == 0 ? 0.35f + 0.1f * float(x) : c == 1 ? 0.6f - 0.08f * float(y) : 1.0f;
         });
-        // Roughness is green, metal blue; constant roughness, so that nothing lies between two entries of a table.
+        // Green is roughness, blue metalness. The roughness is constant, so that no value lies between two entries of
+        // the albedo table.
         layers = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
             return c == 1 ? float(16 / 31.0) : c == 2 ? float((x + y) % 2) : 1.0f;
         });

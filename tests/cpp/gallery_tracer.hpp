@@ -1,10 +1,12 @@
-// A path tracer of the harness's own for the gallery, as plain as it can be: Embree sees, everything else is here.
+// An independent reference path tracer for the gallery, as simple as possible. It traces rays with Embree and shares
+// no code with the library.
 //
-// Nothing of the library's code is shared. Each surface spreads light by the cosine and reflects or lets through what it
-// does in one direction, one of these chosen evenly; lights with a place are asked at every vertex, the sky is what a path
-// runs into. The model is that of the library's documentation: glTF 2.0, appendix B, with height-correlated Smith masking
-// and Schlick's Fresnel, where the diffuse layer gets what the reflecting layer leaves on both ways (Kelemen and
-// Szirmay-Kalos 2001), and clear transmission without refraction.
+// At each vertex it chooses uniformly among the surface's ways to scatter light: cosine-weighted scattering, mirror
+// reflection, and straight transmission. It samples all lights except the sky at every vertex; the sky contributes
+// when a path leaves the scene. The material model is the one that the library documents: glTF 2.0, appendix B, with
+// height-correlated Smith masking, Schlick's Fresnel term, a diffuse layer that gets the light that the reflecting
+// layer lets through on the way in and out (Kelemen and Szirmay-Kalos 2001), and clear transmission without
+// refraction.
 #pragma once
 
 #include "embree_scene.hpp"
@@ -15,12 +17,12 @@
 
 inline double schlick(double f0, double f90, double cosine) { return f0 + (f90 - f0) * std::pow(1 - cosine, 5); }
 
-// Smith's function of a direction at an angle to the normal.
+// Smith's function Λ of the GGX distribution, for the cosine between a direction and the normal.
 inline double smith(double cosine, double alpha) {
     return (std::sqrt(1 + alpha * alpha * (1 / (cosine * cosine) - 1)) - 1) / 2;
 }
 
-// What a reflecting layer sends back of light from one direction, and of light from everywhere.
+// The albedo of a reflecting layer, for light from one direction and for uniform light from all directions (`mean`).
 class Coat {
 public:
     Coat(double f0, double roughness) : f0(f0), smooth(roughness == 0) {
@@ -31,7 +33,7 @@ public:
         const double alpha = roughness * roughness;
         for (int i = 0; i <= STEPS; ++i)
             values.push_back(integrate(std::max(double(i) / STEPS, 1e-3), alpha));
-        // Simpson's rule for twice the integral of the albedo times the cosine.
+        // The mean albedo is twice the integral of albedo times cosine, by Simpson's rule.
         mean = 0;
         for (int i = 0; i <= STEPS; ++i)
             mean += (i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2) * values[std::size_t(i)] * (double(i) / STEPS) * 2 / (3.0 * STEPS);
@@ -45,7 +47,8 @@ public:
         return values[i] + (values[i + 1] - values[i]) * (x - double(i));
     }
 
-    // Share of light that reaches the diffuse layer and comes back from it, for a white one 1 in all.
+    // Factor of the diffuse reflection between two directions: the light that passes the reflecting layer on the way
+    // in and out, normalised so that a white diffuse layer and the reflecting layer together reflect all light.
     double left(double one, double other) const { return (1 - at(one)) * (1 - at(other)) / (1 - mean); }
 
 private:
@@ -54,7 +57,7 @@ private:
     bool smooth;
     std::vector<double> values;
 
-    // Over the facets by their projected area.
+    // The albedo for one direction: integrates over the microfacets, weighted by projected area.
     double integrate(double cosine, double alpha) const {
         const int n = 200;
         const double sine = std::sqrt(1 - cosine * cosine);
@@ -95,11 +98,11 @@ private:
     static constexpr std::uint32_t FLOOR = 0, LAMP = 1, FIRST_PANEL = 2;
     static constexpr double CLEARANCE = 4e-6;
 
-    // A point of a surface; normals are on the viewer's side.
+    // A point on a surface and its material there; normals point to the viewer's side.
     struct Point {
         Vec position, normal, shading, to_viewer, diffuse, f0, transmission;
         double f90, roughness, dielectric_f0, opacity;
-        const Coat *coat; // none without a reflecting layer
+        const Coat *coat; // nullptr without a reflecting layer
         std::uint32_t mesh;
     };
 
@@ -117,7 +120,7 @@ private:
 
     Vec trace(Vec origin, Vec direction, Random &random) const {
         Vec sum, throughput = {1, 1, 1};
-        bool sees_lamps = true; // whether no vertex before has asked the lamps
+        bool sees_lamps = true; // whether a hit on the lamp adds its emission: not if `direct` sampled it
         for (int bounce = 0;;) {
             const RTCRayHit hit = closest(origin, direction);
             if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
@@ -135,7 +138,7 @@ private:
                 sum = sum + throughput * gallery.lamp_emission * scale;
             sum = sum + throughput * direct(p, random);
 
-            // On by the cosine, by reflection, or straight through.
+            // Continue by cosine-weighted scattering, mirror reflection or straight transmission.
             const bool mirrors = p.coat && p.roughness == 0, passes = largest(p.transmission) > 0;
             const int ways = 1 + mirrors + passes, way = std::min(int(random.next() * ways), ways - 1);
             const double cosine = dot(p.shading, p.to_viewer);
@@ -182,7 +185,7 @@ private:
             u += mesh.uvs[2 * std::size_t(mesh.corners(hit.hit.primID)[i])] * weight[i];
             v += mesh.uvs[2 * std::size_t(mesh.corners(hit.hit.primID)[i]) + 1] * weight[i];
         }
-        // All quads lie flat: u runs along z and v along x, but for the lamp's, which faces down.
+        // All quads are horizontal, with u along z and v along x; only the lamp faces down.
         const Vec up = index == LAMP ? Vec{0, -1, 0} : Vec{0, 1, 0};
         const double side = dot(up, direction) > 0 ? -1 : 1;
         p.normal = up * side;
@@ -213,7 +216,7 @@ private:
             p.opacity = alpha;
         if (panel.bumpy) {
             const auto texel = bilinear(gallery.normals, u, v);
-            // u runs along +z; green is up in the picture, against v, which runs along +x.
+            // Red tilts the normal along u, which is +z; green tilts it up in the picture, against v, which is +x.
             p.shading = normalised(Vec{0, 0, 1} * ((2 * texel[0] - 1) * NORMAL_SCALE) +
                                    Vec{-1, 0, 0} * ((2 * texel[1] - 1) * NORMAL_SCALE) + up * (2 * texel[2] - 1)) *
                         side;
@@ -246,7 +249,7 @@ private:
         return sum;
     }
 
-    // Around the horizon the image goes on, at the poles it ends.
+    // The sky image wraps around horizontally and is clamped at the poles.
     Vec sky(Vec direction) const {
         const double u = 0.5 + std::atan2(direction.x, -direction.z) / (2 * M_PI), v = std::acos(direction.y) / M_PI;
         const double y = std::min(std::max(v * SKY_HEIGHT, 0.5), SKY_HEIGHT - 0.5) / SKY_HEIGHT;
@@ -258,7 +261,7 @@ private:
         return {schlick(p.f0.x, p.f90, cosine), schlick(p.f0.y, p.f90, cosine), schlick(p.f0.z, p.f90, cosine)};
     }
 
-    // The part of the distribution function that spreads light, per steradian.
+    // The BSDF (per steradian) without mirror reflection and transmission.
     Vec scattered(const Point &p, Vec to_light) const {
         const double no = dot(p.shading, p.to_viewer), ni = dot(p.shading, to_light);
         if (ni <= 0 || no <= 0 || dot(p.normal, to_light) <= 0)
@@ -276,7 +279,7 @@ private:
         return sum;
     }
 
-    // What all lights with a place send.
+    // Reflected light from all lights except the sky.
     Vec direct(const Point &p, Random &random) const {
         Vec sum;
         for (const luxfer_light_params *light : {&gallery.point, &gallery.spot}) {
@@ -301,7 +304,8 @@ private:
         return sum * scale;
     }
 
-    // The response to light from one direction that nothing on the way takes away.
+    // The BSDF times the cosine for light from a direction, times the share that reaches the point through panels on
+    // the way.
     Vec received(const Point &p, Vec towards, double distance) const {
         const Vec value = scattered(p, towards) * dot(p.shading, towards);
         if (!(largest(value) > 0))

@@ -1,5 +1,6 @@
-// What hosts do to their processes: change the floating-point mode and the locale, give threads small stacks, fork, have two
-// plug-ins with a context each, have threads of OpenMP and TBB of their own. None of it changes a result, and the library changes nothing of theirs.
+// Tests the library in hosts that change the floating-point mode or the locale, give threads small stacks, fork, load
+// two plug-ins with a context each, or use threads of OpenMP and TBB. None of these may change a result, and the
+// library may not change the host's settings.
 #include "check.hpp"
 
 #include <luxfer.hpp>
@@ -15,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#ifdef _OPENMP // not where every thread's accesses are watched (tests/sanitize.sh): these pools synchronise unseen
+#ifdef _OPENMP // not under ThreadSanitizer (tests/sanitize.sh), which does not see how these thread pools synchronise
 #include <omp.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -27,10 +28,10 @@
 
 namespace {
 
-// Results as they lie in memory: the host's own arithmetic would be in the host's mode.
+// Results are compared as bytes: arithmetic of this program would itself run in the changed floating-point mode.
 using Bytes = std::vector<unsigned char>;
 
-// An image with denormals, made before any mode is changed.
+// Samples with denormals, computed before any mode is changed.
 const std::vector<float> TINY = [] {
     std::vector<float> samples(30);
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -38,8 +39,9 @@ const std::vector<float> TINY = [] {
     return samples;
 }();
 
-// Some of everything that computes, on the calling thread and on the library's: a photo of the generated office and what is
-// read from it, a scene's light and a stylised picture, to be compared to the bit.
+// Runs computations of every kind, on the calling thread and on the library's threads, and returns their results,
+// which must be equal to the bit: a homography, a warp, a photo of the generated office, its vanishing points and
+// features.
 Bytes everything(const luxfer::Context &context) {
     Bytes out;
     const auto add = [&out](const auto &numbers) {
@@ -55,7 +57,7 @@ Bytes everything(const luxfer::Context &context) {
         }
     };
 
-    // Arithmetic on the calling thread; denormals and roundings in every step.
+    // Arithmetic on the calling thread, with denormals and rounding in every step.
     const double from[] = {0, 0, 1, 0, 1, 1, 0, 1}, to[] = {3, 1, 17.1, 2.3, 15.7, 13.9, 1e-3, 12.1};
     add(luxfer::homography_from_corners(context, from, to));
     const auto image = luxfer::Image::create(context, {TINY, 5, 2});
@@ -63,7 +65,7 @@ Bytes everything(const luxfer::Context &context) {
     add_image(image);
     add_image(image.warp(shrink, 3, 2));
 
-    // Jobs.
+    // Jobs, which run on the library's threads.
     luxfer::DemoPhotoParams small;
     small.width = 150;
     small.height = 100;
@@ -86,7 +88,7 @@ Bytes everything(const luxfer::Context &context) {
     return out;
 }
 
-// Modes of the host's thread; the context's threads are started in them too.
+// Changes the floating-point mode of the host's thread. The threads of a new context start in that mode too.
 void floating_point_modes(const Bytes &expected) {
     for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
         std::fesetround(rounding);
@@ -97,7 +99,7 @@ void floating_point_modes(const Bytes &expected) {
         CHECK(is_kept);
     }
 #ifdef __SSE__
-    const unsigned standard = _mm_getcsr(), flush = 0x8040; // denormals to zero, in and out
+    const unsigned standard = _mm_getcsr(), flush = 0x8040; // treat denormal inputs and results as zero
     _mm_setcsr(standard | flush);
     const bool is_same = everything(luxfer::Context::create()) == expected;
     const bool is_kept = (_mm_getcsr() & flush) == flush;
@@ -105,7 +107,7 @@ void floating_point_modes(const Bytes &expected) {
     CHECK(is_same);
     CHECK(is_kept);
 
-    // Traps: what divides by zero inside must not end a host that asks to be told of its own divisions.
+    // Enable traps: a division by zero inside the library must not end a host that traps its own divisions.
     std::feclearexcept(FE_ALL_EXCEPT);
     _mm_setcsr(_mm_getcsr() & ~(_MM_MASK_DIV_ZERO | _MM_MASK_INVALID | _MM_MASK_OVERFLOW));
     const bool is_same_with_traps = everything(luxfer::Context::create()) == expected;
@@ -116,12 +118,12 @@ void floating_point_modes(const Bytes &expected) {
 
 void locales(const luxfer::Context &context, const Bytes &expected) {
     for (const char *name : {"de_DE.UTF-8", "tr_TR.UTF-8", "C"}) {
-        if (std::setlocale(LC_ALL, name) != nullptr) // not every machine has them
+        if (std::setlocale(LC_ALL, name) != nullptr) // not every machine has these locales
             CHECK(everything(context) == expected);
     }
 }
 
-// Plug-ins are called on threads whose stack is not theirs to choose.
+// Hosts call plug-ins on threads with small stacks.
 void small_stack(const luxfer::Context &context, const Bytes &expected) {
     struct Work {
         const luxfer::Context &context;
@@ -154,8 +156,8 @@ void two_contexts(const Bytes &expected) {
 }
 
 #ifdef _OPENMP
-// Hosts have pools of their own; the library is called from within them, on all of their threads at once, and leaves them
-// as they are.
+// Hosts have thread pools of their own. They call the library on all threads of a pool at once, and it must leave the
+// pools as they are.
 void other_pools(const luxfer::Context &context, const Bytes &expected) {
     const int threads = omp_get_max_threads();
     int same = 0;
@@ -173,7 +175,7 @@ void other_pools(const luxfer::Context &context, const Bytes &expected) {
 }
 #endif
 
-// A child that does not use the library may come and go, also while jobs run.
+// The process may fork a child that does not use the library, even while jobs run.
 void forks(const luxfer::Context &context, const Bytes &expected) {
     luxfer::DemoPhotoParams endless;
     endless.samples = 100000;

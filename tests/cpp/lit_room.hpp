@@ -1,9 +1,9 @@
-// The library's demonstration room with lamps on its ceiling, as the harnesses trace it.
+// The library's furnished demonstration room with lamps on its ceiling: the scene of the cross-checks.
 #pragma once
 
 #include "scene_copy.hpp"
 
-// The ceiling's light texture: texels are 12.5 cm wide where the ceiling is 6 x 4 m. Lamps are whole texels.
+// Size of the ceiling's emission texture. The ceiling has 6 x 4 m, so a texel has 12.5 cm; lamps cover whole texels.
 constexpr std::uint32_t LAMP_COLUMNS = 48, LAMP_ROWS = 32;
 
 struct Lamp {
@@ -33,7 +33,7 @@ struct LitRoom {
     std::uint32_t light_mesh = 0;
 
     LitRoom() {
-        constexpr float SCALE = 500.0f; // so that the strength matters
+        constexpr float SCALE = 500.0f; // not 1, so that a missing factor is noticed
         std::vector<float> pixels(std::size_t(LAMP_COLUMNS) * LAMP_ROWS * 3, 0.0f);
         for (std::uint32_t row = 0; row < LAMP_ROWS; ++row)
             for (std::uint32_t column = 0; column < LAMP_COLUMNS; ++column)

@@ -1,7 +1,7 @@
-// The library's renderer against the harness's own path tracer (gallery_tracer.hpp), on every kind of material under every
-// kind of light. How they are compared: see renders.hpp.
+// Compares the library's renderer with the reference path tracer of gallery_tracer.hpp, for every kind of material
+// under every kind of light. renders.hpp describes the statistical tests.
 //
-// `material_check FACTOR` makes the harness's lights brighter by a factor, for seeing that the check notices.
+// `material_check FACTOR` multiplies the reference tracer's lights by FACTOR, to show that the check detects errors.
 #include "gallery_tracer.hpp"
 #include "renders.hpp"
 

@@ -1,5 +1,6 @@
-// A machine that has no more memory: allocations of the library's fail, one at a time, or all from one on. The call, or the job, must
-// say so, or do without; the process lives on, nothing is lost, and the next try gives the same result as ever.
+// Simulates a machine without free memory: makes one allocation of the library fail, or all allocations from one on.
+// The call or the job must return LUXFER_OUT_OF_MEMORY or do without the memory. The process survives, nothing is
+// lost, and the next attempt gives the usual result.
 #include "check.hpp"
 
 #include <luxfer.hpp>
@@ -17,7 +18,7 @@
 #include <link.h>
 #include <malloc.h>
 
-// glibc's own allocator, under its other names.
+// The second names of glibc's allocator, by which the replacements below call it.
 extern "C" {
 void *__libc_malloc(std::size_t);
 void *__libc_calloc(std::size_t, std::size_t);
@@ -27,7 +28,7 @@ void *__libc_memalign(std::size_t, std::size_t);
 
 namespace {
 
-// Where the library lies: only what it asks for is denied.
+// Address range of the library's code: only allocations called from there may fail.
 std::uintptr_t library_begin = UINTPTR_MAX, library_end = 0;
 
 int find_library(dl_phdr_info *object, std::size_t, void *) {
@@ -41,10 +42,12 @@ int find_library(dl_phdr_info *object, std::size_t, void *) {
     return 1;
 }
 
-// What the standard library of Rust asks the system for when a thread starts, or first fails, and cannot do without.
+// Bytes that Rust's standard library allocates when a thread starts or first panics. It aborts if this allocation
+// fails, so allocations of this size never fail here.
 constexpr std::size_t THREAD = 48;
 
-// Bytes from which on an allocation is counted, how many there have been, and which of them are to fail.
+// The smallest allocation that is counted, in bytes; the number of counted allocations so far; and the numbers of the
+// first and the last allocation that fail.
 std::atomic<std::size_t> least{SIZE_MAX};
 std::atomic<long> asked{0}, first_denied{-1}, last_denied{-1};
 
@@ -58,7 +61,7 @@ bool is_denied(std::size_t size, const void *caller) {
 
 } // namespace
 
-// The library's calls come here: the dynamic linker asks the program first.
+// Replacements for the allocator. The dynamic linker searches the program first, so the library calls these.
 extern "C" {
 
 void *malloc(std::size_t size) {
@@ -94,7 +97,7 @@ namespace {
 
 using luxfer::Context, luxfer::Image, luxfer::Scene;
 
-// What a use of the library gave, as one number.
+// Uses the library; returns a hash of the results.
 using Use = std::function<std::uint64_t()>;
 
 std::uint64_t hash(const Image &image) {
@@ -110,8 +113,8 @@ std::uint64_t hash(const Image &image) {
     return out;
 }
 
-// Lets a use's allocations of so many bytes and more fail: so many of them, evenly chosen, and with each of them all later ones too
-// if it is for good.
+// Repeats a use of the library and makes another allocation of at least `bytes` bytes fail each time, at most `most`
+// in total, evenly chosen; with `for_good`, all later allocations fail too.
 void starve(const char *name, std::size_t bytes, bool for_good, const Use &use, std::uint64_t truth, long most) {
     least = bytes;
     asked = 0;
@@ -125,7 +128,7 @@ void starve(const char *name, std::size_t bytes, bool for_good, const Use &use, 
         first_denied = i * count / tries;
         last_denied = for_good ? LONG_MAX : first_denied.load();
         try {
-            // What can do without may go on, but not to another result.
+            // A use that does not need the memory may succeed, but only with the usual result.
             CHECK(use() == truth);
         } catch (const luxfer::Error &error) {
             ++refused;
@@ -142,7 +145,7 @@ void starve(const char *name, std::size_t bytes, bool for_good, const Use &use, 
     std::fflush(stdout);
 }
 
-// The same for what follows from the size of the pictures, from so many KiB on, and for all there is.
+// Does this first for large allocations (of at least `kib` KiB, such as images), then for all allocations.
 void starve(const char *name, std::size_t kib, const Use &use, long most) {
     const std::uint64_t truth = use();
     for (const std::size_t bytes : {kib << 10, std::size_t(1)})

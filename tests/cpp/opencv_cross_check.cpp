@@ -1,7 +1,7 @@
-// Homographies, unwarps and CIELAB against OpenCV's.
+// Compares homographies, warped images and CIELAB with OpenCV's.
 //
-// OpenCV puts the top-left pixel's centre at (0, 0), the library at (0.5, 0.5); homographies of points do not care, those
-// of images are moved by half a pixel on both sides.
+// OpenCV places the centre of the top-left pixel at (0, 0), the library at (0.5, 0.5). This does not matter for
+// homographies between points; homographies between images are shifted by half a pixel on both sides.
 #include "check.hpp"
 
 #include <luxfer.hpp>
@@ -20,8 +20,9 @@ namespace {
 
 using Quad = std::vector<cv::Point2f>;
 
-// A convex quadrilateral: the corners of a rectangle, each moved by up to 30 % of its sides. OpenCV takes f32, and
-// getPerspectiveTransform multiplies coordinates in f32 too: they are rounded to twelve bits, so that products are exact.
+// A random convex quadrilateral: a rectangle whose corners are moved by up to 30 % of its sides. OpenCV's
+// getPerspectiveTransform multiplies coordinates in f32, so they are rounded to twelve bits, which makes products
+// exact.
 Quad random_quad(std::mt19937_64 &random, double size) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const auto rounded = [size](double v) { return float(std::round(v / size * 1024) * size / 1024); };
@@ -45,8 +46,8 @@ cv::Matx33d with_library(const luxfer::Context &context, const Quad &from, const
     return cv::Matx33d(luxfer::homography_from_corners(context, a, b).data());
 }
 
-// Between coordinates in units of the quads' sizes, so that all entries count alike; of unit norm, the largest entry
-// positive.
+// Expresses a homography in units of the quadrilaterals' sizes, so that all entries have similar weight, and scales it
+// to unit norm with a positive largest entry.
 cv::Matx33d normalised(const cv::Matx33d &h, double from_size, double to_size) {
     const auto scale = [](double s) { return cv::Matx33d(s, 0, 0, 0, s, 0, 0, 0, 1); };
     const cv::Matx33d unit = scale(1 / to_size) * h * scale(from_size);
@@ -54,8 +55,8 @@ cv::Matx33d normalised(const cv::Matx33d &h, double from_size, double to_size) {
     return unit * (std::copysign(1.0, *std::max_element(unit.val, unit.val + 9, smaller)) / cv::norm(unit));
 }
 
-// In those units the equations of these quads have condition numbers up to 2300, so that findHomography, which squares
-// them, errs by no more than 1e-9, and getPerspectiveTransform by far less. No quad is left out.
+// In these units, the equations of the quadrilaterals have condition numbers up to 2300. findHomography squares the
+// condition number, so its error is at most 1e-9; the error of getPerspectiveTransform is far smaller.
 void check_homographies(const luxfer::Context &context) {
     constexpr double RELATIVE = 1e-9;
     std::mt19937_64 random(11);
@@ -76,7 +77,7 @@ void check_homographies(const luxfer::Context &context) {
         CHECK(worst_exact <= RELATIVE);
         CHECK(worst_found <= RELATIVE);
     }
-    // What has no homography is an error.
+    // Points without a homography are an error.
     const double square[8] = {0, 0, 1, 0, 1, 1, 0, 1}, line[8] = {0, 0, 1, 0, 2, 0, 0, 1};
     const double nowhere[8] = {0, 0, 1, 0, 1, 1, 0, std::numeric_limits<double>::quiet_NaN()};
     double h[9];
@@ -87,10 +88,10 @@ void check_homographies(const luxfer::Context &context) {
     CHECK_STATUS(luxfer_homography_from_corners(c, square, square, nullptr), LUXFER_INVALID_ARGUMENT);
 }
 
-// A smooth picture: waves of amplitude 0.25 and this length in pixels, another pair of directions for each channel.
+// A smooth picture: two sine waves of amplitude 0.25, `length` pixels long, in different directions for each channel.
 struct Waves {
     double length;
-    // The largest there can be along an axis.
+    // Upper bounds of the slope and the curvature along an axis, per pixel and per square pixel.
     double slope() const { return 2 * 0.25 * 2 * M_PI / length; }
     double curvature() const { return 2 * 0.25 * std::pow(2 * M_PI / length, 2); }
 
@@ -109,7 +110,7 @@ struct Waves {
     }
 };
 
-// Its pixels in the library's eyes, and the other way round.
+// The pixels of an OpenCV image as samples for the library.
 luxfer::Span<float> samples(const cv::Mat &image) {
     return {reinterpret_cast<float *>(image.data), image.total() * std::size_t(image.channels())};
 }
@@ -122,7 +123,7 @@ cv::Mat warp_with_library(const luxfer::Context &context, const cv::Mat &source,
     return out;
 }
 
-// OpenCV's warp of the same, in its convention of pixel centres.
+// Warps with OpenCV by the same homography, converted to OpenCV's pixel centres.
 cv::Mat warp_with_opencv(const cv::Mat &source, const cv::Matx33d &to_source, cv::Size size, int interpolation) {
     const cv::Matx33d half(1, 0, 0.5, 0, 1, 0.5, 0, 0, 1);
     cv::Mat out;
@@ -151,7 +152,8 @@ void check_difference(double minification, const Difference &found, double bound
     CHECK(found.most <= bound);
 }
 
-// A map from an output of this size into the inside of a source, minifying by about `minification`.
+// A random homography from an output image of `size` into the interior of a source, which minifies by about
+// `minification`.
 cv::Matx33d random_map(const luxfer::Context &context, std::mt19937_64 &random, cv::Size size, cv::Size source,
                        double minification) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -164,10 +166,11 @@ cv::Matx33d random_map(const luxfer::Context &context, std::mt19937_64 &random, 
     return with_library(context, {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}}, to);
 }
 
-// Magnified, the library interpolates with cubics, OpenCV linearly at positions rounded to 1/32 pixel. So on a smooth
-// picture they may differ by a linear interpolation's error, curvature / 8 along each axis, and by what 1/64 pixel along
-// each axis makes; the cubic's own error is of fourth order. The mean is less than half of that largest difference: the
-// weight of a linear interpolation's error, a parabola, has a mean of 2/3, and a wave one of 2/pi.
+// For magnification, the library interpolates cubically, and OpenCV linearly at positions rounded to 1/32 pixel. So on
+// a smooth picture they may differ by the error of linear interpolation (curvature / 8 along each axis) and by the
+// effect of a shift of 1/64 pixel along each axis; the error of cubic interpolation is of fourth order. The mean
+// difference is less than half of this maximum: the interpolation error has the shape of a parabola, with a mean of
+// 2/3, times a wave, with a mean of 2/pi.
 void check_magnified(const luxfer::Context &context) {
     std::mt19937_64 random(12);
     const Waves waves{64};
@@ -187,12 +190,13 @@ void check_magnified(const luxfer::Context &context) {
     }
 }
 
-// Minified by m, a pixel is the mean of its footprint, of variance m² / 12 source pixels along each axis. The library adds
-// 1/12 for the samples that the footprint's ends cut, where it takes them from the source, and 4/12 + 1/4 where it takes
-// them from the level of half the size. OpenCV's is made by a linear unwarp four times as fine (at most 1/4 more for its
-// interpolation, and a sixteenth less for the four steps) that is then averaged. Averages of a smooth picture differ by half
-// the curvature times the difference of the variances, along each axis. Besides, samples of side s that the ends of a
-// footprint of length m cut count as flat, which moves its middle by up to s² / 8m.
+// For minification by m, a pixel is the mean over its footprint, a box of variance m² / 12 (square source pixels)
+// along each axis. The library adds 1/12 for the samples cut by the ends of the footprint if it reads the source
+// itself, and 4/12 + 1/4 if it reads the pyramid level of half the size. The reference is a linear warp by OpenCV to
+// four times the resolution, which is then averaged: linear interpolation adds at most 1/4, and averaging four steps
+// has a sixteenth less variance than a box. Averages of a smooth picture differ by half the curvature times the
+// difference of the variances, along each axis. In addition, samples of side s that are cut by the ends of a footprint
+// of length m count as constant, which shifts the footprint's centre by up to s² / 8m.
 void check_minified(const luxfer::Context &context) {
     std::mt19937_64 random(13);
     const Waves waves{120};
@@ -200,7 +204,7 @@ void check_minified(const luxfer::Context &context) {
     constexpr int FINE = 4;
     for (double m : {2.0, 3.5}) {
         const cv::Size size(int(1000 / m), int(760 / m));
-        const double longest = 1.25 * m; // the corners' shifts make it vary
+        const double longest = 1.25 * m; // the footprint's length varies, because the corners are moved
         const double variances = 4.0 / 12 + 0.25 + longest * longest / 12 / 16;
         const double side = m > 3 ? 2 : 1, shortest = 0.8 * m;
         const double bound = waves.curvature() * variances + 2 * waves.slope() * (1.0 / 64 + side * side / 8 / shortest);
@@ -219,7 +223,8 @@ void check_minified(const luxfer::Context &context) {
     }
 }
 
-// Colours all over the gamut, dark ones most of all. OpenCV's matrix and white have six digits, which makes hundredths.
+// Random colours of the whole gamut, most of them dark. OpenCV's matrix and white point have six digits, which causes
+// differences of hundredths.
 void check_lab(const luxfer::Context &context) {
     std::mt19937_64 random(14);
     std::uniform_real_distribution<double> unit(0.0, 1.0);

@@ -1,10 +1,11 @@
-// A path tracer of the harness's own, as plain as it can be: Embree sees, everything else is here.
+// An independent reference path tracer for the demonstration room, as simple as possible. It traces rays with Embree.
 //
-// What it shares with the library is the scene as read back, and nothing of its code. Where the library weighs two
-// strategies against each other, walks in f32 and samples texels by what they emit, this one takes light from uniformly
-// chosen points of the lamps alone (which it knows from the harness, not from the scene's texture), walks in f64, and
-// spreads all paths by the cosine. It covers what the demonstration room has: Lambert's law and rough metals (GGX with
-// height-correlated Smith masking and Schlick's Fresnel, glTF 2.0 appendix B), shading normals, textured base colours.
+// It shares no code with the library, only the scene, which it reads back through the library. The library combines
+// two sampling techniques (MIS), traces in f32 and samples texels by their emission. This tracer samples only points
+// that are uniform on the lamps (known from the harness, not from the scene's texture), computes in f64, and continues
+// all paths in cosine-distributed directions. It covers the materials of the demonstration room: Lambertian surfaces
+// and rough metals (GGX with height-correlated Smith masking and Schlick's Fresnel term, glTF 2.0 appendix B), shading
+// normals, and textured base colours.
 #pragma once
 
 #include "embree_scene.hpp"
@@ -24,7 +25,8 @@ public:
         lit_area = sum * texel;
     }
 
-    // Radiance through a point of the image, both coordinates in [0, 1] from its top-left corner.
+    // Estimates the radiance at a point (x, y) of the image; (0, 0) is the top-left corner, (1, 1) the bottom-right
+    // one.
     Vec radiance(double x, double y, double aspect, Random &random) const {
         const luxfer_camera_params &camera = copy.camera;
         const Vec position = vec(camera.position), forward = normalised(vec(camera.target) - position);
@@ -35,7 +37,7 @@ public:
     }
 
 private:
-    // A point of a surface and what it is made of there; both normals are on the viewer's side.
+    // A point on a surface and its material there; both normals point to the viewer's side.
     struct Point {
         Vec position, normal, shading, colour, to_viewer;
         double metallic, alpha;
@@ -56,18 +58,18 @@ private:
             const float d[3] = {float(direction.x), float(direction.y), float(direction.z)};
             const RTCRayHit hit = embree.closest(o, d, 0, INFINITY);
             if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-                return sum; // out through a gap into the dark
+                return sum; // the ray has left the room through a gap; outside it is dark
             const Point point = describe(hit, direction);
-            // Lamps that the camera sees; all other light is taken by choosing points of them.
+            // Add a lamp's emission only if the camera sees it directly; `direct` samples all other light.
             if (bounce == 0 && point.mesh == light_mesh && dot(direction, vec(ceiling.normal)) < 0)
                 sum = sum + emission_at(point.position);
             sum = sum + throughput * direct(point, random);
 
-            // On by the cosine about the shading normal; below the surface there is nothing.
+            // Continue in a cosine-distributed direction about the shading normal; end below the surface.
             const Vec next = spread(point.shading, random);
             if (dot(next, point.normal) <= 0)
                 return sum;
-            throughput = throughput * (reflectance(point, next) * M_PI); // times the cosine over its density
+            throughput = throughput * (reflectance(point, next) * M_PI); // BRDF times cosine / pdf
             if (bounce >= 3) {
                 const double survival = std::min(0.95, largest(throughput));
                 if (!(random.next() < survival))
@@ -81,7 +83,7 @@ private:
         }
     }
 
-    // Rays start this far off the surface, in metres.
+    // Distance from the surface at which rays start, in metres.
     static constexpr double CLEARANCE = 2e-6;
 
     Point describe(const RTCRayHit &hit, Vec direction) const {
@@ -104,7 +106,8 @@ private:
         point.normal = normalised(cross(mesh.corner(hit.hit.primID, 1) - a, mesh.corner(hit.hit.primID, 2) - a));
         if (dot(point.normal, direction) > 0)
             point.normal = point.normal * -1;
-        // A smooth normal means the axis; one that the viewer would see from behind is tilted until seen from the side.
+        // A shading normal may point to either side: flip it to the side of the geometric normal. If the viewer would
+        // then see it from behind, tilt it until it is seen edge-on.
         point.shading = mesh.normals.empty() ? point.normal : normalised(smooth);
         if (dot(point.shading, point.normal) < 0)
             point.shading = point.shading * -1;
@@ -121,7 +124,7 @@ private:
         return point;
     }
 
-    // The room's patterns repeat.
+    // Looks up a texture with bilinear interpolation; textures of the room repeat.
     Vec bilinear(const luxfer_texture_use &use, double u, double v) const {
         const TextureCopy &texture = copy.textures[use.texture];
         const float *m = use.transform;
@@ -142,7 +145,7 @@ private:
 
     static double wrapped(double i, double size) { return i - size * std::floor(i / size); }
 
-    // The reflectance distribution function per steradian.
+    // The BRDF, per steradian.
     static Vec reflectance(const Point &p, Vec to_light) {
         const Vec diffuse = p.colour * ((1 - p.metallic) / M_PI);
         if (p.metallic == 0)
@@ -158,7 +161,7 @@ private:
         return diffuse + fresnel * (p.metallic * distribution * visibility);
     }
 
-    // Light from a point chosen uniformly on the lamps.
+    // Reflected light from one point that is sampled uniformly on the lamps.
     Vec direct(const Point &p, Random &random) const {
         const double pick = random.next() * areas.back();
         const std::size_t index = std::size_t(std::upper_bound(areas.begin(), areas.end(), pick) - areas.begin());

@@ -1,9 +1,7 @@
-// The library's renderer against the harness's own path tracer (path_tracer.hpp), on the furnished demonstration room
-// under coloured lamps.
+// Compares the library's renderer with the reference path tracer of path_tracer.hpp, in the furnished demonstration
+// room under coloured lamps. renders.hpp describes the statistical tests.
 //
-// How they are compared: see renders.hpp.
-//
-// `path_tracer_check FACTOR` makes the harness's lamps brighter by a factor, for seeing that the check notices.
+// `path_tracer_check FACTOR` multiplies the reference tracer's lamps by FACTOR, to show that the check detects errors.
 #include "path_tracer.hpp"
 #include "renders.hpp"
 
@@ -11,7 +9,7 @@
 
 namespace {
 
-// Quantiles from printed tables.
+// Tests statistics.hpp against printed tables.
 void check_statistics() {
     CHECK(std::abs(statistics::student_p(2.0687, 23) - 0.05) < 1e-5);
     CHECK(std::abs(statistics::student_p(-12.7062, 1) - 0.05) < 1e-5);

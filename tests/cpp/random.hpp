@@ -1,4 +1,4 @@
-// The harnesses' own random numbers.
+// Random numbers of the reference path tracers.
 #pragma once
 
 #include <cstdint>

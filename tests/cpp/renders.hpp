@@ -1,14 +1,16 @@
-// Two renderers' independent images of one view, compared.
+// Compares independent images of one view by two renderers.
 //
-// The scatter of a pixel among images that differ in the seed alone gives the variance of its mean, whatever stratification
-// does inside one. For each channel:
-// - each pixel, Welch's t-test: at 1 % corrected for the number of pixels (Šidák), 99.75 % of the pixels are accepted;
-// - the share of pixels rejected at an uncorrected 1 % lies in its binomial 99.9 % interval: not more than chance rejects
-//   (a small error everywhere would), and not fewer (a variance that is stated too large would hide one);
-// - the mean of the image, Welch's t-test at 0.1 %: sees a common factor that no single pixel does;
-// - the variance that the library states for each pixel, against the scatter among its images: over all pixels the two
-//   differ by chance alone, at 0.1 %.
-// The seeds are fixed, so a pass is a pass every time.
+// Each renderer makes several images that differ only in their seeds. The scatter of a pixel among these images gives
+// the variance of its mean, even though samples inside an image are stratified. The tests, for each channel:
+// - Pixels: Welch's t-test at 1 %, corrected for the number of pixels (Šidák), accepts at least 99.75 % of the pixels.
+// - Share of rejections: without the correction, the share of pixels rejected at 1 % lies in its binomial 99.9 %
+// interval.
+//   A small error everywhere would cause more rejections, and an overestimated variance fewer.
+// - Image mean: Welch's t-test at 0.1 % detects a common factor that is too small to be seen in single pixels.
+// - Stated variance: the variance that the library states for each pixel and the scatter among its images differ, over
+// all
+//   pixels, only by chance (at 0.1 %).
+// The seeds are fixed, so the outcome is reproducible.
 #pragma once
 
 #include "random.hpp"
@@ -22,10 +24,10 @@ constexpr std::uint32_t WIDTH = 64, HEIGHT = 36, REPLICATES = 24;
 constexpr std::uint32_t SAMPLES = 64;
 constexpr std::size_t PIXELS = std::size_t(WIDTH) * HEIGHT;
 
-// One image: three channels for each pixel.
+// An image with three channels per pixel, interleaved.
 using Picture = std::vector<float>;
 
-// Images, and the variances that the library states for them.
+// Renders the replicates with the library; returns the images and the variances that the library states for them.
 inline std::pair<std::vector<Picture>, std::vector<Picture>> render_with_library(const luxfer::Scene &scene) {
     const auto render = luxfer::Render::create(scene.context());
     render.set_scene(scene);
@@ -118,7 +120,7 @@ inline void compare_variances(const std::vector<Picture> &pictures, const std::v
             value.add(pictures[r][3 * i + channel]);
             stated.add(variances[r][3 * i + channel]);
         }
-        // Relative to the pixel's brightness, so that no pixel counts for all.
+        // Divide by the pixel's squared brightness, so that bright pixels do not dominate the sum.
         const double square = std::max(value.mean * value.mean, 1e-12);
         const double scatter = value.variance_of_mean() * REPLICATES;
         difference.add((stated.mean - scatter) / square);

@@ -1,4 +1,4 @@
-// A luxfer scene read back into plain arrays, for the harnesses that trace it themselves.
+// Reads a luxfer scene back into plain arrays, for the reference path tracers.
 #pragma once
 
 #include "check.hpp"
@@ -29,7 +29,7 @@ inline Vec vec(const float *p) { return {p[0], p[1], p[2]}; }
 struct MeshCopy {
     std::string name;
     std::uint32_t material = 0;
-    std::vector<float> positions, normals, uvs; // 3, 3 and 2 for each vertex
+    std::vector<float> positions, normals, uvs; // 3, 3 and 2 floats per vertex
     std::vector<std::uint32_t> indices;
 
     std::size_t triangles() const { return indices.size() / 3; }

@@ -1,4 +1,4 @@
-// The little of statistics that comparing two renderers needs, in f64.
+// Statistical tests for comparing two renderers.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ inline double incomplete_beta(double a, double b, double x) {
     return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
 
-// Probability that Student's t lies further from 0 than this.
+// Two-sided p-value: the probability that |T| exceeds |t| for Student's t distribution.
 inline double student_p(double t, double degrees) {
     return incomplete_beta(degrees / 2, 0.5, degrees / (degrees + t * t));
 }
@@ -53,10 +53,10 @@ struct Sample {
     double variance_of_mean() const { return squares / (count - 1) / count; }
 };
 
-// Welch's test that two samples have one mean: the probability of a difference as large as theirs.
+// Welch's t-test: the probability of a difference at least this large if both samples have the same true mean.
 inline double welch_p(const Sample &a, const Sample &b) {
     const double va = a.variance_of_mean(), vb = b.variance_of_mean(), difference = a.mean - b.mean;
-    // Without any scatter, as where a pixel sees nothing but a lamp or nothing at all, only rounding may differ.
+    // Without any scatter (a pixel that sees only a lamp, or nothing), the means may differ only by rounding.
     const double rounding = 1e-6 * (std::abs(a.mean) + std::abs(b.mean));
     if (std::sqrt(va + vb) <= rounding)
         return std::abs(difference) <= 4 * rounding ? 1 : 0;
@@ -64,7 +64,7 @@ inline double welch_p(const Sample &a, const Sample &b) {
     return student_p(difference / std::sqrt(va + vb), degrees);
 }
 
-// The numbers of successes in n trials of probability p between which all but `outside` of the cases lie.
+// Interval of the number of successes in n trials of probability p that leaves out the probability `outside`.
 inline std::pair<std::size_t, std::size_t> binomial_interval(std::size_t n, double p, double outside) {
     std::size_t low = 0, high = n;
     double sum = 0;

@@ -1,5 +1,6 @@
-// Stylisation from C as a plug-in goes through it: guides of two scenes, an artwork, the sheet to print and to align, frames
-// of a sequence; and at each step what must be refused, with a message that says why.
+// Tests stylisation through the C interface in the order of a plug-in: guides of two scenes, an artwork, the sheet
+// that is printed and aligned, and frames of a sequence. At each step, wrong input must be refused with a message that
+// says why.
 #include "check.hpp"
 
 #include <cmath>
@@ -140,7 +141,7 @@ void guides_tell_light_apart(luxfer_guides *guides) {
     CHECK_STATUS(luxfer_guides_get_image(guides, LUXFER_GUIDES_FULL, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK(image == nullptr);
 
-    // The camera stands still: nothing moves.
+    // Both guides have the same camera, so the motion is 0.
     luxfer_image *motion = nullptr;
     CHECK_OK(luxfer_guides_get_motion(guides, guides, &motion));
     size_t seen = 0;
@@ -162,7 +163,8 @@ void guides_tell_light_apart(luxfer_guides *guides) {
     CHECK_OK(luxfer_release(wider));
 }
 
-// The artworks that stand in for an artist's: three, each different, of the guides' size, white paper where nothing is.
+// The three generated artworks, which stand in for an artist's work: they differ, have the guides' size, and are white
+// paper where nothing is painted.
 void artworks(luxfer_guides *guides) {
     std::vector<float> before;
     for (luxfer_artwork style = LUXFER_ARTWORK_PEN; style <= LUXFER_ARTWORK_PAINT; ++style) {
@@ -193,7 +195,7 @@ void sheets() {
     luxfer_image *picture = nullptr, *sheet = nullptr, *artwork = nullptr;
     CHECK_OK(luxfer_image_create(context, &view, &picture));
 
-    // A scan of the print as it left the printer lies on the picture again, pale as it was printed.
+    // Align the printed sheet itself instead of a scan: the result is the pale picture as printed.
     CHECK_OK(luxfer_sheet_print(picture, &params, &sheet));
     const Size paper = size_of(sheet);
     CHECK(std::fabs(paper.width / (297 / 25.4 * 60) - 1) < 0.01 && std::fabs(paper.height / (210 / 25.4 * 60) - 1) < 0.01);
@@ -208,7 +210,7 @@ void sheets() {
     CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr, 0));
     CHECK_OK(luxfer_release(artwork));
 
-    // What cannot be.
+    // Impossible arguments are refused.
     artwork = nullptr;
     CHECK_STATUS(luxfer_sheet_align(sheet, 0, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, 1u << 31, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
@@ -247,7 +249,7 @@ luxfer_status paint(luxfer_stylize *stylize, const luxfer_stylize_params *params
     return started == LUXFER_OK ? finish(job) : started;
 }
 
-// All guides there are; a sequence of two frames; and the extremes.
+// Stylises with all guides, then a sequence of two frames, then with extreme masks.
 void stylise(luxfer_guides *source, luxfer_guides *target) {
     luxfer_stylize *stylize = nullptr;
     luxfer_image *artwork = nullptr, *picture = nullptr, *motion = nullptr;
@@ -276,7 +278,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     for (float v : first) CHECK(v >= 0 && v <= 1);
     CHECK_OK(luxfer_release(picture));
 
-    // The next frame of a camera that stands still: all paint stays.
+    // The next frame, with a still camera: all paint stays where it is.
     CHECK_OK(luxfer_guides_get_motion(target, target, &motion));
     CHECK_OK(luxfer_stylize_set_motion(stylize, motion));
     params.seed = 2;
@@ -288,7 +290,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     CHECK(same > first.size() * 8 / 10);
     CHECK_OK(luxfer_release(picture));
 
-    // A motion of the wrong shape, or with nothing to go on from.
+    // Refuse a motion with the wrong number of channels, and a motion without a previous frame.
     luxfer_image *mask = flat({WIDTH, HEIGHT, 1}, 1);
     CHECK_OK(luxfer_stylize_set_motion(stylize, mask));
     CHECK_STATUS(paint(stylize, &params), LUXFER_INVALID_ARGUMENT);
@@ -300,7 +302,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     CHECK_STATUS(paint(fresh, nullptr), LUXFER_NOT_READY);
     CHECK_OK(luxfer_stylize_set_motion(fresh, nullptr));
 
-    // Everything masked, on either side; then a mask that leaves all.
+    // Refuse masks that leave nothing, of the exemplar or of the target; masks that leave everything are fine.
     luxfer_image *nothing = flat({WIDTH, HEIGHT, 1}, 0);
     CHECK_OK(luxfer_stylize_set_source_mask(fresh, nothing));
     CHECK_STATUS(paint(fresh, nullptr), LUXFER_DEGENERATE);
@@ -310,7 +312,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     CHECK_OK(luxfer_stylize_set_target_mask(fresh, nullptr, nullptr));
     CHECK_OK(paint(fresh, nullptr));
 
-    // Half painted: the painted half is kept to the bit.
+    // Complete a half-painted picture: the painted half stays unchanged to the bit.
     std::vector<float> half(size_t{WIDTH} * HEIGHT);
     for (size_t i = 0; i < half.size(); ++i) half[i] = i % WIDTH < WIDTH / 2;
     const luxfer_image_view view = packed({WIDTH, HEIGHT, 1}, half);

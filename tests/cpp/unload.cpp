@@ -1,5 +1,5 @@
-// A host that loads the library as a plug-in does, uses it, and lets go of it, again and again: nothing may stay behind that
-// would call into code that is gone. The first argument is the library.
+// Loads the library with dlopen, uses it and unloads it, again and again, as a host does with plug-ins: nothing may
+// remain that would call unloaded code. The first argument is the path of the library.
 #include <luxfer.h>
 
 #include <chrono>
@@ -18,8 +18,8 @@ std::size_t threads_of_this_process() {
     return count;
 }
 
-// Whether this thread is the only one within a second: a thread that was joined has run all its code, but the kernel takes a
-// moment to strike it off the list.
+// Whether this thread becomes the only one within a second. A joined thread has run all its code, but the kernel lists
+// it for a moment longer.
 bool is_alone() {
     for (int tries = 0; threads_of_this_process() != 1; ++tries) {
         if (tries == 1000)
@@ -34,7 +34,7 @@ Function *find(void *library, const char *name) {
     return reinterpret_cast<Function *>(dlsym(library, name));
 }
 
-// Whether a job could be started, cancelled and let go of.
+// Starts, cancels and releases a job; returns whether every call succeeded.
 bool use(void *library) {
     luxfer_context *context = nullptr;
     luxfer_demo_photo *photo = nullptr;

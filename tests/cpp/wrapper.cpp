@@ -1,5 +1,5 @@
-// The C++ wrapper: who owns what, how errors arrive, callbacks that throw, views of memory. Built twice, with exceptions and
-// with LUXFER_NO_EXCEPTIONS; wrapper_is_complete.cmake looks after functions that it may lack.
+// Tests the C++ wrapper: ownership, errors, callbacks that throw, and views of memory. Built twice, with exceptions
+// and with LUXFER_NO_EXCEPTIONS. wrapper_is_complete.cmake checks that the wrapper lacks no function.
 #include "check.hpp"
 
 #include <luxfer.hpp>
@@ -12,7 +12,8 @@
 
 namespace {
 
-// The same in both builds: the value of a call that must succeed, and the error of one that must not.
+// Helpers with the same interface in both builds: the value of a call that must succeed, and the error of a call that
+// must fail.
 #ifndef LUXFER_NO_EXCEPTIONS
 
 template <class T>
@@ -70,7 +71,7 @@ Image new_image(const Context &context) {
     return ok(Image::create(context, luxfer::ConstImageView(pixels, 4, 3)));
 }
 
-// A lamp over a floor, and a camera.
+// Creates a scene with a floor, a lamp above it and a camera.
 Scene new_scene(const Context &context) {
     const Scene scene = ok(Scene::create(context));
     luxfer::MaterialParams material;
@@ -104,14 +105,15 @@ Job start(const Render &render, std::uint32_t samples) {
     return ok(render.start(params));
 }
 
-// Versions: before 1.0 minor versions differ, after that major ones, and older libraries lack functions.
+// Compatibility of a library (first argument) with a header: before 1.0, their minor versions must be equal; from 1.0
+// on, their major versions, and the library must not be older than the header.
 static_assert(luxfer::is_compatible(LUXFER_VERSION, LUXFER_VERSION));
 static_assert(luxfer::is_compatible(103, 101) && luxfer::is_compatible(101, 103) && !luxfer::is_compatible(201, 101));
 static_assert(!luxfer::is_compatible(10000, 101) && !luxfer::is_compatible(101, 10000));
 static_assert(luxfer::is_compatible(10203, 10100) && !luxfer::is_compatible(10100, 10203) &&
               !luxfer::is_compatible(20000, 10000));
 
-// The cost of a handle: its pointer, and that of its context.
+// A handle holds two pointers: its own and that of its context.
 static_assert(sizeof(Image) == 2 * sizeof(void *) && sizeof(luxfer::RenderParams) == sizeof(luxfer_render_params));
 static_assert(std::is_nothrow_move_constructible_v<Image> && std::is_nothrow_move_assignable_v<Image>);
 
@@ -134,7 +136,8 @@ void moved_from_handles_are_empty() {
     CHECK(!image);
 }
 
-// What a luxfer_context_params.memory_budget_mib of 1 has room for tells which images are still alive.
+// A memory budget of 1 MiB has room for one image only, so a failing call shows that the previous image is still
+// alive.
 void copies_share_and_the_last_one_releases() {
     luxfer::ContextParams params;
     params.memory_budget_mib = 1;
@@ -151,7 +154,7 @@ void copies_share_and_the_last_one_releases() {
     copy = Image();
     first = ok(fill());
 
-    // A C handle that the caller has, taken over.
+    // The wrapper can take over a C handle of the caller.
     CHECK_OK(luxfer_retain(first.get()));
     Image adopted(context, first.get());
     first = Image();
@@ -174,9 +177,9 @@ void any_order_of_release() {
     gone.reset();
     job.reset();
     CHECK(ok(image.samples()).size() == 16 * 16 * 3);
-    // The context lives on in the image, and has words for its errors.
+    // The image keeps the context alive, so errors still have messages.
     CHECK(std::strlen(error_of([&] { return image.save("picture.xyz"); }).what()) > 20);
-    // Letting go of a job that runs ends it.
+    // Destroying the handle of a running job ends the job.
     const Render other = new_render(image.context());
     start(other, endless);
     start(other, 1);
@@ -190,14 +193,14 @@ void errors_have_status_and_words() {
     CHECK(std::strstr(error.what(), "/nonexistent/photo.png") != nullptr);
     CHECK(ok(context.last_error()) == error.what());
 
-    // Those of one thread are not those of another.
+    // Each thread has its own latest error.
     std::thread([&] {
         CHECK(ok(context.last_error()).empty());
         CHECK(std::strstr(error_of([&] { return Scene::load(context, std::string("other.glb")); }).what(), "other.glb"));
     }).join();
     CHECK(ok(context.last_error()) == error.what());
 
-    // Of a job, by whoever waits for it.
+    // The thread that waits for a job gets its error.
     const luxfer::Transfer transfer = ok(luxfer::Transfer::create(context));
     CHECK_ERROR(transfer.start(LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW), LUXFER_INVALID_OPERATION);
     OK(transfer.set_photo(new_image(context)));
@@ -240,7 +243,8 @@ void jobs_report_and_are_cancelled() {
     CHECK(ok(job.poll()).is_finished() && ok(job.poll()).outcome == LUXFER_CANCELLED);
     CHECK_ERROR(job.wait_for(std::chrono::milliseconds(-1)), LUXFER_CANCELLED);
 
-    // A function of the caller as a job: its result, its error, and a cancel that ends what it waits for.
+    // Run functions of the caller as jobs: check their results and errors, and that cancelling the job also cancels
+    // the job for which its function waits.
     std::atomic<int> runs{0};
     OK(ok(Job::start(context, [&]() -> luxfer::Result<> {
         ++runs;
@@ -269,7 +273,8 @@ void exceptions_cross_the_callbacks() {
     const Context context = new_context();
     const Render render = new_render(context);
     const Job job = start(render, endless);
-    // Two threads wait for one job; the exception reaches the one whose function threw, the other hears of the cancel.
+    // Two threads wait for one job. The exception reaches the thread whose callback threw it; the other thread gets
+    // LUXFER_CANCELLED.
     std::thread other([&] { CHECK_ERROR(job.wait(), LUXFER_CANCELLED); });
     int calls = 0, code = 0;
     try {
@@ -293,14 +298,15 @@ void exceptions_cross_the_callbacks() {
 
 #endif
 
-/// A TIFF of one row of two grey pixels, whose camera was turned a quarter, of 36 mm on film, at f/2, 1/50 s and ISO 100.
+/// A TIFF with one row of two grey pixels. Its metadata: camera rotated by 90 degrees, 36 mm equivalent focal length,
+/// f/2, 1/50 s, ISO 100.
 std::vector<std::uint8_t> turned_photo() {
     std::vector<std::uint8_t> file = {'I', 'I', 42, 0, 8, 0, 0, 0};
     const auto put = [&](std::uint32_t value, int bytes) {
         for (int k = 0; k < bytes; ++k)
             file.push_back(static_cast<std::uint8_t>(value >> 8 * k));
     };
-    // Tag, kind, value: two of one byte each, then what the camera says, its fractions behind.
+    // Entries of tag, type and value: those of the picture, then those of the camera (EXIF), whose fractions follow.
     const std::uint32_t picture[][3] = {{256, 3, 2}, {257, 3, 1}, {258, 3, 8},   {262, 3, 1},
                                         {273, 4, 200}, {274, 3, 6}, {279, 4, 2}, {0x8769, 4, 120}};
     const std::uint32_t camera[][3] = {{0x829a, 5, 184}, {0x829d, 5, 192}, {0x8827, 3, 100}, {0xa405, 3, 36}};
@@ -345,7 +351,7 @@ void views_of_memory() {
     OK(image.read(luxfer::ImageView(wide, 2, 2, 1)));
     CHECK(wide[0] == 0 && wide[1] == 65535 && wide[3] == 64 * 257);
 
-    // The lower row first, in the first byte of every four.
+    // Read with the lower row first, into the first byte of every four.
     std::uint8_t strided[16] = {};
     luxfer::ImageView view(strided, 2, 2, 1);
     view.flags = LUXFER_VIEW_BOTTOM_UP;
@@ -361,7 +367,7 @@ void views_of_memory() {
     CHECK(ok(ok(image.warp(identity, 2, 2)).samples()) == samples);
 }
 
-// A scene through a file in memory, and read back.
+// Writes a scene to a file in memory and reads it back.
 void scenes_come_back() {
     const Context context = new_context();
     const Scene scene = new_scene(context);
@@ -474,7 +480,7 @@ void lights_have_names() {
     CHECK_ERROR(luxfer::add_luminaire(hall, file, along), LUXFER_INVALID_ARGUMENT);
 }
 
-// Each stage is asked for results before it has any, so that each method is seen to reach the function of its own.
+// Asks each stage for results before it has any: the error shows that each method calls its C function.
 void stages_say_what_they_lack() {
     const Context context = new_context();
     const auto rectify = ok(luxfer::Rectify::create(context));
@@ -522,7 +528,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(demo.image(LUXFER_DEMO_PHOTO_PICTURE), LUXFER_NOT_READY);
     CHECK_ERROR(luxfer::Sheet::align(new_image(context), 8, 8), LUXFER_DEGENERATE);
 
-    // Empty objects stand for NULL where that means none, and are errors elsewhere.
+    // An empty object is passed as NULL: it removes optional input, and is an error where an object is required.
     OK(rectify.set_mask(Image()));
     OK(features.set_depth(Image()));
     OK(features.clear_network());

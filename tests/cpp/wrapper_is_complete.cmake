@@ -1,4 +1,4 @@
-# Every function of the C header is called by the C++ wrapper, and every struct of settings has its type there.
+# Checks that the C++ wrapper calls every function of the C header, and has a type for every struct of settings.
 #
 #   cmake -DSOURCE=<root of the source tree> -P wrapper_is_complete.cmake
 file(GLOB parts "${SOURCE}/include/luxfer/*.h")
@@ -11,7 +11,7 @@ file(GLOB_RECURSE files "${SOURCE}/bindings/cpp/*.hpp")
 set(wrapper "")
 foreach(file IN LISTS files)
   file(READ "${file}" text)
-  string(REGEX REPLACE "//[^\n]*" "" text "${text}") # What comments name is not called.
+  string(REGEX REPLACE "//[^\n]*" "" text "${text}") # Names in comments are no calls.
   string(APPEND wrapper "${text}")
 endforeach()
 

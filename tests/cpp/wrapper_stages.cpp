@@ -1,5 +1,6 @@
-// Every stage through the C++ wrapper, on small inputs that the library makes itself: what wrapper.cpp does not reach. That
-// the results are right is tested elsewhere; here each method must get to its function, with its arguments in their places.
+// Tests the methods of the C++ wrapper that wrapper.cpp does not reach: every stage, on small inputs that the library
+// generates. Other tests check that results are right; this one checks that each method calls its C function with the
+// arguments in the right places.
 #include "check.hpp"
 
 #include <luxfer.hpp>
@@ -12,7 +13,7 @@ namespace {
 
 using luxfer::Context, luxfer::Image, luxfer::Scene;
 
-// A copy shares the object, and keeps it when the original goes.
+// Returns a copy of a handle: it shares the object and keeps it alive after the original is gone.
 template <class Object>
 Object copied(Object object) {
     Object copy = object;
@@ -26,12 +27,12 @@ bool has_size(const Image &image, std::uint32_t width, std::uint32_t height, std
     return size.width == width && size.height == height && size.channels == channels;
 }
 
-// One channel of one value.
+// An image with one channel and one value everywhere.
 Image filled(const Context &context, std::uint32_t width, std::uint32_t height, float value) {
     return Image::create(context, {std::vector<float>(std::size_t(width) * height, value), width, height, 1});
 }
 
-// From a photo to an emissive texture, stage by stage; each result then takes its place in a transfer.
+// From a photo to an emissive texture, stage by stage; then a transfer that uses these results.
 void lighting_transfer(const Context &context) {
     const auto demo = copied(luxfer::DemoPhoto::create(context));
     luxfer::DemoPhotoParams size;
@@ -107,7 +108,7 @@ void lighting_transfer(const Context &context) {
     CHECK(corner[0] >= 0 && corner[0] <= 96 && corner[1] >= 0 && corner[1] <= 64);
     const Image whole = emission.image(LUXFER_EMISSION_TEXTURE);
 
-    // A style without weight changes nothing, and a tile is a part of the whole.
+    // Add a second style, whose weight is 0 everywhere; then plan the texture and render one tile of it.
     const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
     const Image light = rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE));
     const float nothing[] = {0};
@@ -119,7 +120,8 @@ void lighting_transfer(const Context &context) {
     const Image tile = emission.render_tile(40, 10, 30, 20);
     CHECK(has_size(tile, 30, 20, 4));
 
-    // The same as one transfer, the last stages on those results; a texture of the caller's in place of one it would make.
+    // The same steps as one transfer, whose last stages use these results, and a texture of the caller instead of a
+    // synthesised one.
     const auto transfer = copied(luxfer::Transfer::create(context));
     transfer.set_photo(photo);
     transfer.set_depth(filled(context, 300, 200, 3), LUXFER_DEPTH_ALONG_RAY);
@@ -154,7 +156,7 @@ void lighting_transfer(const Context &context) {
     CHECK(std::ifstream("wrapper_stages.csv").good());
     CHECK(transfer.view().focal == view.focal && transfer.solution().scale[0] > 0);
 
-    // The warnings of the transfer and of each stage: as many as there are, and an error beyond.
+    // Read all warnings of the transfer and of each stage; an index beyond the list is an error.
     const luxfer::Warnings lists[] = {transfer.warnings(), rectify.warnings(), features.warnings(), plane.warnings(),
                                       emission.warnings()};
     for (const luxfer::Warnings &list : lists) {
@@ -174,7 +176,7 @@ void lighting_transfer(const Context &context) {
         }
         CHECK_STATUS(beyond, LUXFER_NOT_FOUND);
     }
-    CHECK(lists[4].count() == 0); // A plan has none.
+    CHECK(lists[4].count() == 0); // An emission that was only planned (start_plan) has no warnings.
 
     const auto plan = luxfer::Plan::create(context);
     luxfer::PlanParams budget;
@@ -186,7 +188,7 @@ void lighting_transfer(const Context &context) {
     CHECK(luxfer_relight_params(plan.relight_params()).paths >= 2048);
 }
 
-// Settings for an error.
+// A plan chooses settings for a target error.
 void plans(const Context &context) {
     const Scene scene = Scene::demo(context, LUXFER_DEMO_EXEMPLAR_ROOM);
     const auto render = luxfer::Render::create(context);
@@ -215,7 +217,8 @@ void plans(const Context &context) {
     CHECK(is_early);
 }
 
-// A lamp, textures and an environment of the caller's; the lamp is solved for, and measured.
+// A scene with a lamp, textures and an environment of the caller: solves for the lamp's strength and measures its
+// light.
 void light(const Context &context) {
     const Scene scene = copied(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
     const Image white = Image::create(context, {std::vector<float>(2 * 2 * 3, 1.0f), 2, 2});
@@ -268,7 +271,7 @@ void light(const Context &context) {
     job.wait();
     CHECK(render.layer_count() == 2);
     render.write_exr("wrapper_stages.exr");
-    // In parts: the right half first.
+    // Render in parts, the right half first.
     for (std::uint32_t index : {1u, 0u}) {
         const luxfer_render_part part = render.split(2, 1, 1, index, tiny);
         CHECK(part.x == 4 * index && part.width == 4 && part.height == 8 && part.samples == 2);
@@ -329,7 +332,8 @@ void stylisation(const Context &context) {
     CHECK(hurried.iterations > 0 && hurried.keep_for_update == 1 && hurried.seed == params.seed);
     const luxfer_plan_report expected = plan.report();
     CHECK(expected.seconds > 0 && expected.error > 0 && expected.error <= 1 && expected.render_seconds == 0);
-    // Out of reach: errors alone choose, whatever the machine is doing meanwhile.
+    // With a target error that cannot be reached, the plan depends on errors alone, so the machine's load does not
+    // matter.
     goal.target_error = 1e-5f;
     plan.start(stylize, goal, params).wait();
     const luxfer_stylize_params careful = plan.stylize_params();
@@ -341,7 +345,7 @@ void stylisation(const Context &context) {
     stylize.set_painted(all);
     CHECK(has_size(target.image(LUXFER_GUIDES_EDGES), 48, 36, 1));
 
-    // Printed, and the print itself aligned as if it were a scan.
+    // Print a sheet, and align the print itself as if it were a scan.
     luxfer::SheetParams paper;
     paper.dpi = 60;
     const luxfer::Sheet::Aligned aligned = luxfer::Sheet::align(luxfer::Sheet::print(artwork, paper), 48, 36, paper);

@@ -11,7 +11,7 @@
 #include <vector>
 
 // --8<-- [start:host]
-// The interface to the host.
+// A simulated host. The comments name the functions of real hosts.
 struct HostMesh {
     std::string name;
     std::vector<float> points;            // Maya: MFnMesh::getRawPoints; Houdini: GU_Detail::getPos3 of each point
@@ -50,7 +50,7 @@ private:
 // --8<-- [end:plugin]
 
 // --8<-- [start:scene]
-// The host's meshes as a scene: in metres, Y up, with transforms applied. Arrays are copied during the call.
+// Describes the host's meshes as a scene: in metres, Y up, with transforms applied. The call copies the arrays.
 luxfer::Scene describe(const luxfer::Context &context, const Host &host) {
     const auto scene = luxfer::Scene::create(context);
     for (const HostMesh &mesh : host.meshes) {
@@ -68,7 +68,8 @@ luxfer::Scene describe(const luxfer::Context &context, const Host &host) {
 // --8<-- [end:scene]
 
 // --8<-- [start:modal]
-// A modal job, in a command or a cook. The progress callback runs on the waiting thread, so it may call the host.
+// A modal job, in a command or a cook: the host waits. The progress callback runs on the waiting thread, so it may
+// call the host.
 bool transfer_light(Host &host, const luxfer::Transfer &transfer, const luxfer::TransferParams &params) {
     try {
         transfer.start(params).wait([&](double fraction) {
@@ -85,7 +86,7 @@ bool transfer_light(Host &host, const luxfer::Transfer &transfer, const luxfer::
 // --8<-- [end:modal]
 
 // --8<-- [start:background]
-// A background job: a timer of the host (Maya: MTimerMessage; Houdini: hou.ui.addEventLoopCallback) polls it. The
+// A background job, which a timer of the host polls (Maya: MTimerMessage; Houdini: hou.ui.addEventLoopCallback). The
 // image improves while a rendering runs, so each tick may show a better picture.
 class Background {
 public:
@@ -99,7 +100,8 @@ public:
         return state.is_finished();
     }
 
-    // Deleting the object cancels too, and waits until the job has ended, at most about a tenth of a second.
+    // Deleting the object also cancels; it waits until the job has ended, which takes at most about a tenth of a
+    // second.
     void cancel() { job_.cancel(); }
 
     const std::vector<float> &pixels() const { return pixels_; }
@@ -121,7 +123,7 @@ private:
 // --8<-- [end:background]
 
 // --8<-- [start:result]
-// The result for the host: the texture, and its factor in cd/m2.
+// The result for the host: the emissive texture, and the factor by which to multiply it, in cd/m2.
 struct Light {
     luxfer::Image texture;
     double strength[3];
@@ -138,7 +140,7 @@ Light light_of(const luxfer::Transfer &transfer, float white_luminance) {
 
 namespace {
 
-// A room without a front wall: floor, walls and ceiling, in centimetres as in Maya.
+// A rectangle with a corner at (x, y, z) and edges u and v, in centimetres as in Maya.
 HostMesh quad(const char *name, float x, float y, float z, const float (&u)[3], const float (&v)[3]) {
     HostMesh mesh;
     mesh.name = name;
@@ -195,12 +197,12 @@ int main() {
     if (!(light.strength[0] > 0 && light.texture.size().channels == 3))
         return fail("the light");
 
-    // Interrupted: the plug-in reports no error, and finished results remain.
+    // The user interrupts: the plug-in reports no error, and finished results remain.
     host.is_interrupted = true;
     if (transfer_light(host, transfer, params))
         return fail("an interrupted transfer is no success");
 
-    // A background job: pictures while it runs, and a cancel.
+    // A background job shows pictures while it runs, and is cancelled.
     const auto render = luxfer::Render::create(context);
     render.set_scene(transfer.scene());
     picture.samples = 1 << 20;

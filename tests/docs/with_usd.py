@@ -1,4 +1,4 @@
-"""The guide's program for USD files."""
+"""The program of the guide that saves and loads USD files."""
 
 # --8<-- [start:usd]
 import luxfer

@@ -1,7 +1,7 @@
-//! Circles of files inside a module of `src`: files that use each other, directly or by way of further files.
+//! Finds circles of files inside a module of `src`: files that use each other, directly or through further files.
 //!
 //! A file uses another if it names an item that is defined there, in a `use` or in a path. A name that a file only
-//! re-exports (`pub use`) belongs to the file that defines it, and re-exporting is no use. Unit tests do not count.
+//! re-exports (`pub use`) belongs to the file that defines it. Re-exports and unit tests do not count as uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,16 +9,16 @@ use std::path::Path;
 /// A source file as a module.
 struct Module {
     tokens: Vec<String>,
-    /// Names of the items that it defines.
+    /// Names of the items that the file defines.
     items: BTreeSet<String>,
-    /// Names that it re-exports, with their paths.
+    /// Names that the file re-exports, with the paths from which it takes them.
     exports: BTreeMap<String, Vec<String>>,
 }
 
-/// Modules by path, such as `scene::accel`; the crate is "".
+/// Modules by path, such as `scene::accel`; the path of the crate itself is "".
 type Modules = BTreeMap<String, Module>;
 
-/// The sets of modules that use each other, by the sources with their paths below `src`.
+/// Returns the sets of modules that use each other. Each source is a path below `src` and the text of the file.
 pub fn circles(sources: &[(String, String)]) -> Vec<Vec<String>> {
     let modules: Modules =
         sources.iter().filter(|(path, _)| !path.contains("tests")).map(|(p, text)| (name(p), parse(text))).collect();
@@ -40,7 +40,7 @@ fn name(path: &str) -> String {
     names.join("::")
 }
 
-/// The modules that `from` reaches by at least one use.
+/// The modules that `from` uses, directly or through other modules.
 fn reached<'a>(from: &str, uses: &'a BTreeMap<&str, BTreeSet<String>>) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&str> = uses[from].iter().map(String::as_str).collect();
@@ -131,7 +131,7 @@ fn paths<'a>(tree: &mut impl Iterator<Item = &'a String>) -> Vec<Vec<String>> {
                 path.clear();
             }
             "}" => break,
-            // A renamed item keeps its own name.
+            // Skip the new name of a renamed item: the path names the item as it is defined.
             "as" => drop(tree.next()),
             _ => path.push(token.clone()),
         }
@@ -165,7 +165,8 @@ fn used_by(module: &str, modules: &Modules) -> BTreeSet<String> {
     named.iter().filter_map(|path| definition(module, path, modules, 0)).collect()
 }
 
-/// The module that defines the item of a path in `module`; `None` if the path leaves the module's own top level.
+/// Resolves a path that occurs in `module`: returns the module that defines its item, or `None` if that lies outside
+/// the top-level module of `module`.
 fn definition(module: &str, path: &[String], modules: &Modules, depth: usize) -> Option<String> {
     let own: Vec<&str> = module.split("::").collect();
     let ups = path.iter().take_while(|p| *p == "super").count();

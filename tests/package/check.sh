@@ -1,9 +1,9 @@
 #!/bin/sh
 # Installs luxfer into a scratch folder and builds programs against it: by pkg-config, by find_package, again after the
-# installed tree has been moved, and with the source tree as a part of their project. Nothing is left after an uninstall, and the
-# tarball of `make dist` has and installs the same.
+# installed tree has been moved, and with the source tree as a part of their project. Checks that uninstalling leaves
+# nothing behind, and that the tarball of `make dist` is complete and installs the same files.
 #
-#   check.sh SOURCE BUILT SCRATCH    BUILT is the folder where cargo has put libluxfer.so and libluxfer.a
+#   check.sh SOURCE BUILT SCRATCH    BUILT is the folder with cargo's libluxfer.so and libluxfer.a
 set -eu
 source="$1" built="$2" scratch="$3"
 consumers="$source/tests/package"
@@ -23,7 +23,7 @@ fail() {
 
 run_make() { make --no-print-directory -s -C "$source" PROFILE="$built" "$@"; }
 
-# What there is under a prefix.
+# check_tree PREFIX: checks the installed files under a prefix.
 check_tree() {
   for link in libluxfer.so "libluxfer.so.$abi"; do
     [ -L "$1/$lib/$link" ] || fail "$link is no symbolic link"
@@ -36,7 +36,7 @@ check_tree() {
   done
 }
 
-# Programs in C and C++, against the shared and the static library, by the flags that pkg-config tells.
+# Builds programs in C and C++ against the shared and the static library, with the flags of pkg-config.
 by_pkg_config() {
   export PKG_CONFIG_PATH="$1/pkgconfig"
   pkg-config --exact-version="$version" luxfer || fail "pkg-config does not find luxfer $version"
@@ -49,15 +49,17 @@ by_pkg_config() {
 }
 
 by_pkg_config_static() {
-  # What `pkg-config --static` adds; -l:libluxfer.a takes the static library where both are installed.
+  # Link with the libraries that `pkg-config --static` lists; -l:libluxfer.a selects the static library if both are
+  # installed.
   cc -std=c99 $flags $cflags "$consumers/consumer.c" -o by_c_static \
     $(pkg-config --static --libs luxfer | sed 's/-lluxfer/-l:libluxfer.a/')
   readelf -d by_c_static | grep -q libluxfer && fail "the program is not linked statically"
   ./by_c_static
 }
 
-# The static library's names clash with nobody's: beside luxfer_* there are only Rust's and its crates' own (mangled, or with a
-# version in them) and the compiler's. A plug-in that has it inside exports its own functions and none of these.
+# Checks that names in the static library cannot clash with others: besides luxfer_* it has only the names of Rust and
+# of its crates (mangled, or with a version) and of the compiler. A plug-in that contains the library exports only its
+# own functions.
 names_of_static() {
   nm --extern-only --defined-only "$1/libluxfer.a" 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u >names
   [ "$(grep -c '^luxfer_' names)" -gt 100 ] || fail "the static library lacks functions"
@@ -69,7 +71,7 @@ names_of_static() {
   [ "$exports" = plugin_start ] || fail "the plug-in exports more than its own: $exports"
 }
 
-# The same by CMake: by_cmake folder options...
+# by_cmake FOLDER OPTIONS...: builds the programs by CMake.
 by_cmake() {
   folder="$1"
   shift
@@ -79,7 +81,7 @@ by_cmake() {
 }
 
 step "install"
-# As Debian has it, where that is what CMake looks for; the stage below is as others have it.
+# Use Debian's folder for libraries where the compiler has one; the staged installation below uses plain lib.
 triplet="$(cc -print-multiarch 2>/dev/null || true)"
 lib="lib${triplet:+/$triplet}"
 into="PREFIX=$scratch/prefix LIBDIR=$scratch/prefix/$lib"
@@ -111,7 +113,8 @@ done
 readelf -S .debug/libluxfer.so.*.debug | grep -q '\.debug_line' || fail "the debug symbols are lost"
 
 step "no folders of this machine"
-# Where cargo keeps the dependencies, and the source tree. A library that cargo alone has built has them.
+# The libraries must name neither cargo's folder of dependencies nor the source tree. Those built by cargo alone name
+# both.
 for file in libluxfer.so libluxfer.a .debug/libluxfer.so.*.debug; do
   for folder in "${CARGO_HOME:-$HOME/.cargo}" "$source/src"; do
     grep -q "$folder" "$file" && fail "$file names $folder; build it by make or CMake"
@@ -135,7 +138,7 @@ run_make install DESTDIR="$scratch/stage" PREFIX=/usr
 [ -f stage/usr/lib/libluxfer.a ] || fail "nothing in stage/usr/lib"
 grep -r "$scratch" stage/usr/lib/pkgconfig stage/usr/lib/cmake && fail "installed files name the folder they were staged in"
 
-if [ -e "$source/.git" ]; then # the tarball is of what git has
+if [ -e "$source/.git" ]; then # the tarball contains the files that git tracks
   step "dist"
   run_make dist
   tar -xzf "$source/out/luxfer-$version.tar.gz"

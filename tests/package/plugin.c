@@ -1,4 +1,4 @@
-/* A plug-in that has the static library inside: a host finds one function in it. */
+/* A plug-in that contains the static library and exports one function to its host. */
 #include <luxfer.h>
 
 int plugin_start(void);

@@ -1,16 +1,19 @@
-//! Compares two estimates of the same numbers, each from independent runs whose scatter gives the noise.
+//! Compares two estimates of the same numbers. Each estimate is the mean of independent runs, whose scatter gives its
+//! variance.
 
-/// Difference of two means, and its allowed size.
+/// Two means, their difference `off`, and the size that noise may give the difference.
 #[derive(Debug)]
 pub struct Difference {
     pub first: f64,
     pub second: f64,
     pub off: f64,
-    /// Difference that is exceeded with probability 0.1 % in any of all tests together.
+    /// If only noise makes the means differ, the probability is 0.1 % that any difference of all tests exceeds its
+    /// interval.
     pub interval: f64,
 }
 
-/// Welch's t-test of one number in two sets of rows, one row per run; one of `tests` tests (Šidák).
+/// Welch's t-test of the value `number` in two sets of rows (one row per run). The interval is corrected for `tests`
+/// tests in total (Šidák).
 pub fn welch(first: &[Vec<f64>], second: &[Vec<f64>], number: usize, tests: usize) -> Difference {
     let outside = 1.0 - (1.0 - 1e-3f64).powf(1.0 / tests as f64);
     let ((a, va), (b, vb)) = (statistics(first, number), statistics(second, number));
@@ -28,9 +31,10 @@ pub fn statistics(rows: &[Vec<f64>], number: usize) -> (f64, f64) {
     (mean, variance)
 }
 
-/// Two-sided quantile of Student's t distribution, exceeded with probability `outside`, by bisection of its integral.
+/// Two-sided quantile of Student's t distribution: the |t| that is exceeded with probability `outside`, by numerical
+/// integration of the tail.
 fn student_quantile(outside: f64, degrees: f64) -> f64 {
-    // Integrate the tail over the angle whose tangent is t / sqrt(degrees); the pdf is a power of the cosine there.
+    // Integrate over the angle whose tangent is t / sqrt(degrees): in this variable, the pdf is a power of the cosine.
     let steps = 20_000;
     let weight = |angle: f64| angle.cos().powf(degrees - 1.0);
     let step = std::f64::consts::FRAC_PI_2 / f64::from(steps);

@@ -1,4 +1,4 @@
-"""Writes ONNX files, so that tests need neither a network of anyone's nor the onnx package."""
+"""Writes ONNX files, so that the tests need neither published networks nor the onnx package."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def value_info(name: str, shape: list[int | str]) -> bytes:
 
 
 class Network:
-    """A graph in the making: `n.add("Conv", x, weights, strides=[2, 2])` adds a node and gives the name of its output."""
+    """Builds a graph: `n.add("Conv", x, weights, strides=[2, 2])` adds a node and returns the name of its output."""
 
     def __init__(self, shape: list[int | str], opset: int, seed: int = 1) -> None:
         self.shape, self.opset, self.random = shape, opset, np.random.default_rng(seed)
@@ -69,7 +69,7 @@ class Network:
         return name
 
     def noise(self, *shape: int, scale: float = 1.0) -> str:
-        """Weights at random, such that what they are summed with keeps its size."""
+        """Random weights, scaled so that the output of the layer has about the magnitude of its input."""
         inputs = int(np.prod(shape[1:])) if len(shape) != 2 else shape[0]
         return self.constant((scale * self.random.normal(size=shape) / np.sqrt(max(inputs, 1))).astype(np.float32))
 

@@ -1,4 +1,5 @@
-"""What the tests of the Python package share: the package of this source tree, and small inputs made once."""
+"""Helpers for the tests of the Python package: imports the package of this source tree, and creates small inputs
+once."""
 
 from __future__ import annotations
 
@@ -25,13 +26,13 @@ def context() -> luxfer.Context:
 
 @lru_cache
 def demo() -> tuple[luxfer.Image, luxfer.Image]:
-    """The photo of the generated office, and the strokes on it."""
+    """The photo of the generated office, and an image with the strokes for it."""
     stage = luxfer.DemoPhoto(context()).run(width=240, height=160, samples=8)
     return stage.image("picture"), stage.image("strokes")
 
 
 def lit_room() -> luxfer.Scene:
-    """The demonstration room under a ceiling with four lamps."""
+    """The demonstration room with four lamps in its ceiling."""
     scene = luxfer.Scene.demo(context(), "target-room")
     lamps = np.zeros((8, 12, 3), np.float32)
     lamps[2::4, 3::6] = 1
@@ -40,7 +41,7 @@ def lit_room() -> luxfer.Scene:
 
 
 class Case(unittest.TestCase):
-    """A test with a folder of its own to write into."""
+    """A test case with a temporary folder, `self.folder`."""
 
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()

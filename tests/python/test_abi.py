@@ -1,4 +1,5 @@
-"""The package and the header say the same: nothing drifts, nothing is left out, every struct has the C compiler's layout."""
+"""Tests that the package agrees with the header: bindings are up to date and complete, structs have the C compiler's
+layout."""
 
 import ctypes
 import re
@@ -11,7 +12,7 @@ from support import PACKAGE, ROOT, Case, luxfer
 
 from luxfer import abi, errors, types
 
-# Functions that Python has no use for, and those that wait for a place in the modules: call them through luxfer.library.
+# Functions that no module of the package uses; programs may call them through luxfer.library.
 ABI_ONLY = {"luxfer_retain", "luxfer_status_get_name", "luxfer_warning_get_name"}
 
 
@@ -30,7 +31,7 @@ class Drift(Case):
             self.assertEqual(len(getattr(luxfer.library, name).argtypes), count, name)
 
     def test_every_function_is_used_by_the_modules(self):
-        """All but those of ABI_ONLY; references are counted by Python's own objects."""
+        """All functions except those in ABI_ONLY; Python's objects count references themselves."""
         source = "".join(p.read_text() for p in (PACKAGE / "luxfer").glob("*.py") if p.name not in ("_abi.py", "types.py"))
         kinds = re.findall(r'kind = "(\w+)"', source)
         verbs = set(re.findall(r'_(?:call|read|fill|job|get_image|get_text|add)\(\s*"(\w+)"', source))

@@ -1,4 +1,5 @@
-"""Colours of files against LCMS, as Pillow has it: within a code of 255."""
+"""Compares the colours of files that have ICC profiles with those of LCMS (through Pillow); tolerance: one code of
+255."""
 
 import io
 import itertools
@@ -35,7 +36,7 @@ def xyz(x, y):
 
 
 def colorants(primaries):
-    """Columns of XYZ under D50 of primaries with the white D65."""
+    """Matrix of the primaries' XYZ colours in its columns, for white D65, adapted to D50."""
     white, d50 = xyz(0.3127, 0.3290), np.array([0.9642, 1.0, 0.8249])
     columns = np.stack([xyz(*p) for p in primaries], axis=1)
     columns = columns * np.linalg.solve(columns, white)
@@ -52,7 +53,7 @@ def curve(kind, gamma):
 
 
 def tables(size=17):
-    """A lut16Type to PCS Lab (version 2), of colours with the curve of sRGB and less chroma."""
+    """An ICC lut16Type (version 2) from RGB to PCS Lab, with the tone curve of sRGB and less chroma."""
     codes = np.stack(np.meshgrid(*[np.linspace(0, 1, size)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
     t = (linear @ colorants([(0.60, 0.33), (0.30, 0.57), (0.16, 0.09)]).T) / [0.9642, 1.0, 0.8249]
@@ -66,7 +67,8 @@ def tables(size=17):
 
 
 def ink_tables(size):
-    """A lut16Type from inks to PCS Lab (version 2): a paper whose colours the inks filter, with curves at both ends."""
+    """An ICC lut16Type (version 2) from CMYK to PCS Lab: inks that filter the colour of paper, with input and output
+    curves."""
     inks = np.stack(np.meshgrid(*[np.linspace(0, 1, size)] * 4, indexing="ij"), axis=-1).reshape(-1, 4)
     c, m, y, k = inks.T
     lightness = 95 * (1 - 0.4 * c) * (1 - 0.5 * m) * (1 - 0.1 * y) * (1 - 0.85 * k)
@@ -168,7 +170,7 @@ class Colours(Case):
         self.assertTrue(np.array_equal(np.round(np.asarray(image) * 255), self.pixels))
 
     def inks(self):
-        """Amounts of cyan, magenta, yellow and black: random ones, and the corners, in squares that JPEG keeps."""
+        """A CMYK image of random and extreme amounts, in squares of 8 pixels, which JPEG preserves."""
         inks = np.random.default_rng(8).integers(0, 256, (32, 32, 4), np.uint8)
         inks[0, :16] = [[255 * (i >> c & 1) for c in range(4)] for i in range(16)]
         return Pillow.fromarray(inks.repeat(8, axis=0).repeat(8, axis=1), "CMYK")
@@ -183,14 +185,14 @@ class Colours(Case):
                 out = io.BytesIO()
                 options = {} if kind == "TIFF" else {"quality": 100, "subsampling": 0}
                 self.inks().save(out, "TIFF" if kind == "TIFF" else "JPEG", icc_profile=icc, **options)
-                if kind == "YCCK":  # the same numbers, said to be YCbCr and black
+                if kind == "YCCK":  # the same numbers, but marked as YCbCr and black
                     out = io.BytesIO(re.sub(rb"(?s)(Adobe.{6})\0", lambda found: found[1] + b"\2", out.getvalue(), count=1))
                 with Pillow.open(out) as stored:
                     stored.load()
                 image = luxfer.Image.from_bytes(context(), out.getvalue())
                 self.assertEqual(image.metadata.colour, luxfer.types.FileColour.CONVERTED)
                 self.assertEqual(image.size[2], 3)
-                # LCMS without its own resampling of the profile's tables.
+                # NOOPTIMIZE keeps LCMS from resampling the tables of the profile.
                 source, target = ImageCms.ImageCmsProfile(io.BytesIO(icc)), ImageCms.createProfile("sRGB")
                 intent, exact = ImageCms.Intent.RELATIVE_COLORIMETRIC, ImageCms.Flags.NOOPTIMIZE
                 transform = ImageCms.buildTransform(source, target, "CMYK", "RGB", intent, exact)

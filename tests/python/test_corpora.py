@@ -1,10 +1,11 @@
-"""Files of public collections, each equal to an independent reader or refused with the right status.
+"""Tests files of public collections: each must be read as by an independent reader, or be refused with the right
+status.
 
-`LUXFER_TEST_CORPORA` is a folder with a folder for each collection (docs/notes/corpora.md says where they come from).
-Without it the tests are skipped. Each test ends with a line of counts for the table of the guide.
+`LUXFER_TEST_CORPORA` names a folder that has a subfolder for each collection (docs/notes/corpora.md lists their
+origins). Without it the tests are skipped. Each test prints a line of counts for the table in the guide.
 
-Independent readers: Pillow for PNG and BMP, OpenEXR's own module for EXR, the Khronos validator (`gltf-validator` from
-npm, in a folder that `LUXFER_GLTF_VALIDATOR` names) for the validity of glTF, and trimesh for its geometry.
+The independent readers: Pillow for PNG and BMP, OpenEXR's own module for EXR, the Khronos validator (`gltf-validator`
+from npm, in a folder that `LUXFER_GLTF_VALIDATOR` names) for the validity of glTF, and trimesh for its geometry.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from support import Case, context, luxfer, np
 CORPORA = os.environ.get("LUXFER_TEST_CORPORA", "")
 VALIDATOR = os.environ.get("LUXFER_GLTF_VALIDATOR", "")
 
-#: Prints severities of many files: the number of errors of each, by the codes.
+#: JavaScript that reads file names from its input and prints the codes of each file's errors, as JSON.
 VALIDATE = """
 const validator = require(process.argv[1] + '/node_modules/gltf-validator');
 const fs = require('fs'), path = require('path');
@@ -44,7 +45,7 @@ const fs = require('fs'), path = require('path');
 
 
 def files(collection: str, *endings: str) -> list[Path]:
-    """The files of a collection, or none if it is not there."""
+    """The files of a collection with these endings; an empty list if the collection is missing."""
     found = (Path(CORPORA) / collection).rglob("*") if CORPORA else iter(())
     return sorted(path for path in found if path.suffix.lower() in endings and path.is_file())
 
@@ -61,7 +62,7 @@ def load(path: Path, colour_space: str = "linear") -> np.ndarray:
 class Pictures(Case):
     def compare(self, path: Path, ours: np.ndarray, theirs: np.ndarray, tolerance: float) -> None:
         self.assertEqual(ours.shape[:2], theirs.shape[:2], path)
-        if ours.shape[2] == 1 and theirs.shape[2] > 1:  # greys in one channel
+        if ours.shape[2] == 1 and theirs.shape[2] > 1:  # luxfer loads greys into one channel
             ours = np.repeat(ours, 3, axis=2)
         channels = min(ours.shape[2], theirs.shape[2])
         for a in (ours, theirs):  # an alpha that only one side has is 1
@@ -81,7 +82,7 @@ class Pictures(Case):
                         wide = picture.mode.startswith("I;16") or picture.mode == "I"
                         theirs = np.asarray(picture if wide else picture.convert("RGBA"), np.float32)
                         theirs = theirs[:, :, None] / 65535 if wide else theirs / 255
-                        # Pillow misses a transparent grey of 4 or 16 bits: the suite has its pixels as text.
+                        # Pillow ignores transparency in greys of 4 or 16 bits; the suite also has the pixels as text.
                         text = path.parents[1] / "json" / f"{path.stem}.json"
                         if picture.mode in ("1", "L", "I;16") and "transparency" in picture.info and text.exists():
                             stored = np.array(json.loads(text.read_text()), np.float32)
@@ -93,7 +94,8 @@ class Pictures(Case):
                 except (luxfer.errors.FormatError, luxfer.errors.Unsupported) as error:
                     refused = type(error).__name__
                     counts[f"refused ({refused})"] += 1
-                    # Where the other reader makes a picture of it, the reason must not be damage, unless it is stated.
+                    # If the other reader loads the file, luxfer may refuse it as unsupported, but as damaged only if
+                    # the file's name marks it as damaged.
                     if theirs is not None:
                         counts["of these read by Pillow"] += 1
                         self.assertTrue(path.name.startswith("x") or refused == "Unsupported", f"{path}: {error}")
@@ -101,7 +103,7 @@ class Pictures(Case):
                 if theirs is None:
                     counts["read, but not by Pillow"] += 1
                     continue
-                # Pillow keeps eight bits of sixteen in colours.
+                # Pillow keeps only 8 of 16 bits of colours.
                 self.compare(path, ours, theirs, 1 / 255)
                 counts["equal"] += 1
         report(collection, counts)
@@ -123,7 +125,7 @@ class Pictures(Case):
                     with OpenEXR.File(str(path), separate_channels=True) as file:
                         header, part = file.header(), {n: c.pixels for n, c in file.channels().items()}
                         theirs = display(header, part)
-                except Exception:  # of any kind, with damaged files
+                except Exception:  # OpenEXR raises exceptions of any type for damaged files
                     theirs = None
                 try:
                     ours = load(path)
@@ -144,7 +146,7 @@ class Pictures(Case):
 
 
 def display(header: dict, channels: dict[str, np.ndarray]) -> np.ndarray | None:
-    """R, G, B (and A), or the one channel, of the display window."""
+    """The pixels of the display window: R, G, B (and A), or a single channel; None for other channels."""
     names = [n for n in "RGBA" if n in channels] if {"R", "G", "B"} <= channels.keys() else list(channels)
     if names[:3] != ["R", "G", "B"] and len(names) != 1:
         return None
@@ -160,7 +162,7 @@ def display(header: dict, channels: dict[str, np.ndarray]) -> np.ndarray | None:
 
 
 def validated(paths: list[Path]) -> Iterator[tuple[Path, list[str]]]:
-    """Each file with the codes of its errors."""
+    """Each file and the codes of its errors, from the Khronos validator."""
     script = ["node", "-e", VALIDATE, VALIDATOR]
     listed = "\n".join(map(str, paths))
     lines = subprocess.run(script, input=listed, capture_output=True, text=True, check=True).stdout.splitlines()
@@ -191,7 +193,7 @@ class Gltf(Case):
         self.assertGreater(counts["valid, read"], 0, "the collection is not there")
 
     def geometry(self, collection: str) -> None:
-        """The triangles of whole scenes: their number, their area and the box around them."""
+        """Compares the triangles of whole scenes with trimesh: number, total area and bounding box."""
         import trimesh
 
         counts: Counter[str] = Counter()
@@ -205,7 +207,7 @@ class Gltf(Case):
                     continue
                 try:
                     theirs = trimesh.load_scene(str(path), process=False).to_mesh().triangles
-                except Exception:  # trimesh does not read all that is valid
+                except Exception:  # trimesh cannot read every valid file
                     counts["not read by trimesh"] += 1
                     continue
                 if posed or b'"sparse"' in path.read_bytes():
@@ -235,7 +237,7 @@ class Gltf(Case):
 
 
 class Draco(Case):
-    """Streams of Google's own encoder."""
+    """Reads streams of Google's own Draco encoder."""
 
     def test_streams_of_the_c_library(self) -> None:
         try:
@@ -265,13 +267,13 @@ class Draco(Case):
 
 
 def ordered(corners: np.ndarray) -> np.ndarray:
-    """Triangles in an order that depends on nothing else."""
+    """Sorts triangles, so that sets of triangles in different order can be compared."""
     rows = corners.reshape(len(corners), -1)
     return rows[np.lexsort(rows.T[::-1])]
 
 
 def gltf_of(stream: bytes, decoded) -> bytes:
-    """A glTF file with a Draco stream."""
+    """A glTF file that contains a Draco stream."""
     ids = {a["attribute_type"]: a["unique_id"] for a in decoded.attributes}
     vertices = {"count": len(decoded.points), "componentType": 5126}
     attributes, primitive = {"POSITION": ids[0], "TEXCOORD_0": ids[3]}, {"POSITION": 0, "TEXCOORD_0": 2}
@@ -308,7 +310,7 @@ def area(corners: np.ndarray) -> float:
 
 
 def posing(path: Path) -> bool:
-    """Whether a file has skins or weights, by its text."""
+    """Whether a file has skins or morph weights, according to its text."""
     text = path.read_bytes()
     return b'"skins"' in text or b'"weights"' in text
 

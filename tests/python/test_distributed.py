@@ -1,4 +1,4 @@
-"""A Dask cluster of two worker processes, of which one is killed while it works: nothing is lost, and nothing changes."""
+"""Tests work on a Dask cluster of two worker processes. One is killed while it works; the results must be the same."""
 
 import os
 import signal
@@ -30,7 +30,7 @@ def room(context):
 
 
 def paint(context, shot):
-    """Two frames of a shot, the second of which goes on from the first."""
+    """Stylises two frames of a shot; the second continues the first."""
     size = {"width": 48, "height": 36, "samples": 4}
     ball = luxfer.Guides(context, luxfer.Scene.demo(context, "sphere-on-table")).run(**size)
     stylize, frames, before = luxfer.Stylize(context, ball.demo_artwork(shot)), [], None
@@ -62,7 +62,7 @@ class Cluster(Case):
 
     def test_a_worker_is_killed_and_the_picture_is_the_same_to_the_bit(self):
         with luxfer.Context() as context:
-            # In one part, and here.
+            # For comparison, render in one part in this process.
             alone = view(context)
             whole = self.folder / "whole.exr"
             alone.start_part(whole, {}, **SIZE).wait()
@@ -74,7 +74,7 @@ class Cluster(Case):
                 if share > 0.2 and not killed:
                     victim = next(iter(self.client.run(os.getpid).values()))
                     killed.append(victim)
-                    os.kill(victim, signal.SIGKILL)  # no farewell: what it was doing, and had done, is gone
+                    os.kill(victim, signal.SIGKILL)  # without warning: its current and finished work is lost
 
             merged = luxfer.distributed.render(
                 self.client, view, context, columns=4, rows=3, ranges=2, progress=kill, **SIZE
@@ -86,7 +86,7 @@ class Cluster(Case):
             self.assertEqual(list(merged.layers), ["direct", "Depth", "IndexOB"])
             for name, layer in merged.layers.items():
                 np.testing.assert_array_equal(layer.numpy(), alone.layer(name).numpy())
-            # The nanny has replaced it.
+            # Dask's nanny has replaced the killed worker.
             self.client.wait_for_workers(2)
             self.assertNotIn(killed[0], self.client.run(os.getpid).values())
 

@@ -1,4 +1,4 @@
-"""The documentation is true and complete: every example runs, everything public is described and annotated."""
+"""Tests the documentation: every example runs, and everything public has a docstring and annotations."""
 
 import ast
 import doctest
@@ -44,7 +44,8 @@ class Documentation(Case):
         self.assertEqual(luxfer.Image.load(context(), self.folder / "lit.png").size[:2], (64, 36))
 
     def run_blocks(self, page, instead=()):
-        """Runs the Python of a page in the test's folder, with some words in place of others; returns the number of blocks."""
+        """Runs the Python blocks of a page in the test's folder, with words replaced by `instead`; returns their
+        number."""
         blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.S)
         names: dict = {"print": lambda *_: None}
         before = os.getcwd()
@@ -60,7 +61,8 @@ class Documentation(Case):
         return len(blocks)
 
     def test_names_of_enumerations_are_right(self):
-        """Where a parameter is an enumeration its docstring names members by what they are called, and images all of them."""
+        """Docstrings of functions with an enumeration parameter name only existing members; those of `image` name
+        all."""
         tested = 0
         for path in (PACKAGE / "luxfer").glob("[a-z]*.py"):
             for node in ast.walk(ast.parse(path.read_text())):
@@ -94,7 +96,7 @@ class Documentation(Case):
         self.assertTrue((PACKAGE / "luxfer" / "py.typed").exists())
 
     def lacking(self, path, item, is_private):
-        """What of an item has no docstring, unless private, or lacks an annotation."""
+        """Paths of the parts of an item that lack a docstring (private ones need none) or an annotation."""
         if inspect.isclass(item):
             out = [] if item.__doc__ or is_private else [path]
             for name, member in vars(item).items():

@@ -1,4 +1,4 @@
-"""What is refused, and how it is told."""
+"""Tests which calls are refused, with which exceptions and messages."""
 
 import gc
 import unittest
@@ -96,7 +96,7 @@ class Errors(Case):
         image = luxfer.Image(other, np.zeros((4, 4, 3)))
         other.close()
         other.close()
-        self.assertEqual(image.size, (4, 4, 3))  # keeps alive what it needs
+        self.assertEqual(image.size, (4, 4, 3))  # an image keeps its context alive
         with self.assertRaises(errors.InvalidArgument):
             image.save("a.unknown")
         image.close()
@@ -105,7 +105,7 @@ class Errors(Case):
         self.assertIn("closed", repr(image))
 
     def test_objects_are_freed_without_close(self):
-        """A budget that would be used up many times over, were anything kept."""
+        """Creates images of many times the memory budget in total: this fails unless each is freed."""
         with luxfer.Context(num_threads=1, memory_budget_mib=8) as small:
             for _ in range(40):
                 luxfer.Image(small, np.zeros((512, 512, 3), np.float32))

@@ -1,4 +1,4 @@
-"""OpenEXR's own Python module reads what luxfer writes, layer by layer, and luxfer reads what it writes."""
+"""Tests that OpenEXR's own Python module reads the files of luxfer, layer by layer, and the other way round."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""Arrays in and out: every layout, no copies where none is needed, nothing touched that is not part of the image."""
+"""Tests images from and to arrays: every memory layout, no needless copies, and no access outside the image."""
 
 import struct
 import unittest
@@ -9,7 +9,7 @@ from luxfer import _arrays, errors
 
 
 def tiff(picture, pixels, camera=()):
-    """A TIFF file: entries of tag, kind and value, and those of the camera's notes at byte 120, whose fractions follow."""
+    """A TIFF file with the entries (tag, type, value) of `picture`, and the EXIF entries of `camera`."""
 
     def directory(entries, fractions):
         out = struct.pack("<H", len(entries))
@@ -26,7 +26,7 @@ def tiff(picture, pixels, camera=()):
     return (head.ljust(184, b"\0") + b"".join(fractions)).ljust(200, b"\0") + pixels
 
 
-#: Exposure time, f-number and ISO speed of a white of 240 cd/m².
+#: EXIF entries of exposure time, f-number and ISO speed, by which white has 240 cd/m².
 EXPOSURE = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100)]
 
 
@@ -59,7 +59,7 @@ class Images(Case):
             self.assertFalse(np.shares_memory(_arrays.view(layout, "linear")[1], pixels))
 
     def test_large_arrays_cost_one_copy(self):
-        """The library's own: beside it nothing of the image's size is allocated by numpy."""
+        """Only the library copies the pixels: numpy allocates nothing of the image's size."""
         import tracemalloc
 
         pixels = np.zeros((1000, 1000, 3), np.float32)
@@ -109,7 +109,7 @@ class Images(Case):
         np.testing.assert_array_equal(again.numpy(np.uint8, "srgb"), image.numpy(np.uint8, "srgb"))
 
     def test_formats(self):
-        """Two pixels, red and blue, in formats that are simple enough to be written here."""
+        """Reads a red and a blue pixel from files of formats that are simple enough to be written here."""
         red, blue = b"\xff\0\0", b"\0\0\xff"
         files = {
             "bmp": b"BM" + struct.pack("<IIIIiiHHIIiiII", 62, 0, 54, 40, 2, 1, 1, 24, 0, 8, 0, 0, 0, 0) + red[::-1] + blue[::-1] + b"\0\0",
@@ -140,7 +140,7 @@ class Images(Case):
         self.assertEqual((nothing.orientation, nothing.focal, nothing.white_luminance), (1, 0, 0))
 
     def test_the_focal_length_of_a_file_is_used_where_lines_do_not_tell_it(self):
-        """A corridor seen straight along: boxes within boxes, and lines that meet in the middle."""
+        """The photo is a corridor seen along its axis: nested rectangles, and lines that meet in the middle."""
         width, height = 360, 240
         x, y = (np.arange(n) - (n - 1) / 2 for n in (width, height))
         depth = np.maximum(abs(x)[None] / width, abs(y)[:, None] / height)

@@ -1,4 +1,4 @@
-"""What pip makes of the source tree: a wheel with the library inside, for any Python on this platform."""
+"""Tests that pip builds a wheel from the source tree, with the library inside, for any Python on this platform."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Progress, time-outs, cancelling, and Ctrl-C."""
+"""Tests jobs: progress, timeouts, cancelling, and Ctrl-C."""
 
 import signal
 import subprocess
@@ -128,8 +128,10 @@ class Jobs(Case):
         self.assertEqual(render.run(width=8, height=8, samples=2).image().size, (8, 8, 3))
 
     def test_interrupt(self):
-        """Ctrl-C ends a long rendering within half a second, as KeyboardInterrupt; the least of three, as others may
-        keep the processors busy."""
+        """Ctrl-C ends a long rendering within half a second and raises KeyboardInterrupt.
+
+        The quickest of three attempts counts, because other programs may occupy the processors.
+        """
         program = f"""
 import sys
 sys.path[:0] = [{str(PACKAGE)!r}, {str(PACKAGE.parent.parent / "tests" / "python")!r}]

@@ -1,10 +1,10 @@
-"""IES and EULUMDAT files of public collections against independent readers.
+"""Compares IES and EULUMDAT files of public collections with independent readers.
 
-`LUXFER_TEST_CORPORA` is a folder with a folder `luminaires` (docs/notes/corpora.md says where its files come from).
-Without it the tests are skipped. Each test ends with a line of counts for the table of the guide.
+`LUXFER_TEST_CORPORA` names a folder that has a subfolder `luminaires` (docs/notes/corpora.md lists the origins of its
+files). Without it the tests are skipped. Each test prints a line of counts for the table in the guide.
 
-Independent readers: the packages `eulumdat` for IES files, and `photompy` for their candela; `eulumdat-py` for EULUMDAT
-files.
+The independent readers are the packages `eulumdat` for IES files, `photompy` for their absolute intensities, and
+`eulumdat-py` for EULUMDAT files.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ STEPS = 16
 
 
 def read_ldt(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """C, gamma, and intensities in candela for 1000 lm of lamps."""
+    """Reads an EULUMDAT file: angles C and gamma, and intensities in candela per 1000 lm of the lamps; None if
+    refused."""
     import pyldt
 
     try:
         file = pyldt.LdtReader.read(str(path))
-    except Exception:  # of any kind: it refuses files that are as usual
+    except Exception:  # of any type: the reader refuses even some ordinary files
         return None
-    # Angles that the header states are without a step where it is 0.
+    # Take the angles that the file lists, because a step of 0 in its header means unequal steps.
     return np.array(file.header.c_angles), np.array(file.header.g_angles), np.array(file.intensities)
 
 
@@ -44,7 +45,7 @@ def read_ies(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
 
 
 def peak_of_ies(path: Path) -> float | None:
-    """The highest intensity in candela, by a reader that keeps candela."""
+    """The highest intensity in candela, by a reader that does not scale intensities."""
     import photompy
 
     try:
@@ -54,7 +55,8 @@ def peak_of_ies(path: Path) -> float | None:
 
 
 def flux(c: np.ndarray, gamma: np.ndarray, candela: np.ndarray) -> float:
-    """Integral of an intensity that is linear between the angles, over whole turns of C."""
+    """Luminous flux in lumens: integrates an intensity that is linear between the angles, over the full circle of
+    C."""
     edges = np.append(c, c[0] + 360)
     widths = np.radians(np.diff(edges)) if len(c) > 1 else np.array([2 * np.pi])
     weights = (widths + np.roll(widths, 1)) / 2
@@ -69,12 +71,12 @@ class Luminaires(Case):
         c, gamma, intensities = theirs
         ours = np.array([[lamp.intensity(a, b) for b in gamma] for a in c])
         peak = ours.max(initial=0)
-        # Both readers write intensities for 1000 lm of lamps, or of the luminaire where the file is absolute.
+        # Both readers give intensities per 1000 lm of the lamps, or of the luminaire in absolute files, so scale them.
         scale = peak / max(intensities.max(), 1e-30)
         np.testing.assert_allclose(ours, intensities * scale, atol=1e-5 * peak, err_msg=str(path))
         if lamp.report.lamp_flux > 0:
             np.testing.assert_allclose(scale, lamp.report.lamp_flux / 1000, rtol=1e-5, err_msg=str(path))
-        # Planes all around, as they are in EULUMDAT's full matrix and where the file has symmetry about the axis.
+        # Compare the flux if the file has planes for the full circle, or is symmetric about the axis.
         if len(c) == 1 or c[-1] > 180:
             np.testing.assert_allclose(lamp.report.flux, flux(c, gamma, ours), rtol=2e-3, err_msg=str(path))
 

@@ -1,4 +1,5 @@
-"""Networks of the signatures of MiDaS and DPT, made here, against onnxruntime with their pre- and post-processing in numpy."""
+"""Runs networks with the structure of MiDaS and DPT and random weights; compares with onnxruntime and numpy
+processing."""
 
 import unittest
 
@@ -11,7 +12,8 @@ from luxfer import errors
 
 
 def midas(shape=(1, 3, 256, 256), opset: int = 11) -> bytes:
-    """As MiDaS small: inverted residuals with ReLU6, fused up again by bilinear resizing that aligns corners."""
+    """A network like MiDaS small: inverted residuals with ReLU6, and upsampling by bilinear resizing with aligned
+    corners."""
     n = Network(list(shape), opset)
     x = n.add("Pad", "input", n.constant([0, 0, 0, 0, 0, 0, 1, 1]))
     x = n.add("Conv", x, n.noise(16, 3, 3, 3), n.noise(16), strides=[2, 2], kernel_shape=[3, 3])
@@ -32,7 +34,7 @@ def midas(shape=(1, 3, 256, 256), opset: int = 11) -> bytes:
     levels[1] = n.add("Add", levels[1], n.add("Conv", n.add("Mul", pooled, squeezed), n.noise(32, 24, 1, 1)))
     y = n.add("Conv", levels[2], n.noise(32, 48, 1, 1))
     for level in (levels[1], levels[0]):
-        # The size of the level it is added to, worked out as exporters do.
+        # Compute the size of the level to which the result is added by nodes of the graph, as exporters do.
         size = n.add("Slice", n.add("Shape", level), n.constant([2]), n.constant([4]), n.constant([0]))
         size = n.add("Cast", n.add("Unsqueeze", n.add("Squeeze", n.add("Cast", size, to=1)), axes=[0]), to=7)
         front = n.add("Slice", n.add("Shape", y), n.constant([0]), n.constant([2]), n.constant([0]))
@@ -48,7 +50,8 @@ def midas(shape=(1, 3, 256, 256), opset: int = 11) -> bytes:
 
 
 def dpt(side: int = 64, opset: int = 17, width: int = 48, heads: int = 4) -> bytes:
-    """As DPT: patches, a class token, attention with layer norms and GELU, and a head that puts patches together again."""
+    """A network like DPT: patches, a class token, attention with layer norms and GELU, and a head that reassembles
+    patches."""
     n = Network([1, 3, side, side], opset)
     tokens = (side // 16) ** 2
     x = n.add("Conv", "input", n.noise(width, 3, 16, 16), n.noise(width), strides=[16, 16])
@@ -101,7 +104,7 @@ def dpt(side: int = 64, opset: int = 17, width: int = 48, heads: int = 4) -> byt
 
 
 def cubic(image: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Planes resized by cubic convolution with the slope -0.75, as OpenCV does."""
+    """Resizes planes by cubic convolution with the parameter -0.75, as OpenCV does."""
 
     def weights(size: int, to: int) -> np.ndarray:
         out = np.zeros((to, size))
@@ -117,7 +120,8 @@ def cubic(image: np.ndarray, rows: int, columns: int) -> np.ndarray:
 
 
 def expected(file: bytes, photo: np.ndarray, size: tuple[int, int], mean, deviation, near=1.0, far=10.0) -> np.ndarray:
-    """The depth that the published scripts and the paper's Eq. 1 make of onnxruntime's answer."""
+    """The expected depth: runs onnxruntime with the published pre-processing, and applies Eq. 1 of the paper to its
+    output."""
     encoded = np.where(photo <= 0.0031308, 12.92 * photo, 1.055 * np.maximum(photo, 1e-9) ** (1 / 2.4) - 0.055)
     planes = cubic(np.moveaxis(encoded, -1, 0).astype(np.float64), *size)
     planes = (planes - np.reshape(mean, (3, 1, 1))) / np.reshape(deviation, (3, 1, 1))
@@ -201,10 +205,10 @@ class Networks(Case):
         path.write_bytes(file)
         with self.assertRaises(errors.InvalidArgument):
             features._call("set_network", str(path).encode(), 9)
-        # Nothing of this has changed what is set: no network, so depth is a guess.
+        # The refused files have not set a network, so the depth still comes from no source.
         self.assertEqual(features.run().report.depth_source, luxfer.types.DepthSource.NOTHING)
 
-        # A network that makes no map, and one that divides by zero.
+        # Refuse a network whose output is no depth map, and one that divides by zero.
         photo = Network([1, 3, 64, 64], 13)
         path.write_bytes(photo.file(photo.add("Relu", "input"), 4))
         features.set_network(path)

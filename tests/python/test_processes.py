@@ -1,4 +1,5 @@
-"""Child processes of a program that uses the library: forked, spawned and from a server, with pools and with exceptions."""
+"""Tests child processes of a program that uses the library: forked, spawned, from a fork server, and in process
+pools."""
 
 from __future__ import annotations
 
@@ -21,14 +22,15 @@ PARENT: dict[str, luxfer.Context | luxfer.Scene | luxfer.Job] = {}
 
 
 def height_above(_: int) -> float:
-    """A child's own work, with a context of its own."""
+    """Work of a child process with a context of its own: the height of the ceiling above a point."""
     with luxfer.Context(num_threads=2) as own:
         room = luxfer.Scene.demo(own, "target-room")
         return float(room.intersect([[2.7, 1.5, 4.0]], [[0, 1, 0]])[0]["t"])
 
 
 def inherited() -> list[str]:
-    """The exceptions of an inherited scene, context and job, which are then closed."""
+    """Uses a scene, a context and a job of the parent; returns the names of the exceptions, then closes the
+    objects."""
     room, job, parent = PARENT["room"], PARENT["job"], PARENT["context"]
     assert isinstance(room, luxfer.Scene) and isinstance(job, luxfer.Job) and isinstance(parent, luxfer.Context)
     found = []
@@ -46,12 +48,12 @@ def inherited() -> list[str]:
 
 
 def below_the_package() -> list[int]:
-    """What the C library itself says in a forked child, without the package's own check."""
+    """The statuses of C functions for the parent's scene in a forked child, without the check of the package."""
     pointer = PARENT["room"]._pointer
     return [luxfer.library.luxfer_retain(pointer), luxfer.library.luxfer_release(pointer)]
 
 
-#: Work of one interpreter through the C library alone: numpy refuses to be imported into a second interpreter.
+#: Work of one interpreter. It uses only the C library, because numpy cannot be imported by a second interpreter.
 SUBINTERPRETER = """
 import ctypes
 lib = ctypes.CDLL({library!r})
@@ -75,7 +77,7 @@ for handle in (render, scene, context):
     assert lib.luxfer_release(handle) == 0
 """
 
-#: A program with three interpreters at once, each in a thread of its own.
+#: A program that runs three interpreters at once, each in its own thread.
 INTERPRETERS = """
 import sys, threading
 import _xxsubinterpreters as interpreters
@@ -106,7 +108,7 @@ class Subinterpreters(Case):
         self.assertEqual((ended.returncode, ended.stdout.strip(), ended.stderr), (0, "ended", ""))
 
     def test_the_package_in_a_second_interpreter(self) -> None:
-        """It works, or its import fails with numpy's reason; the process goes on in both cases."""
+        """The import works, or fails because of numpy; the process continues in both cases."""
         code = f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\nimport luxfer\nluxfer.Context(num_threads=1).close()"
         program = f"""
 import _xxsubinterpreters as interpreters
@@ -165,7 +167,7 @@ class Processes(Case):
 
     @unittest.skipUnless(hasattr(os, "fork"), "this system cannot fork")
     def test_a_forked_child_ends_quietly_with_objects_of_its_parent(self) -> None:
-        """Its interpreter closes them at the end."""
+        """The child's interpreter closes the inherited objects when it exits."""
         path = self.folder / "stderr"
         sys.stderr.flush()
         child = os.fork()

@@ -1,4 +1,5 @@
-"""Each stage through Python: the whole transfer, rendering with layers, lux, relighting, stylisation, sheets, scenes."""
+"""Tests each stage through Python: transfers, renderings with layers, illuminance, relighting, stylisation, sheets,
+scenes."""
 
 import unittest
 
@@ -16,7 +17,7 @@ class Transfer(Case):
         settings = {"max_texels": 256, "render": {"width": 80, "height": 45, "samples": 8}, "relight": {"paths": 1 << 16}}
         transfer.run(**settings)
 
-        # The solution: the lit scene's ceiling has the colour that the report says it should have.
+        # The solution gives the ceiling of the lit scene the target colour of the report.
         report, solution = transfer.report, transfer.solution
         off = np.array(solution.scale) * solution.response - 100 * np.array(report.target)
         self.assertTrue((np.abs(off) <= np.multiply(solution.half_width, solution.response)).all(), off)
@@ -24,7 +25,7 @@ class Transfer(Case):
         self.assertTrue((transfer.image("render").numpy() >= 0).all())
         self.assertGreater(transfer.image("render").numpy().mean(), 0)
 
-        # The lamps: as many as the report says, on the ceiling, shining down.
+        # The scene has as many lamps as the report states; they are on the ceiling and shine down.
         surface = room.find_surface("Ceiling")
         fixtures = transfer.fixtures
         self.assertEqual(len(fixtures), report.fixtures)
@@ -35,11 +36,11 @@ class Transfer(Case):
         transfer.save_fixtures(self.folder / "lamps.csv")
         self.assertEqual(len((self.folder / "lamps.csv").read_text().splitlines()), 1 + report.fixtures)
 
-        # The lit scene goes through a file in memory.
+        # The lit scene can be written to a file in memory and read back.
         lit = luxfer.Scene.from_bytes(context(), transfer.scene("lit").to_bytes())
         self.assertEqual(lit.counts.triangles, transfer.scene("lit").counts.triangles)
 
-        # A mask of the caller's own, and the run taken up from there.
+        # Replace the mask of the lights and continue the transfer from there.
         mask = transfer.image("lights-mask").numpy()[..., 0] > 0.5
         mask[:, : mask.shape[1] // 2] = False
         before = transfer.image("emission").numpy()
@@ -105,7 +106,7 @@ class Transfer(Case):
         with self.assertRaises(errors.NotReady):
             transfer.warnings
         transfer.set_strokes(strokes)
-        # What the strokes call lights covers nearly the whole plane.
+        # With a mask of lights that covers the whole plane, the transfer warns.
         transfer.use_mask("plane", np.ones(photo.size[1::-1], np.float32))
         transfer.use_mask("lights", np.ones(photo.size[1::-1], np.float32))
         transfer.run(last="features")
@@ -115,7 +116,7 @@ class Transfer(Case):
         self.assertIn("100 %", lit[0].message)
         self.assertTrue(lit[0].advice and str(lit[0]).startswith("lights: lights cover 100 %"))
 
-        # A face that no stroke has touched, and the place that asks for one.
+        # A part of the photo without strokes causes a warning with its place; a stroke there removes the warning.
         face = np.random.default_rng(1).normal(0, 0.05, (60, 80, 1)).astype(np.float32)
         face[:30] += 1
         face[:30, 50:] += 5
@@ -133,7 +134,7 @@ class Transfer(Case):
         segment.set_strokes(lines, "plane")
         self.assertNotIn(luxfer.types.WarningCode.UNSEEN, [w.code for w in segment.run().warnings])
 
-        # Each stage has a list.
+        # Each stage has a list of warnings.
         dark = np.zeros((32, 32, 3), np.float32)
         dark[8:12, 8:12] = 1
         single = luxfer.Emission(context(), dark, dark[..., 0], np.ones((32, 32))).run(width=96, height=96)
@@ -176,7 +177,7 @@ class Transfer(Case):
         with self.assertRaises(luxfer.errors.InvalidArgument):
             emission.tile(100, 90, 51, 40)
 
-        # Left the first, right the second.
+        # Use the first style on the left and the second on the right.
         weights = np.repeat(np.array([[0, 0, 1, 1]], np.float32), 4, axis=0)
         emission.add_style(*exemplar(8), weights)
         emission.run(width=320, height=160)
@@ -243,7 +244,7 @@ class Rendering(Case):
             part = render.split(3, 1, 2, index, **size)
             render.start_part(paths[-1], part, **size).wait()
             self.assertEqual(render.image().size, (part["width"], part["height"], 3))
-        # Anyone can look at a part, in its place in the whole picture.
+        # A part is an ordinary EXR file, which shows the part at its place in the whole picture.
         picture = luxfer.Image.load(context(), paths[-1]).numpy()
         self.assertEqual(picture.shape, (24, 40, 3))
         rows, columns = slice(part["y"], part["y"] + part["height"]), slice(part["x"], part["x"] + part["width"])
@@ -297,7 +298,7 @@ class Rendering(Case):
         report = relight.run(paths=1 << 16).report
         off = np.array(report.scale) * report.response - (12, 10, 8)
         self.assertTrue((np.abs(off) <= np.multiply(report.half_width, report.response)).all(), off)
-        # A channel that may be brighter keeps what the others ask for.
+        # The at-least target of the blue channel is low, so its scale follows those of the other channels.
         relight.set_target((12, 12, 1e-3))
         relight.set_constraint(("equal", "equal", "at-least"))
         scale = relight.run(paths=1 << 16).report.scale
@@ -350,18 +351,19 @@ class Rendering(Case):
             self.assertTrue(0 < goal.half_width_lux < 0.1 * lux and goal.background_lux >= 0)
         scaled = lamps.texture.numpy()
         np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
-        # Drivers with steps: every lamp at one of them, and the desks near enough.
+        # With power levels, every lamp gets one of the levels, and the desks still meet their goals within the
+        # tolerance.
         lamps.set_levels(np.linspace(0, 2 * max(lamps.lamp(i).scale[0] for i in (0, 1)), 41))
         report = lamps.run(paths=1 << 14, tolerance=0.05).report
         self.assertEqual(report.all_goals_met, 1, lamps.reason)
         lamps.set_levels([])
-        # Limits: neither desk may have less, and what they have more is theirs.
+        # With at-least goals, a desk may get more light than its goal.
         for goal in (0, 1):
             lamps.set_constraint(goal, "at-least")
         self.assertEqual(lamps.run(paths=1 << 14).report.all_goals_met, 1, lamps.reason)
         for goal in (0, 1):
             lamps.set_constraint(goal, ("equal",) * 3)
-        # All lamps alike cannot light one desk more than the other.
+        # If all lamps share one power, they cannot give one desk more light than the other.
         report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
         self.assertEqual((report.groups, report.all_goals_met), (1, 0))
         self.assertIn("goal", lamps.reason)
@@ -386,7 +388,7 @@ class Scenes(Case):
             scene._call("read_vertices", 1, luxfer.abi.LUXFER_VERTEX_COLOUR, 3, None)
 
     def test_arrays_go_in_and_come_out(self):
-        vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # as hosts interleave them
+        vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # interleaved
         vertices["p"] = [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]
         vertices["n"] = (0, 1, 0)
         vertices["t"] = vertices["p"][:, ::2]
@@ -425,7 +427,7 @@ class Scenes(Case):
         index = scene.add_camera(fov_y=0.5, position=(0, 1, 2))
         scene.set_camera(index, **{**scene.camera(index), "target": (0, 1, 0)})
         self.assertEqual(scene.camera(index)["position"], (0, 1, 2))
-        self.assertEqual(scene.camera(index)["target"], (0, 1, 1))  # a metre ahead
+        self.assertEqual(scene.camera(index)["target"], (0, 1, 1))  # read back as the point one metre ahead
         lamp = next(m for m in range(scene.counts.materials) if any(scene.material(m)["emission"]))
         use = scene.material_texture(lamp, "emission")
         self.assertEqual(scene.texture(use.texture).size, (12, 8, 3))
@@ -491,7 +493,7 @@ class Stylisation(Case):
         stylize.run()
         picture, sources = stylize.image().numpy(), stylize.image("sources").numpy().astype(int)
         self.assertEqual(picture.shape, (48, 64, 3))
-        # The final vote copies: no colour is made that is not in the artwork.
+        # The final vote copies pixels, so every colour of the picture occurs in the artwork.
         colours, copied = artwork.numpy().reshape(-1, 3), picture.reshape(-1, 3)
         strangest = max(np.abs(colours - colour).max(1).min() for colour in copied)
         self.assertLess(strangest, 1e-6)

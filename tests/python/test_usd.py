@@ -1,4 +1,4 @@
-"""USD files by usd-core: what it has written is read as it means it, and what is written here it reads."""
+"""Tests USD files with usd-core: luxfer reads its files with their full meaning, and it reads the files of luxfer."""
 
 import json
 import math
@@ -21,7 +21,7 @@ except ImportError:
 
 
 def lights(scene):
-    """Those without a surface, as the GLB file has them."""
+    """The punctual lights of a scene, as its GLB file lists them."""
     data = scene.to_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
     return json.loads(data[20 : 20 + length]).get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
@@ -42,7 +42,7 @@ class Files(unittest.TestCase):
         return stage
 
     def square(self, stage, path, **values):
-        """Of side 2 in the plane of x and y, facing +z."""
+        """A square with sides of length 2 in the xy plane, facing +z."""
         mesh = UsdGeom.Mesh.Define(stage, path)
         mesh.CreatePointsAttr([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
         mesh.CreateFaceVertexCountsAttr([4])
@@ -95,7 +95,7 @@ class Files(unittest.TestCase):
         mesh = self.square(stage, "/World/Floor")
         UsdGeom.Xformable(stage.DefinePrim("/World", "Xform")).AddTranslateOp().Set(Gf.Vec3d(100, 200, 300))
         mesh.AddScaleOp().Set(Gf.Vec3f(100, 100, 100))
-        camera = UsdGeom.Camera.Define(stage, "/World/Camera")  # looks down, as USD's do
+        camera = UsdGeom.Camera.Define(stage, "/World/Camera")  # looks along -z, which is down
         camera.CreateVerticalApertureAttr(20)
         camera.CreateFocalLengthAttr(10)
         scene = luxfer.usd.from_stage(self.context, stage)
@@ -115,7 +115,7 @@ class Files(unittest.TestCase):
         for scale, orientation, up in ((1, "rightHanded", 1), (-1, "rightHanded", 1), (1, "leftHanded", -1), (-1, "leftHanded", -1)):
             stage = self.stage()
             mesh = self.square(stage, "/Floor", Orientation=orientation)
-            mesh.AddScaleOp().Set(Gf.Vec3f(scale, 1, 1))  # a mirror image faces the same way
+            mesh.AddScaleOp().Set(Gf.Vec3f(scale, 1, 1))  # a mirrored face keeps its side
             arrays = luxfer.usd.from_stage(self.context, stage).mesh_arrays(0)
             a, b, c = arrays["positions"][arrays["indices"][0]]
             self.assertEqual(np.sign(np.cross(b - a, c - a)[2]), up, (scale, orientation))
@@ -169,7 +169,7 @@ class Files(unittest.TestCase):
         scene = luxfer.usd.from_stage(self.context, stage)
         np.testing.assert_allclose(scene.material(scene.mesh(0).material)["emission"], (20, 10, 5))
         np.testing.assert_allclose(scene.material(scene.mesh(1).material)["emission"], [7 / (4 * math.pi)] * 3, rtol=2e-3)
-        # It shines towards -z: seen from there, and not from behind.
+        # The light shines towards -z, so it is visible from there and not from behind.
         self.assertLess(scene.intersect([[0, 0, -5]], [[0, 0, 1]])["t"][0], 6)
         arrays = scene.mesh_arrays(0)
         a, b, c = arrays["positions"][arrays["indices"][0]]

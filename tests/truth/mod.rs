@@ -1,9 +1,10 @@
-//! Photos with known cameras and labelled sets of segments, and the errors of vanishing points against them: shared by
-//! `tests/real_rectify.rs` and `benches/vp.rs`.
+//! Loads photos with known cameras and labelled sets of segments, and computes the errors of estimated vanishing
+//! points. `tests/real_rectify.rs` and `benches/vp.rs` share this module.
 //!
-//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without them tests are skipped; in CI they fail.
+//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without data the tests are skipped; in CI they
+//! fail.
 
-// Each crate that includes this module uses a part of it.
+// Each crate that includes this module uses only a part of it.
 #![allow(dead_code)]
 
 use glam::{DMat3, DVec2, DVec3};
@@ -74,7 +75,7 @@ pub fn labelled_photos() -> Vec<Labelled> {
     out
 }
 
-/// Angle in degrees between each true direction and the nearest of the estimates.
+/// For each true direction, the angle in degrees to the nearest of the estimated vanishing points.
 pub fn errors(truth: &[DVec3], points: &[DVec3], k: DMat3) -> Vec<f64> {
     let found: Vec<DVec3> = points.iter().map(|&p| (k.inverse() * p).normalize()).collect();
     truth
@@ -83,8 +84,9 @@ pub fn errors(truth: &[DVec3], points: &[DVec3], k: DMat3) -> Vec<f64> {
         .collect()
 }
 
-/// The minimum total cost of a one-to-one assignment of rows to columns, by trying all assignments; for short lists
-/// only.
+/// Finds the one-to-one assignment of rows to columns that has the minimum total cost, by trying all assignments (for
+/// short lists only). An unassigned row costs 90. Starts at `row`, with the columns of the bit set
+/// `free`. Returns the total cost and the cost of each row, last row first.
 fn assigned(cost: &[Vec<f64>], row: usize, free: u32) -> (f64, Vec<f64>) {
     if row == cost.len() {
         return (0.0, Vec::new());
@@ -102,7 +104,8 @@ fn assigned(cost: &[Vec<f64>], row: usize, free: u32) -> (f64, Vec<f64>) {
     best
 }
 
-/// Segments detected by others in many images, with the true directions of some of them.
+/// A published data set: for each image, its detected segments and the true directions of some of its vanishing
+/// points.
 pub struct GivenSet {
     pub width: usize,
     pub height: usize,
@@ -133,8 +136,9 @@ pub fn given_set(name: &str) -> Option<GivenSet> {
 }
 
 impl GivenSet {
-    /// The published protocol (Kluger et al. 2020): the method knows the number of directions; estimates are assigned
-    /// one to one with the minimum total angle; a missing one counts as 90 degrees. Returns sorted angles in degrees.
+    /// Evaluates the set by the published protocol (Kluger et al. 2020): the method is told the number of directions;
+    /// estimates are assigned to true directions one to one with the minimum total angle; a missing estimate counts as
+    /// 90 degrees. Returns the angles of all images in degrees, sorted.
     pub fn angles(&self, params: &Params) -> Vec<f64> {
         let monitor = Monitor::default();
         let mut all = Vec::new();
@@ -151,8 +155,9 @@ impl GivenSet {
         all
     }
 
-    /// Upper bound of the accuracy from lines: each true direction estimated from the segments that are nearest to it,
-    /// with the camera known. Returns for each image the angles in degrees, in the order of its directions.
+    /// Measures an upper bound of the accuracy that the segments allow: estimates each true direction from the
+    /// segments that are nearest to it, with the camera known. Returns the angles of each image in degrees, in the
+    /// order of its true directions.
     pub fn from_labelled_lines(&self) -> Vec<Vec<f64>> {
         let (monitor, k) = (Monitor::default(), self.intrinsics);
         let params = Params { focal: Some(k.x_axis.x), principal: Some(k.z_axis.truncate()), ..Params::default() };
@@ -160,7 +165,8 @@ impl GivenSet {
             let points: Vec<DVec3> = truth.iter().map(|&d| k * d).collect();
             let own = |index: usize| {
                 let is_own = |s: &&Segment| {
-                    // Within 2 pixels at the ends, and 3.5 degrees.
+                    // A segment belongs to its nearest direction if it deviates by less than 3.5 degrees and, at its
+                    // ends, by less than 2 pixels.
                     let Some(line) = Line::new(s) else { return false };
                     let sines = points.iter().map(|&p| line.sine(p));
                     let nearest = sines.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
@@ -178,7 +184,7 @@ impl GivenSet {
         self.images.iter().map(of_image).collect()
     }
 
-    /// The images with their first three directions only, which for York Urban are the published labels.
+    /// Keeps only the first three directions of each image; for York Urban, these are the published labels.
     pub fn first_three(mut self) -> Self {
         for (_, truth) in &mut self.images {
             truth.truncate(3);
@@ -187,8 +193,8 @@ impl GivenSet {
     }
 }
 
-/// Area under the cumulative curve of the angles up to a limit, as a share of the full area: each angle below the
-/// limit adds its distance from the limit.
+/// Area under the cumulative distribution of the angles up to `limit`, as a share of the full area (AUC): each angle
+/// below the limit adds its distance from the limit.
 pub fn area(angles: &[f64], limit: f64) -> f64 {
     angles.iter().map(|e| (limit - e).max(0.0)).sum::<f64>() / (limit * angles.len() as f64)
 }

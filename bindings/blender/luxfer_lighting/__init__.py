@@ -1,4 +1,5 @@
-"""Lighting from one photo onto the scene, and painting it by example: panels in the sidebar of the 3D view, tab "Luxfer".
+"""Transfers lighting from one photo to the scene, and paints the scene by example: tab "Luxfer" in the 3D view's
+sidebar.
 
     photo ─▶ strokes painted on it ─▶ masks ─▶ transfer ─▶ an emissive material in cd/m² on the chosen object
     ball ─▶ artwork painted over it ─▶ stylise ─▶ an image

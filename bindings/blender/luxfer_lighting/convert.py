@@ -17,16 +17,16 @@ import luxfer
 import numpy as np
 from mathutils import Matrix, Vector
 
-#: From Blender's axes to luxfer's: (x, y, z) to (x, z, -y).
+#: Converts Blender's axes to luxfer's: (x, y, z) becomes (x, z, -y).
 TO_LUXFER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
 TO_BLENDER = TO_LUXFER.transposed()
 
-#: What Blender calls the colour space of luxfer's pictures, and the colour that a Principled BSDF emits.
+#: Blender's names for the colour space of luxfer's pictures, and for the emission input of a Principled BSDF.
 LINEAR, EMISSION = "Linear Rec.709", "Emission Color"
 
 
 def pixels(image: bpy.types.Image) -> np.ndarray:
-    """An image's pixels, (height, width, 4), rows from the top; a view of one copy."""
+    """Copies the pixels of an image to an array (height, width, channels), top row first."""
     width, height = image.size
     if not width or not height:
         raise ValueError(f"the image {image.name} has no pixels")
@@ -36,20 +36,21 @@ def pixels(image: bpy.types.Image) -> np.ndarray:
 
 
 def image(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
-    """An image, decoded if it is encoded."""
+    """Converts an image; decodes it to linear values if it is encoded."""
     encoded = not source.is_float and source.colorspace_settings.name == "sRGB"
     values = pixels(source)
     return luxfer.Image(context, values[..., : min(3, values.shape[2])], "srgb" if encoded else "linear")
 
 
 def drawing(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
-    """The image of strokes, in which pure colours stay pure for any encoding."""
+    """Converts the image of strokes without decoding: pure colours stay pure in any encoding."""
     return luxfer.Image(context, pixels(source)[..., :3])
 
 
 def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy.types.Image:
-    """Pixels (height, width, channels), rows from the top, as the image of that name: of floats if linear, else sRGB of 8
-    bits. It is packed into the .blend, unless it is soon to be another."""
+    """Stores pixels (height, width, channels), top row first, as the Blender image of that name: floats if linear,
+    else 8-bit sRGB. With pack, the image is packed into the .blend; not needed for images that will soon be
+    replaced."""
     height, width, channels = values.shape
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., :3] = values[::-1] if channels == 3 else values[::-1, :, :1]
@@ -67,8 +68,8 @@ def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy
 
 
 def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
-    """The current scene with modifiers applied, through a temporary glTF file; adds area lights and the world's
-    colour, which glTF does not have. One unit of strength becomes one cd/m²."""
+    """Converts the current scene with modifiers applied, through a temporary glTF file. Adds area lights and the
+    world's colour, which glTF cannot store. One unit of strength becomes one cd/m²."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.glb")
         bpy.ops.export_scene.gltf(
@@ -97,8 +98,8 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
 
 
 def with_specular_levels(glb: bytes) -> bytes:
-    """A GLB file in which the specular factors (KHR_materials_specular), which luxfer does not support, are replaced
-    by the index of refraction with equal reflectance at normal incidence."""
+    """Replaces the specular factors (KHR_materials_specular) in a GLB file, which luxfer does not support, by the
+    index of refraction with equal reflectance at normal incidence."""
     length, _ = struct.unpack_from("<II", glb, 12)
     document = json.loads(glb[20 : 20 + length])
     for material in document.get("materials", ()):
@@ -120,7 +121,7 @@ def with_specular_levels(glb: bytes) -> bytes:
 
 
 def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Object) -> None:
-    """The emission that the add-on has put on an object, from its floating-point image; glTF would round it to 8
+    """Adds the emission that the add-on has put on an object, from its floating-point image; glTF would round it to 8
     bits."""
     for slot in thing.material_slots:
         if slot.material is None or "luxfer_base" not in slot.material:
@@ -134,7 +135,7 @@ def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Obj
 
 
 def add_area_light(out: luxfer.Scene, thing: bpy.types.Object) -> None:
-    """A mesh with the radiance of an area light in Cycles: power / (pi area)."""
+    """Adds an area light as a mesh with the radiance that the light has in Cycles: power / (pi area)."""
     light = thing.data
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
@@ -157,7 +158,7 @@ def add_area_light(out: luxfer.Scene, thing: bpy.types.Object) -> None:
 
 
 def world_colour(source: bpy.types.Scene) -> tuple[float, float, float]:
-    """The world's background where it is a plain colour, else black."""
+    """The background of the world if it is a uniform colour, else black."""
     world = source.world
     if world is None:
         return 0.0, 0.0, 0.0
@@ -171,7 +172,7 @@ def world_colour(source: bpy.types.Scene) -> tuple[float, float, float]:
 
 
 def camera(source: bpy.types.Scene) -> dict[str, Any] | None:
-    """The active camera as settings of luxfer's; None if there is none."""
+    """The active camera as camera settings of luxfer; None without a camera."""
     thing = source.camera
     if thing is None or thing.type != "CAMERA":
         return None

@@ -1,4 +1,4 @@
-"""Operators of the lighting transfer: strokes, masks, the transfer itself, and the material it makes."""
+"""Operators of the lighting transfer: strokes, masks, the transfer itself, and the material that it creates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from . import convert, work
 
 STROKES, MASKS, TEXTURE, LAMPS = "Luxfer strokes", "Luxfer masks", "Luxfer light", "Luxfer luminaires"
 
-#: What a stroke says: its colour, and what is shown of it.
+#: For each kind of stroke, its colour, and its name and description in the interface.
 COLOURS = {
     "PLANE": ((0.0, 1.0, 0.0), "Plane", "The plane that carries the lights"),
     "NOT_PLANE": ((1.0, 0.0, 0.0), "Not Plane", "What is not on that plane"),
@@ -35,12 +35,12 @@ class Result:
 
 
 result: Result | None = None
-#: Reasons to doubt the masks or the transfer that were made last.
+#: Reasons to doubt the latest masks or transfer.
 warnings: list[luxfer.StageWarning] = []
 
 
 def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
-    """A transfer with photo and strokes."""
+    """Creates a transfer with the photo and the strokes of the scene."""
     settings = scene.luxfer
     if settings.photo is None:
         raise ValueError("choose a photo first")
@@ -59,7 +59,7 @@ def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[work.S
 
 
 def follow(transfer: luxfer.Transfer, job: work.Step) -> Generator[work.Step, Any, None]:
-    """Waits for a job of a transfer and keeps its warnings. Those of a job that has failed may say why it has."""
+    """Waits for a job of a transfer and keeps its warnings, even if the job fails: they may explain the failure."""
     global warnings
     warnings = []
     try:
@@ -68,16 +68,16 @@ def follow(transfer: luxfer.Transfer, job: work.Step) -> Generator[work.Step, An
         try:
             warnings = transfer.warnings
         except luxfer.errors.NotReady:
-            pass  # its first stage has not ended
+            pass  # no stage has ended, so there are no warnings
 
 
 def masks(transfer: luxfer.Transfer) -> tuple[np.ndarray, np.ndarray]:
-    """Of the plane and of the lights, (height, width, 1)."""
+    """The masks of the plane and of the lights, (height, width, 1)."""
     return transfer.image("plane-mask").numpy(), transfer.image("lights-mask").numpy()
 
 
 def store_masks(photo: np.ndarray, plane: np.ndarray | None, lights: np.ndarray | None, pack: bool = True) -> None:
-    """The photo with the plane in green and the lights in yellow, as far as they are known."""
+    """Stores the photo with the plane in green and the lights in yellow, if their masks are known, as an image."""
     tinted = photo.copy()
     if plane is not None:
         tinted += plane * (0.5 * (np.float32((0, 0.6, 0)) - tinted))
@@ -93,7 +93,7 @@ def transfer_steps(
     yield from follow(transfer, transfer.start("view", "relight", **params))
     store_masks(photo, *masks(transfer))
     lit = transfer.scene("lit")
-    emission = lit.material(lit.counts.materials - 1)["emission"]  # that of the surface is the last one
+    emission = lit.material(lit.counts.materials - 1)["emission"]  # the material of the lit surface is the last one
     texture = transfer.image("emission").numpy()
     result = Result(name, room.find_surface(name), texture, emission, transfer.solution.error)
     write_lamps(transfer.fixtures)
@@ -102,7 +102,7 @@ def transfer_steps(
 
 
 def write_lamps(fixtures: list[luxfer.types.Fixture]) -> None:
-    """The lamps as a text in the .blend, in Blender's axes."""
+    """Writes the lamps into a text of the .blend, in Blender's axes."""
     text = bpy.data.texts.get(LAMPS) or bpy.data.texts.new(LAMPS)
     lines = ["x_m,y_m,z_m,length_m,width_m,area_m2,red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm"]
     for f in fixtures:
@@ -125,7 +125,7 @@ class LUXFER_OT_new_strokes(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         photo = np.clip(convert.pixels(context.scene.luxfer.photo)[..., :3], 0, 1)
-        # No channel reaches 0 or 1, so nothing of the photo passes for a stroke.
+        # Keep all channels between 0.2 and 0.8, so that no pixel of the photo is mistaken for a stroke.
         context.scene.luxfer.strokes = convert.store(STROKES, 0.2 + 0.6 * photo, linear=False)
         return {"FINISHED"}
 
@@ -154,7 +154,7 @@ class LUXFER_OT_paint(bpy.types.Operator):
         for target in (shared, brush):
             if target is not None:
                 target.color = COLOURS[self.kind][0]
-        if brush is not None:  # a hard edge: mixed colours say nothing
+        if brush is not None:  # use a hard edge, because mixed colours are no strokes
             brush.blend = "MIX"
             brush.strength = 1
             for name in ("curve_distance_falloff_preset", "curve_preset"):
@@ -187,7 +187,7 @@ class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
 
 
 def transfer_work(scene: bpy.types.Scene) -> tuple[Generator[work.Step, Any, None], int]:
-    """Reads all that a transfer needs."""
+    """Reads all inputs of a transfer from Blender; returns its steps and their number."""
     settings = scene.luxfer
     if settings.target is None:
         raise ValueError("choose the surface that receives the lights first")
@@ -246,12 +246,13 @@ class LUXFER_OT_apply(bpy.types.Operator):
 
 
 def lay_out(thing: bpy.types.Object, surface: luxfer.types.Surface) -> list[int]:
-    """The faces of an object that lie in a surface, and on them a UV map "Luxfer" over the surface's rectangle."""
+    """Finds the faces of an object that lie in a surface, and gives them the UV map "Luxfer", which covers the
+    surface's rectangle. Returns the indices of the faces."""
     if thing.data.users > 1:
         thing.data = thing.data.copy()
     mesh = thing.data
     if not mesh.materials:
-        mesh.materials.append(None)  # else the new one would be everywhere
+        mesh.materials.append(None)  # otherwise the new material would apply to all faces
     matrix = np.array(convert.TO_LUXFER @ thing.matrix_world)
     points = np.empty((len(mesh.vertices), 3))
     mesh.vertices.foreach_get("co", flat := np.empty(points.size, np.float32))
@@ -263,7 +264,7 @@ def lay_out(thing: bpy.types.Object, surface: luxfer.types.Surface) -> list[int]
 
     layer = mesh.uv_layers.get("Luxfer") or mesh.uv_layers.new(name="Luxfer", do_init=False)
     u = relative @ surface.u_axis / surface.size[0]
-    v = 1 - relative @ surface.v_axis / surface.size[1]  # Blender's v goes up
+    v = 1 - relative @ surface.v_axis / surface.size[1]  # in Blender, v points up
     for face in faces:
         for loop in mesh.polygons[face].loop_indices:
             vertex = mesh.loops[loop].vertex_index
@@ -279,7 +280,7 @@ def base_material(thing: bpy.types.Object) -> bpy.types.Material | None:
 
 
 def emissive(base: bpy.types.Material | None, image: bpy.types.Image, nits: float) -> bpy.types.Material:
-    """A copy of a material that emits image * nits."""
+    """Creates a copy of a material that emits image * nits."""
     material = base.copy() if base is not None else bpy.data.materials.new("Luxfer")
     material.name = f"{base.name if base is not None else 'Surface'} lit by Luxfer"
     material["luxfer_base"] = base.name if base is not None else ""

@@ -1,8 +1,8 @@
-"""The masks while strokes are painted: a timer checks whether the strokes have changed, and a job then computes new
-masks.
+"""Updates the masks while strokes are painted: a timer checks whether the strokes have changed, and then a job
+computes new masks.
 
-The Image Editor shows them over the photo, and they are the image "Luxfer masks". Large photos are reduced here;
-*Preview Masks* and the transfer use the full size.
+The Image Editor shows the masks over the photo, and the image "Luxfer masks" stores them. Large photos are reduced
+here; *Preview Masks* and the transfer use the full size.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from . import convert, lighting, work
 POLL_SECONDS = 0.2
 #: Largest share of the time that checking the strokes may take.
 SHARE = 0.1
-#: Photos of more pixels are reduced.
+#: Number of pixels above which photos are reduced.
 PIXELS = 1_500_000
 
-#: The message if strokes for a stage are missing.
+#: For each stage, the message that is shown if its strokes are missing.
 HINTS = {
     "plane": "Paint a stroke on the plane of the lights (green) and one off it (red)",
     "lights": "Paint a stroke on a light (yellow)",
@@ -31,7 +31,7 @@ HINTS = {
 
 
 class Preview:
-    """The features of one photo, and the masks of the latest strokes."""
+    """Keeps the features of one photo and the masks of the latest strokes."""
 
     def __init__(self, scene: bpy.types.Scene):
         photo = scene.luxfer.photo
@@ -44,12 +44,12 @@ class Preview:
         self.stage = "view"
         self.strokes: np.ndarray | None = None
         self.masks: dict[str, np.ndarray] = {}  # by stage
-        self.shown: dict[str, np.ndarray] = {}  # the last complete ones
+        self.shown: dict[str, np.ndarray] = {}  # the last complete masks, which are shown
         self.hint = ""
         self.version = 0
 
     def reduced(self, values: np.ndarray, smooth: bool = False) -> np.ndarray:
-        """Every n-th pixel, or means over n x n."""
+        """Reduces an image: every n-th pixel or, if smooth, means over n x n pixels."""
         n = self.reduction
         height, width = (size // n * n for size in values.shape[:2])
         if smooth and n > 1:
@@ -57,7 +57,7 @@ class Preview:
         return np.ascontiguousarray(values[n // 2 : height : n, n // 2 : width : n])
 
     def follow(self, scene: bpy.types.Scene) -> None:
-        """Takes the result of the job, or starts another job if there is new paint."""
+        """Reads the result of the job if it has ended; without a job, starts one if the strokes have changed."""
         if self.job is not None:
             if self.job.finished:
                 job, self.job = self.job, None
@@ -72,12 +72,12 @@ class Preview:
         self.begin("plane")
 
     def begin(self, stage: str) -> None:
-        # Strokes on the plane lay out the room, which is among the features.
+        # Strokes on the plane change the room layout and so the features, so start with the features.
         first = "features" if stage == "plane" else stage
         self.stage, self.job = stage, self.transfer.start(first, stage)
 
     def read(self, job: luxfer.Job[luxfer.Transfer]) -> None:
-        """The mask of a stage, if there are strokes for it; then the next stage."""
+        """Reads the mask of a stage, if it has strokes; then starts the next stage or shows the masks."""
         try:
             job.wait()
         except luxfer.errors.Degenerate as error:
@@ -112,19 +112,19 @@ _handler: Any = None
 
 
 def identity(scene: bpy.types.Scene) -> tuple[Any, ...]:
-    """The inputs of a preview: a change needs a new one."""
+    """The inputs of a preview; if they change, a new preview is needed."""
     photo = scene.luxfer.photo
     return scene.name, photo.name, tuple(photo.size)
 
 
 def step() -> float | None:
-    """What the timer calls: seconds until it wants to be called again, None when it is over."""
+    """Function of the timer: returns the seconds until its next call, or None to end the timer."""
     global preview
     scene, settings = bpy.context.scene, bpy.context.scene.luxfer
     if not bpy.context.window_manager.luxfer_live:
         forget()
         return None
-    if work.current() is not None:  # it has the processors
+    if work.current() is not None:  # an operator uses the processors
         return POLL_SECONDS
     if settings.photo is None or settings.strokes is None or tuple(settings.strokes.size) != tuple(settings.photo.size):
         forget()
@@ -135,7 +135,7 @@ def step() -> float | None:
             forget()
             preview = Preview(scene)
         preview.follow(scene)
-    except Exception as error:  # a timer has nobody to raise to
+    except Exception as error:  # a timer cannot pass on an exception
         bpy.context.window_manager.luxfer_live = False
         work.message = str(error)
         forget()
@@ -144,7 +144,7 @@ def step() -> float | None:
 
 
 def forget() -> None:
-    """Ends what runs."""
+    """Cancels the running job and discards the preview."""
     global preview, _texture, _texture_of
     if preview is not None and preview.job is not None:
         preview.job.cancel()
@@ -159,7 +159,7 @@ def toggled(manager: bpy.types.WindowManager, _: bpy.types.Context) -> None:
 
 
 def draw() -> None:
-    """Lays the masks over the photo where strokes are painted on it."""
+    """Draws the masks over the picture in an Image Editor that shows the strokes."""
     global _texture, _texture_of
     space, region, settings = bpy.context.space_data, bpy.context.region, bpy.context.scene.luxfer
     if preview is None or not preview.shown or space.image is None or space.image != settings.strokes:

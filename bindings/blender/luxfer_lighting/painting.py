@@ -15,7 +15,7 @@ EXEMPLAR, ARTWORK, PICTURE = "Luxfer exemplar", "Luxfer artwork", "Luxfer stylis
 
 
 def ball(width: int, height: int, samples: int) -> tuple[luxfer.Guides, luxfer.Job]:
-    """The guides of the exemplar, being rendered."""
+    """Starts to render the guides of the exemplar; returns them and the job."""
     guides = luxfer.Guides(work.context(), luxfer.Scene.demo(work.context(), "sphere-on-table"))
     return guides, guides.start(width=width, height=height, samples=samples)
 
@@ -38,7 +38,8 @@ def sample_steps(width: int, height: int, samples: int, style: str) -> Generator
 def stylise_steps(
     artwork: luxfer.Image, target: luxfer.Scene | passes.Rendering, params: dict[str, Any], preset: str
 ) -> Generator[work.Step, Any, None]:
-    """The target is a scene for the library to render, or its guides by Cycles, being rendered already."""
+    """Steps of a stylisation. The target is a scene, whose guides the library renders, or a running rendering of
+    guides by Cycles."""
     try:
         stylize = luxfer.Stylize(work.context(), artwork)
         source, job = ball(*artwork.size[:2], params["samples"])
@@ -50,7 +51,7 @@ def stylise_steps(
             guides = luxfer.Guides(work.context(), target)
             yield guides.start(**params)
             stylize.add_guides(source, guides)
-    finally:  # if the work ends before its turn
+    finally:  # if the work ends before the rendering was used
         if isinstance(target, passes.Rendering):
             target.close()
     yield stylize.start(preset)

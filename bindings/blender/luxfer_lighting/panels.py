@@ -8,7 +8,7 @@ import luxfer
 from . import lighting, live, painting, work
 
 
-#: The colours of the strokes, by icons that every version has (those of bones).
+#: Icons with the colours of the strokes: bone colour sets, which every version of Blender has.
 ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "COLORSET_09_VEC", "NOT_LIGHT": "COLORSET_04_VEC"}
 
 
@@ -38,18 +38,18 @@ def show_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 
 def say(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, alert: bool = False) -> None:
-    """A text in lines that fit into the sidebar, as wide as it is."""
+    """Shows a text, broken into lines that fit the width of the sidebar."""
     column = layout.column(align=True)
     column.alert = alert
     width = 280
     if context.region is not None:
         width = context.region.width / context.preferences.system.ui_scale
-    for line in lines(text, max(16, int((width - 60) / 6))):  # letters are about 6 wide, tabs and margins 60 together
+    for line in lines(text, max(16, int((width - 60) / 6))):  # pixels: 6 per letter, 60 for tabs and margins
         column.label(text=line)
 
 
 def lines(text: str, width: int) -> list[str]:
-    """A text in lines of less than `width` letters, as far as its words allow."""
+    """Breaks a text into lines of less than `width` letters; a longer word gets a line of its own."""
     out = [""]
     for word in text.split():
         if len(out[-1]) + len(word) >= width:
@@ -59,7 +59,7 @@ def lines(text: str, width: int) -> list[str]:
 
 
 def show_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, warnings: list[luxfer.StageWarning]) -> None:
-    """Reasons to doubt a result, each with its remedy and the place in the photo."""
+    """Shows the warnings of a result, each with its remedy and its place in the photo."""
     for warning in warnings:
         box = layout.box()
         box.label(text=STAGES[warning.stage.name], icon="ERROR")

@@ -1,4 +1,4 @@
-"""Guide passes by Cycles: in a second Blender, on a copy of the .blend, so that this Blender neither waits nor
+"""Renders guides by Cycles in a second Blender, on a copy of the .blend, so that this Blender neither waits nor
 changes.
 
 The rendering has the methods of a job of the library, so that `work` can run it, show its progress and cancel it.
@@ -25,7 +25,8 @@ PROGRAM = Path(__file__).with_name("render_passes.py")
 
 
 class Rendering:
-    """The guides of a scene's active camera, being rendered. Blender's data is only read, and only here at the start."""
+    """A running rendering of guides for a scene's active camera. Only the constructor accesses Blender's data, and it
+    only reads."""
 
     def __init__(self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int):
         self._folder = tempfile.TemporaryDirectory(prefix="luxfer-")
@@ -34,8 +35,8 @@ class Rendering:
         bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True, check_existing=False, compress=False)
         settings = {"blend": blend, "scene": scene.name, "layer": layer.name, "samples": samples, "out": str(self._out)}
         blender = [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python"]
-        if not bpy.app.binary_path:  # bpy as a module of Python's
-            blender = [sys.executable, "-P"]  # which does not take the files beside the program for modules
+        if not bpy.app.binary_path:  # bpy runs as a Python module
+            blender = [sys.executable, "-P"]  # -P keeps Python from importing the files beside the program
         self._fraction, self._said, self._cancelled = 0.0, "", False
         self._process = subprocess.Popen(
             [*blender, str(PROGRAM), "--", json.dumps(settings)],
@@ -66,7 +67,7 @@ class Rendering:
         return self._process.poll() is not None
 
     def poll(self) -> tuple[float, bool]:
-        """The finished share, and whether it has ended, with or without success."""
+        """The finished share, and whether the rendering has ended, with or without success."""
         return self._fraction, self.finished
 
     def cancel(self) -> None:
@@ -74,7 +75,7 @@ class Rendering:
         self._process.kill()
 
     def wait(self) -> Rendering:
-        """Waits for the end; raises the exceptions of a job."""
+        """Waits for the end; raises the same exceptions as a job."""
         try:
             status = self._process.wait()
         except BaseException:  # Ctrl-C in a script
@@ -106,13 +107,14 @@ class Rendering:
 
 
 def light_of(guides: luxfer.Guides) -> dict[str, np.ndarray]:
-    """The guides that the library has rendered, in that form."""
+    """Converts guides that the library has rendered to the form of Rendering.light."""
     return {name: guides.image(which).numpy() for name, which in GUIDES.items()}
 
 
 def add_light(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> None:
-    """Adds the guides of two scenes, whoever has rendered them, at a common exposure, as Stylize.add_guides does: the
-    luminance that nine tenths of both full pictures stay below becomes 0.8, and what is beyond 1 is 1."""
+    """Adds the guides of two scenes to a stylisation at a common exposure, as Stylize.add_guides does, whichever
+    renderer made them. The exposure maps the luminance below which nine tenths of both full pictures lie to 0.8;
+    values above 1 become 1."""
     luma = np.float32((0.2126, 0.7152, 0.0722))
     luminances = np.concatenate([(light["full"] @ luma).ravel() for light in (source, target)])
     luminances = luminances[np.isfinite(luminances)]

@@ -2,9 +2,9 @@
 
     blender --background --python render_passes.py -- SETTINGS     (or a Python that has bpy: render_passes.py -- SETTINGS)
 
-SETTINGS is JSON: "blend", "scene", "layer" (of views), "samples", "out" (an .npz file). A line "part FIRST LAST" gives
-the share of the work of the rendering that begins; Cycles prints its progress. The passes as light path expressions,
-in the notation of luxfer's guides:
+SETTINGS is JSON: "blend", "scene", "layer" (a view layer), "samples", "out" (an .npz file). Before each rendering, the
+program prints a line "part FIRST LAST": the range of the whole work's progress that the rendering covers. Cycles
+prints its own progress. The passes as light path expressions, in the notation of luxfer's guides:
 
     full        L.*E       Combined
     direct      LDE        diffuse direct
@@ -30,10 +30,10 @@ from typing import Any
 import bpy
 import numpy as np
 
-#: In the order in which luxfer has them: its name, and that of the image in luxfer.Guides.
+#: The guides in luxfer's order: the name of each guide, and of its image in luxfer.Guides.
 GUIDES = {"full": "full", "direct": "direct", "specular": "specular", "indirect": "indirect", "two bounces": "two-bounces"}
 PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color", "normal", "material_index")
-#: Blender's own names of passes before 5.0.
+#: The names of passes before Blender 5.0.
 LONG = {
     "DiffDir": "Diffuse Direct",
     "DiffInd": "Diffuse Indirect",
@@ -45,10 +45,10 @@ LONG = {
 
 
 def read_exr(path: Path) -> dict[str, np.ndarray]:
-    """The layers of an OpenEXR file as Blender writes it uncompressed, of floats, in one part: name of the pass ->
-    (channels, height, width), channels in the order RGBA or XYZ."""
+    """Reads the layers of an uncompressed OpenEXR file of floats in one part, as Blender writes it. Returns an array
+    (channels, height, width) by the name of each pass; the channels are in the order RGBA or XYZ."""
     data = path.read_bytes()
-    at = 8  # behind magic number and version
+    at = 8  # after magic number and version
     attributes: dict[str, bytes] = {}
     while data[at]:
         name, kind, _ = data[at : at + 512].split(b"\0", 2)
@@ -62,8 +62,8 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
     while channels[0]:
         name, rest = channels.split(b"\0", 1)
         names.append(name.decode())
-        channels = rest[16:]  # kind of number, sampling
-    line = 8 + 4 * width * len(names)  # each begins with its number and its size
+        channels = rest[16:]  # skip type and sampling
+    line = 8 + 4 * width * len(names)  # each line begins with its number and its size
     rows = np.frombuffer(data, np.uint8, line * height, at + 1 + 8 * height).reshape(height, line)
     values = rows[:, 8:].copy().view(np.float32).reshape(height, len(names), width)
     layers: dict[str, dict[str, np.ndarray]] = {}
@@ -88,7 +88,7 @@ def brightness(light: np.ndarray) -> np.ndarray:
 
 
 KERNEL = (1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16)
-#: Rows at a time: what is worked on stays in the processor's caches.
+#: Number of rows that are processed at a time, so that they fit into the processor's caches.
 BAND = 16
 
 
@@ -100,7 +100,7 @@ def averages(
     material: np.ndarray,
     step: int,
 ) -> list[np.ndarray]:
-    """Weighted means over 5 x 5 pixels `step` apart, of the like brightness in the guides if there are any."""
+    """Computes weighted means over 5 x 5 pixels `step` apart; with guides, pixels of similar brightness weigh more."""
     height, width = material.shape
     tiny = np.finfo(np.float32).tiny
     nothing = (normals == 0).all(0)
@@ -143,13 +143,13 @@ def averages(
 
 
 def told(text: Any, *_: Any) -> None:
-    """A handler that says what Cycles does, for versions of Blender that do not print it."""
+    """Handler that prints the progress of Cycles, for versions of Blender that do not print it."""
     if isinstance(text, str):
         print(text, flush=True)
 
 
 def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
-    """One layer of views with the passes, no compositing, no denoising, one view of the whole picture."""
+    """Sets up a scene: one view layer with the passes, no compositing, no denoising, the whole picture."""
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
     scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
@@ -163,7 +163,7 @@ def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
         material.pass_index = number + 1
     settings = scene.render.image_settings
     for name, value in (
-        ("media_type", "MULTI_LAYER_IMAGE"),  # from Blender 5.0 on, as is the next but two
+        ("media_type", "MULTI_LAYER_IMAGE"),  # exists from Blender 5.0 on
         ("file_format", "OPEN_EXR_MULTILAYER"),
         ("exr_codec", "NONE"),
         ("color_depth", "32"),
@@ -174,7 +174,7 @@ def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
 
 
 def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.ndarray]:
-    """The passes; of the whole work this is from `first` to `last`."""
+    """Renders and reads the passes; this covers the range from `first` to `last` of the whole progress."""
     print(f"part {first} {last}", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = str(Path(folder) / "passes.exr")
@@ -183,7 +183,7 @@ def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.nd
 
 
 def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.ndarray]:
-    """The guides, in Blender's units of radiance, (height, width, 3)."""
+    """Renders the guides: arrays (height, width, 3) in Blender's units of radiance."""
     set_up(scene, layer, samples)
     bpy.app.handlers.render_stats.append(told)
     found = render(scene, 0.0, 0.6)
@@ -203,9 +203,9 @@ def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.nda
 
 def main() -> None:
     settings = json.loads(sys.argv[sys.argv.index("--") + 1])
-    import addon_utils  # known once there is bpy
+    import addon_utils  # can be imported only after bpy
 
-    addon_utils.enable("cycles")  # the user may have put it away
+    addon_utils.enable("cycles")  # the user may have disabled it
     bpy.ops.wm.open_mainfile(filepath=settings["blend"], load_ui=False)
     np.savez(settings["out"], **guides(bpy.data.scenes[settings["scene"]], settings["layer"], settings["samples"]))
 

@@ -1,4 +1,4 @@
-"""What is stored with the scene: photo, strokes, target and the few numbers that matter."""
+"""The settings that the .blend stores with each scene: photo, strokes, target and some numbers."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty

@@ -1,7 +1,8 @@
-"""Background jobs: a work is a generator that yields jobs of the library and continues when each has succeeded.
+"""Runs work in the background. A work is a generator that yields jobs of the library; it continues when a job has
+succeeded.
 
-A timer of Blender polls the running job, so the user interface stays responsive; the panels show the progress, Esc and
-the button cancel. Blender's data is accessed only on the main thread, between two jobs.
+A timer of Blender polls the running job, so the user interface stays responsive; the panels show the progress, and Esc
+or the button cancels. Blender's data is accessed only on the main thread, between two jobs.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ message = ""
 
 
 def context() -> luxfer.Context:
-    """The library's context, made when it is first needed."""
+    """The context of the library, created on first use."""
     global _context
     if _context is None:
         _context = luxfer.Context()
@@ -50,7 +51,8 @@ class Work:
         return min(1.0, (self.done + self.job.poll()[0]) / self.count)
 
     def advance(self) -> bool:
-        """Goes on if the running job has ended; False when there is no other. Raises what the job or the steps raise."""
+        """Continues with the next job if the running one has ended; returns False after the last one. Raises
+        exceptions of the job and of the steps."""
         if not self.job.finished:
             return True
         self.job.wait()
@@ -62,7 +64,7 @@ class Work:
         return True
 
     def stop(self) -> None:
-        """Cancels, and waits until nothing runs."""
+        """Cancels the running job and waits until it has ended."""
         self.job.cancel()
         try:
             self.job.wait()
@@ -76,7 +78,7 @@ def current() -> Work | None:
 
 
 def start(title: str, make: Callable[[], tuple[Generator[Step, Any, None], int]]) -> None:
-    """Begins a work; an error of its first step is raised here, later ones become the message."""
+    """Starts a work. An error of its first step is raised here; later errors become the message in the panel."""
     global _current, message
     if _current is not None:
         raise RuntimeError(f"{_current.title} is still running")
@@ -87,7 +89,7 @@ def start(title: str, make: Callable[[], tuple[Generator[Step, Any, None], int]]
 
 
 def step() -> float | None:
-    """What the timer calls: seconds until it wants to be called again, None when the work is over."""
+    """Function of the timer: returns the seconds until its next call, or None when the work is over."""
     global _current, message
     if _current is None:
         return None
@@ -95,7 +97,7 @@ def step() -> float | None:
         goes_on = _current.advance()
     except luxfer.errors.Cancelled:
         goes_on, message = False, "Cancelled"
-    except Exception as error:  # shown in the panel: a timer has nobody to raise to
+    except Exception as error:  # shown in the panel, because a timer cannot pass on an exception
         goes_on, message = False, str(error)
     if not goes_on:
         _current.steps.close()
@@ -105,19 +107,19 @@ def step() -> float | None:
 
 
 def finish() -> None:
-    """Waits for the work: for scripts and without a user interface. Raises if it failed."""
+    """Waits for the work, in scripts and without a user interface. Raises its error if it fails."""
     while _current is not None:
         try:
             _current.job.wait()
         except Exception:
-            pass  # step() meets it again
+            pass  # step() handles the error
         step()
     if message:
         raise RuntimeError(message)
 
 
 def cancel() -> None:
-    """Ends the work now."""
+    """Cancels the current work."""
     global _current, message
     if _current is not None:
         work, _current = _current, None
@@ -127,7 +129,7 @@ def cancel() -> None:
 
 
 def redraw(pictures: bool = False) -> None:
-    """Draws the panels anew; pictures in Image Editors too, but never a 3D view, which may take long."""
+    """Redraws the panels and, with pictures, the Image Editors; but no 3D view, because that may take long."""
     for window in getattr(bpy.context.window_manager, "windows", ()):
         for area in window.screen.areas:
             if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
@@ -137,13 +139,14 @@ def redraw(pictures: bool = False) -> None:
 
 
 class Background:
-    """The base class of operators with work in make(). From the user interface they run in the background, modal for
-    Esc; from scripts they return when the work is done."""
+    """Base class of operators whose work comes from make(). Started in the user interface, they run in the background
+    as modal operators, which receive Esc. Called from scripts, they return when the work is done."""
 
     title: str
 
     def make(self, context: bpy.types.Context) -> tuple[Generator[Step, Any, None], int]:
-        """The steps and how many jobs they have. Blender's data is read here: an undo may replace it while a job runs."""
+        """Returns the steps and the number of their jobs. Reads all of Blender's data that the work needs, because an
+        undo may replace the data while a job runs."""
         raise NotImplementedError
 
     @classmethod
@@ -174,7 +177,7 @@ class Background:
         if _current is None:
             if message:
                 self.report({"WARNING" if message == "Cancelled" else "ERROR"}, message)
-            return {"CANCELLED" if message else "FINISHED", "PASS_THROUGH"}  # the event is not ours: it may be Ctrl+Z
+            return {"CANCELLED" if message else "FINISHED", "PASS_THROUGH"}  # pass the event on: it may be Ctrl+Z
         if event.type == "ESC":
             cancel()
         return {"PASS_THROUGH"}

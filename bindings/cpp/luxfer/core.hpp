@@ -16,15 +16,16 @@
 
 namespace luxfer {
 
-/// Whether a library of one version is compatible with a program built with a header of another: before 1.0 the minor
-/// versions must be equal; from 1.0 on the major versions must be equal and the library must not be older.
+/// Whether the library of version `library` is compatible with a program that was built with the header of version
+/// `header`. Before 1.0, the minor versions must be equal. From 1.0 on, the major versions must be equal and the
+/// library must not be older than the header.
 constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexcept {
     return header >= 10000 ? library / 10000 == header / 10000 && library >= header : library / 100 == header / 100;
 }
 
 namespace detail {
 
-/// One reference to a C object, or none. Copies retain, the destructor releases.
+/// Owns one reference to a C object, or none: copying retains the object, and the destructor releases it.
 template <class C>
 class Reference {
 public:
@@ -52,7 +53,8 @@ struct IsVersioned : std::false_type {};
 template <class T>
 struct IsVersioned<T, std::void_t<decltype(T::struct_size)>> : std::true_type {};
 
-/// Calls a C function that fills a plain value, or a versioned struct of the size that follows it, and returns it.
+/// Calls a C function that fills a plain value, or a versioned struct followed by its size; returns the value or
+/// struct.
 template <class T, class... Parameters, class... Arguments>
 Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
     T value = T();
@@ -64,7 +66,8 @@ Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameter
     return finish(context, status, value);
 }
 
-/// Calls a C function whose last parameters are a buffer, its capacity and the capacity needed.
+/// Calls a C function that copies a text; its last parameters are a buffer, its capacity and the capacity needed.
+/// Returns the text.
 template <class... Parameters, class... Arguments>
 Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
     std::size_t needed = 0;
@@ -87,7 +90,7 @@ public:
     /// An empty context: every call on it, or with it, gives LUXFER_INVALID_ARGUMENT.
     Context() noexcept = default;
 
-    /// LUXFER_UNSUPPORTED if the loaded library is not compatible with the header with which the program was built.
+    /// Creates a context. LUXFER_UNSUPPORTED if the loaded library is not compatible with the header of the program.
     static Result<Context> create(const luxfer_context_params &params = ContextParams()) {
         if (!is_compatible(luxfer_get_version(), LUXFER_VERSION))
             return detail::fail<Context>(Error(LUXFER_UNSUPPORTED, mismatch()));
@@ -99,7 +102,7 @@ public:
         return Context(made);
     }
 
-    /// Takes over a reference that the caller holds to a context, such as one from another part of the program.
+    /// Takes over a reference to a context that the caller owns, such as one from another part of the program.
     static Context adopt(luxfer_context *context) noexcept { return Context(context); }
 
     /// The C handle, for the C functions; still owned by this object.
@@ -134,7 +137,7 @@ public:
 
     Handle() noexcept = default;
 
-    /// Takes over a reference that the caller holds to a C object of a context.
+    /// Takes over a reference to a C object that the caller owns; `context` is the context of that object.
     Handle(const Context &context, C *adopted) noexcept
         : context_(adopted != nullptr ? context : Context()), reference_(adopted) {}
 
@@ -175,7 +178,7 @@ protected:
         return detail::get_value<T>(context_.get(), function, get(), arguments...);
     }
 
-    /// Calls a C function on the object that copies a text.
+    /// Calls a C function on the object that copies a text; returns the text.
     template <class... Parameters, class... Arguments>
     Result<std::string> text(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
         return detail::get_text(context_.get(), function, get(), arguments...);
@@ -209,7 +212,7 @@ public:
         return make_in<Image>(context, luxfer_image_load, path.get(), colour_space);
     }
 
-    /// Loads such a file from memory: any container of bytes.
+    /// Loads an image file from memory: any container of bytes.
     template <class Bytes>
     static Result<Image> load_memory(const Context &context, const Bytes &file,
                                      luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
@@ -227,7 +230,7 @@ public:
         return detail::finish(context().get(), status, size);
     }
 
-    /// What the file of a loaded photo says of its camera; 0 is unknown.
+    /// The camera's metadata in the file of a loaded photo; 0 means unknown.
     Result<luxfer_photo_metadata> metadata() const {
         return value<luxfer_photo_metadata>(luxfer_image_get_metadata);
     }
@@ -249,13 +252,14 @@ public:
         return detail::finish(context().get(), status, std::move(samples));
     }
 
-    /// A new image whose pixel at p is this one's at to_source(p).
+    /// Creates an image whose pixel at p is the pixel of this image at to_source(p).
     Result<Image> warp(Numbers<9> to_source, std::uint32_t width, std::uint32_t height) const {
         return make<Image>(luxfer_image_warp, to_source.data(), width, height);
     }
 };
 
-/// The homography that maps four points to four points, row by row; the arrays hold x and y of each point.
+/// Computes the homography that maps four points to four points; the arrays hold x and y of each point. Returns its
+/// matrix row by row.
 inline Result<std::array<double, 9>> homography_from_corners(const Context &context, Numbers<8> from, Numbers<8> to) {
     std::array<double, 9> map = {};
     const luxfer_status status = luxfer_homography_from_corners(context.get(), from.data(), to.data(), map.data());
@@ -280,9 +284,9 @@ class Job : public Handle<luxfer_job> {
 public:
     using Handle::Handle;
 
-    /// Starts a function of the caller as a job on a thread of its own; calls of the library that it makes in this
-    /// context end early when the job is cancelled. It fails with a Result's error, or throws one; any other exception
-    /// becomes LUXFER_UNKNOWN.
+    /// Runs a function of the caller as a job on a thread of its own. When the job is cancelled, the library calls
+    /// that the function makes in this context end early. The function reports a failure by an Error, returned or
+    /// thrown; any other exception makes the job fail with LUXFER_UNKNOWN.
     static Result<Job> start(const Context &context, std::function<Result<>()> work) {
         auto kept = std::make_unique<std::function<Result<>()>>(std::move(work));
         luxfer_job *made = nullptr;
@@ -334,7 +338,7 @@ private:
         return detail::status_of(*work);
     }
 
-    // As luxfer_job_wait.
+    // Calls luxfer_job_wait with a C++ progress function.
     static luxfer_status wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
         if (!progress)
             return luxfer_job_wait(job, timeout_ms, nullptr, nullptr);

@@ -13,7 +13,7 @@ using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
 using PlacementParams = Params<luxfer_placement_params, LUXFER_STRUCT_PLACEMENT_PARAMS>;
 
-/// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
+/// Solves for lamp powers that come as near as possible to several goals. See luxfer_lamps.
 class Lamps : public Handle<luxfer_lamps> {
 public:
     using Handle::Handle;
@@ -35,13 +35,13 @@ public:
         return call(luxfer_lamps_add_grid, &grid, lux, weight);
     }
 
-    /// Makes a goal a limit; a LUXFER_CONSTRAINT_ value for all channels, or for each.
+    /// Makes a goal a limit, by one LUXFER_CONSTRAINT_ value for all channels, or one for each channel.
     Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const { return set_constraint(goal, constraint, constraint, constraint); }
     Result<> set_constraint(std::uint32_t goal, luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
         return call(luxfer_lamps_set_constraint, goal, red, green, blue);
     }
 
-    /// Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without steps.
+    /// Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous dimming.
     Result<> set_levels(const std::vector<double> &levels) const {
         return call(luxfer_lamps_set_levels, levels.data(), static_cast<std::uint32_t>(levels.size()));
     }
@@ -88,18 +88,18 @@ public:
 
     Result<Image> image() const { return make<Image>(luxfer_importance_get_image); }
 
-    /// The light that the target receives from a texture in cd/m².
+    /// Computes the light that the target receives from an emissive texture, in cd/m².
     Result<luxfer_importance_report> respond(const Image &texture) const {
         return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), nullptr);
     }
 
-    /// The light of a placed texture; placement maps the surface's texture coordinates to those of the texture, row by
-    /// row.
+    /// Computes the light that the target receives from a placed texture. The matrix placement (row by row) maps the
+    /// texture coordinates of the surface to those of the texture.
     Result<luxfer_importance_report> respond(const Image &texture, Numbers<9> placement) const {
         return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), placement.data());
     }
 
-    /// Solves for the factor of a texture that gives the target a mean radiance.
+    /// Solves for the factor of a texture that gives the target a mean radiance, in cd/m².
     Result<luxfer_relight_report> solve(const Image &texture, Rgb target) const {
         return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.red, target.green,
                                             target.blue);
@@ -114,7 +114,7 @@ public:
         return make<Job>(luxfer_importance_start_placement, texture.get(), &params);
     }
 
-    /// The placement that was found.
+    /// The placement that the job of start_placement has found.
     Result<luxfer_placement> placement() const { return value<luxfer_placement>(luxfer_importance_get_placement); }
 };
 
@@ -141,7 +141,7 @@ public:
     }
     Result<std::string> name() const { return text(luxfer_distribution_get_name); }
 
-    /// Luminous intensity in candela in a direction; angles in degrees.
+    /// The luminous intensity in candela in a direction, given by its angles C and gamma in degrees.
     Result<double> intensity(double c, double gamma) const {
         return value<double>(luxfer_distribution_get_intensity, c, gamma);
     }
@@ -155,7 +155,7 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
     return detail::finish(scene.context().get(), status, index);
 }
 
-/// The blackbody nearest to a colour.
+/// The correlated colour temperature in kelvin, and the signed distance Duv from the blackbody locus.
 struct ColourTemperature {
     double kelvin, duv;
 };
@@ -184,7 +184,8 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
     return detail::finish(scene.context().get(), status, std::move(ratings));
 }
 
-/// The unified glare rating of a luminance image; threshold 0 is five times its mean.
+/// The unified glare rating of a luminance image. Pixels above `threshold` (cd/m²) are glare sources; 0 means five
+/// times the mean luminance.
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
     return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,
                                                   threshold);
@@ -203,7 +204,7 @@ struct Mixture {
     luxfer_mixture light;
 };
 
-/// Mixes a linear colour from the LEDs of a luminaire, with drive levels of at most `most`.
+/// Mixes a linear colour from the primaries (LEDs) of a luminaire, with drive levels of at most `max_drive`.
 inline Result<Mixture> mix_primaries(const Context &context, const std::vector<std::array<double, 3>> &primaries,
                                      std::array<double, 3> colour, double max_drive = 1) {
     std::vector<double> flat;
@@ -215,7 +216,7 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     return detail::finish(context.get(), status, std::move(mixture));
 }
 
-/// The blackbody light that brings a target nearest to a mean radiance.
+/// Finds the blackbody light that brings the mean radiance of a target nearest to a given one.
 inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, std::array<double, 3> response,
                                                       std::array<double, 3> background, std::array<double, 3> target) {
     return detail::get_value<luxfer_temperature_fit>(context.get(), luxfer_fit_temperature, context.get(),

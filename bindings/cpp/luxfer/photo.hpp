@@ -1,7 +1,7 @@
-// From a photo to an emissive texture: rectification, features, segmentation, emission, each a stage of its own.
+// The stages from a photo to an emissive texture: rectification, features, segmentation, emission.
 //
-// All stages work alike: create, set the inputs, start a job, read images and a report. For an input that may be NULL
-// in C, pass an empty Image (or Rectify).
+// All stages work alike: create the stage, set its inputs, start a job, read images and a report. For an input that
+// may be NULL in C, pass an empty Image (or Rectify).
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -24,14 +24,14 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_rectify_set_photo, photo.get()); }
 
-    /// Sets the mask of the plane to unwarp; may be empty: then only lines and camera are found.
+    /// Sets the mask of the plane to unwarp; if it is empty, the stage finds only lines and camera.
     Result<> set_mask(const Image &mask) const { return call(luxfer_rectify_set_mask, mask.get()); }
 
     Result<Job> start(const luxfer_rectify_params &params = RectifyParams()) const {
         return make<Job>(luxfer_rectify_start, &params);
     }
 
-    /// A LUXFER_RECTIFY_ value.
+    /// Gets an image of the results; `which` is a LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image which) const { return make<Image>(luxfer_rectify_get_image, which); }
 
     /// Unwarps another image of the photo's size by the homography of the plane.
@@ -52,7 +52,7 @@ public:
         return make_in<Strokes>(context, luxfer_strokes_create, width, height);
     }
 
-    /// The strokes of a drawing, for images of its size.
+    /// Creates the strokes of a drawing, for images of its size.
     static Result<Strokes> from_image(const Image &drawing) {
         luxfer_strokes *made = nullptr;
         std::uint32_t width = 0, height = 0;
@@ -65,7 +65,9 @@ public:
         return detail::finish(drawing.context().get(), status, std::move(strokes));
     }
 
-    /// Adds a stroke along a polyline: points holds x and y of each, in pixels; phase is a LUXFER_PHASE_ value.
+    /// Adds a stroke along a polyline: points holds x and y of each point, in pixels, and radius is in pixels; phase
+    /// is a
+    /// LUXFER_PHASE_ value.
     Result<> add(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
         const std::int32_t positive = is_positive;
         return call(luxfer_strokes_add, phase, points.data(), points.size() / 2, radius, positive);
@@ -74,7 +76,7 @@ public:
     /// Adds the strokes of a drawing of the same size.
     Result<> add(const Image &drawing) const { return call(luxfer_strokes_add_image, drawing.get()); }
 
-    /// Adds the strokes of a text.
+    /// Adds the strokes that a text describes.
     Result<> add(Text description) const { return call(luxfer_strokes_add_text, description.get()); }
 
     /// Removes all strokes.
@@ -90,7 +92,7 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_features_set_photo, photo.get()); }
 
-    /// Sets the depth map; may be empty: no depth map.
+    /// Sets the depth map; empty means none.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_features_set_depth, depth.get(), kind);
     }
@@ -101,17 +103,17 @@ public:
     }
     Result<> clear_network() const { return call(luxfer_features_set_network, nullptr, LUXFER_NORMALISATION_BY_SIZE); }
 
-    /// Takes the current lines and camera of a Rectify; may be empty: no lines.
+    /// Takes the current lines and camera of a Rectify; empty means no lines.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
-    /// Sets strokes on the photo, of which the fit of a room takes those for the plane; may be empty: no strokes.
+    /// Sets the strokes on the photo; the fit of the room layout uses those for the plane. Empty means none.
     Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_features_set_strokes, strokes.get()); }
 
     Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
         return make<Job>(luxfer_features_start, &params);
     }
 
-    /// A LUXFER_FEATURES_ value.
+    /// Gets an image of the results; `which` is a LUXFER_FEATURES_ value.
     Result<Image> image(luxfer_features_image which) const { return make<Image>(luxfer_features_get_image, which); }
 
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
@@ -129,10 +131,10 @@ public:
 
     Result<> set_features(const Image &features) const { return call(luxfer_segment_set_features, features.get()); }
 
-    /// Restricts the segmentation to a mask; may be empty: everywhere.
+    /// Restricts the segmentation to a mask; empty means the whole image.
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
-    /// Sets the strokes for phase, a LUXFER_PHASE_ value; may be empty: no strokes.
+    /// Sets the strokes and selects those of phase, a LUXFER_PHASE_ value; empty means none.
     Result<> set_strokes(const Strokes &strokes, luxfer_phase phase) const {
         return call(luxfer_segment_set_strokes, strokes.get(), phase);
     }
@@ -141,7 +143,7 @@ public:
         return make<Job>(luxfer_segment_start, &params);
     }
 
-    /// A LUXFER_SEGMENT_ value.
+    /// Gets an image of the results; `which` is a LUXFER_SEGMENT_ value.
     Result<Image> image(luxfer_segment_image which) const { return make<Image>(luxfer_segment_get_image, which); }
 
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
@@ -168,13 +170,13 @@ public:
     }
     Result<> clear_photo() const { return call(luxfer_emission_set_photo, nullptr, nullptr); }
 
-    /// Adds an exemplar with scale unwarped pixels per texel, whose lights replace those of the first according to
-    /// weights.
+    /// Adds an exemplar, with scale unwarped pixels per texel. The image weights, stretched over the texture, has the
+    /// probability that a lamp at that place is taken from this exemplar.
     Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, double scale, const Image &weights) const {
         return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), nullptr, nullptr, scale,
                     weights.get());
     }
-    /// Adds an exemplar with a photo, as for set_photo.
+    /// Adds an exemplar together with its photo and map, as in set_photo.
     Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, const Image &photo,
                        Numbers<9> to_photo, double scale, const Image &weights) const {
         return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), photo.get(), to_photo.data(),
@@ -186,7 +188,7 @@ public:
     Result<Job> start_plan(const luxfer_emission_params &params = EmissionParams()) const {
         return make<Job>(luxfer_emission_start_plan, &params);
     }
-    /// Renders a part of the planned texture: RGB, and a mask that is 1 on lamps.
+    /// Renders a part of the planned texture. The image has four channels: RGB, and a mask that is 1 on lamps.
     Result<Image> render_tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const {
         return make<Image>(luxfer_emission_render_tile, x, y, width, height);
     }
@@ -195,7 +197,7 @@ public:
         return make<Job>(luxfer_emission_start, &params);
     }
 
-    /// A LUXFER_EMISSION_ value.
+    /// Gets an image of the results; `which` is a LUXFER_EMISSION_ value.
     Result<Image> image(luxfer_emission_image which) const { return make<Image>(luxfer_emission_get_image, which); }
 
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }

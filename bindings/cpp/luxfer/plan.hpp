@@ -24,7 +24,7 @@ public:
         return make<Job>(luxfer_plan_start_render, render.get(), &settings, &params);
     }
 
-    /// Plans the stages after EMISSION, which must have run.
+    /// Plans the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run.
     Result<Job> start(const Transfer &transfer, const luxfer_plan_params &params,
                       const luxfer_transfer_params &settings = TransferParams()) const {
         return make<Job>(luxfer_plan_start_transfer, transfer.get(), &settings, &params);
@@ -38,7 +38,7 @@ public:
 
     Result<luxfer_plan_report> report() const { return value<luxfer_plan_report>(luxfer_plan_get_report); }
 
-    /// The settings to render, to relight and to stylise with.
+    /// The chosen settings for rendering, relighting and stylisation.
     Result<luxfer_render_params> render_params() const {
         return value<luxfer_render_params>(luxfer_plan_get_render_params);
     }

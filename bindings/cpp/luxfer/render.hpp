@@ -1,4 +1,4 @@
-// Light in a scene: pictures with layers, illuminance, and relighting.
+// Computes the light in a scene: pictures with layers, illuminance, and relighting.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -35,10 +35,10 @@ public:
     }
     Result<> clear_expressions() const { return call(luxfer_render_clear_expressions); }
 
-    /// A LUXFER_EMITTER_AS_ value.
+    /// Sets the letters that match emissive surfaces and the environment in expressions: a LUXFER_EMITTER_AS_ value.
     Result<> set_emitter_as(luxfer_emitter_as emitter_as) const { return call(luxfer_render_set_emitter_as, emitter_as); }
 
-    /// LUXFER_AOV_ flags.
+    /// Sets the layers of surface properties: LUXFER_AOV_ flags.
     Result<> set_aovs(std::uint32_t flags) const { return call(luxfer_render_set_aovs, flags); }
 
     Result<Job> start(const luxfer_render_params &params = RenderParams()) const {
@@ -47,7 +47,7 @@ public:
 
     // Rendering in parts, on many machines.
 
-    /// Part number index of columns x rows rectangles and ranges of paths.
+    /// Gets part number index, if the image is divided into columns x rows rectangles and the paths into ranges.
     Result<luxfer_render_part> split(std::uint32_t columns, std::uint32_t rows, std::uint32_t ranges, std::uint32_t index,
                                      const luxfer_render_params &params = RenderParams()) const {
         return value<luxfer_render_part>(luxfer_render_split, &params, columns, rows, ranges, index);
@@ -59,7 +59,7 @@ public:
         return make<Job>(luxfer_render_start_part, &params, &part, path.get());
     }
 
-    /// Adds a file to merge by start_merge.
+    /// Adds the file of a part that start_merge will merge.
     Result<> add_part(Text path) const { return call(luxfer_render_add_part, path.get()); }
     Result<> clear_parts() const { return call(luxfer_render_clear_parts); }
 
@@ -67,7 +67,7 @@ public:
         return make<Job>(luxfer_render_start_merge, &params);
     }
 
-    /// A LUXFER_RENDER_ value.
+    /// Gets an image of the results; `which` is a LUXFER_RENDER_ value.
     Result<Image> image(luxfer_render_image which = LUXFER_RENDER_BEAUTY) const {
         return make<Image>(luxfer_render_get_image, which);
     }
@@ -101,14 +101,14 @@ public:
         return make<Job>(luxfer_illuminance_start_grid, &grid, &params);
     }
 
-    /// Starts a job for a mesh, on its front side by the triangles' winding, or on its back side.
+    /// Starts a job for a mesh: for its front side, which the winding of the triangles defines, or for its back side.
     Result<Job> start_mesh(std::uint32_t mesh, bool back = false,
                            const luxfer_illuminance_params &params = IlluminanceParams()) const {
         const std::uint32_t side = back;
         return make<Job>(luxfer_illuminance_start_mesh, mesh, side, &params);
     }
 
-    /// A LUXFER_ILLUMINANCE_ value.
+    /// Gets an image of the results; `which` is a LUXFER_ILLUMINANCE_ value.
     Result<Image> image(luxfer_illuminance_image which = LUXFER_ILLUMINANCE_LUX) const {
         return make<Image>(luxfer_illuminance_get_image, which);
     }
@@ -135,7 +135,7 @@ public:
         return call(luxfer_relight_set_target, target.red, target.green, target.blue);
     }
 
-    /// Makes the target a limit; a LUXFER_CONSTRAINT_ value for each channel.
+    /// Makes the target a limit, by a LUXFER_CONSTRAINT_ value for each channel.
     Result<> set_constraint(luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
         return call(luxfer_relight_set_constraint, red, green, blue);
     }

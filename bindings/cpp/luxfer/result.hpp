@@ -1,8 +1,8 @@
 // The result of a call: a value or an Error.
 //
-// By default errors are thrown, and Result<T> is T itself. With LUXFER_NO_EXCEPTIONS defined (for every file of a program
-// alike) nothing is thrown: Result<T> holds a T or an Error, as std::expected of C++23 does. All functions of the
-// wrapper return a Result, so both modes have one set of functions.
+// By default, errors are thrown, and Result<T> is T itself. If LUXFER_NO_EXCEPTIONS is defined (in every file of a
+// program), nothing is thrown: Result<T> holds a T or an Error, like std::expected of C++23. All functions of the
+// wrapper return a Result, so both modes have the same functions.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -54,21 +54,21 @@ public:
     bool has_value() const noexcept { return either_.index() == 0; }
     explicit operator bool() const noexcept { return has_value(); }
 
-    /// The value, which must be there.
+    /// The value; the result must have one.
     T &operator*() & noexcept { return *operator->(); }
     const T &operator*() const & noexcept { return *operator->(); }
     T &&operator*() && noexcept { return std::move(*operator->()); }
     T *operator->() noexcept { return assert(has_value()), std::get_if<0>(&either_); }
     const T *operator->() const noexcept { return assert(has_value()), std::get_if<0>(&either_); }
 
-    /// The error, which must be there.
+    /// The error; the result must have one.
     const Error &error() const noexcept { return assert(!has_value()), *std::get_if<1>(&either_); }
 
 private:
     std::variant<T, Error> either_;
 };
 
-/// Nothing, or an Error.
+/// The result of a function without a value: success, or an Error.
 template <>
 class [[nodiscard]] Result<void> : private Result<std::monostate> {
     using Base = Result<std::monostate>;
@@ -86,7 +86,8 @@ public:
 
 namespace detail {
 
-/// The message of this thread's latest failure. Without a context there is only the status.
+/// The Error of a failed call, with the message of this thread's latest failure. Without a context, only the status is
+/// known.
 inline Error error_of(luxfer_context *context, luxfer_status status) {
     if (context == nullptr)
         return Error(status, std::string(luxfer_status_get_name(status)) + ": the object, or the context, is empty");
@@ -117,7 +118,7 @@ T finish(luxfer_context *context, luxfer_status status, T value) {
     return value;
 }
 
-/// Runs a function of the caller inside a callback from C. No exception may cross C, so it is kept here.
+/// Runs a function of the caller inside a callback from C. No exception may cross C code, so this object keeps it.
 class Caught {
 public:
     /// The result for the C callback: 0 (continue) if the function returns true.
@@ -141,7 +142,8 @@ private:
     std::exception_ptr exception_;
 };
 
-/// Runs a function of the caller on a thread of the library; the status that stands for what it throws.
+/// Runs a function of the caller on a thread of the library; returns the status for the exception that it throws, if
+/// any.
 template <class Function>
 luxfer_status status_of(const Function &function) noexcept {
     try {
@@ -181,7 +183,7 @@ public:
     void rethrow() {}
 };
 
-/// Runs a function of the caller on a thread of the library; the status of its Result.
+/// Runs a function of the caller on a thread of the library; returns the status of its Result.
 template <class Function>
 luxfer_status status_of(const Function &function) noexcept {
     const Result<> result = function();

@@ -13,7 +13,8 @@ using CameraParams = Params<luxfer_camera_params, LUXFER_STRUCT_CAMERA_PARAMS>;
 using LightParams = Params<luxfer_light_params, LUXFER_STRUCT_LIGHT_PARAMS>;
 using SceneLoadParams = Params<luxfer_scene_load_params, LUXFER_STRUCT_SCENE_LOAD_PARAMS>;
 
-/// A mesh of packed arrays, which must live until it is added. Arrays with strides are set in the C struct's fields.
+/// A mesh of packed arrays, which must live until the mesh is added. For arrays with strides, set the fields of the C
+/// struct.
 struct MeshParams : Params<luxfer_mesh_params, LUXFER_STRUCT_MESH_PARAMS> {
     MeshParams() noexcept = default;
 
@@ -32,8 +33,8 @@ struct PlacedEmission {
     std::uint32_t mesh = 0, material = 0;
 };
 
-/// Receives the next bytes of a file; returns false to stop. It may throw: the function that writes rethrows the
-/// exception.
+/// Receives the next bytes of a file; returns false to stop. It may throw: the function that writes the file rethrows
+/// the exception.
 using Writer = std::function<bool(const void *data, std::size_t size)>;
 
 /// The objects and materials of a scene as candidates for the ceiling. See luxfer_candidates.
@@ -43,7 +44,7 @@ public:
 
     Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_get_count); }
 
-    /// Name, kind, index, area, height, direction and score. Its strings live as long as the list.
+    /// Gets a candidate: name, kind, index, area, height, direction and score. Its strings live as long as the list.
     Result<luxfer_candidate> candidate(std::uint32_t index) const {
         return value<luxfer_candidate>(luxfer_candidates_get, index);
     }
@@ -63,7 +64,7 @@ public:
         return make_in<Scene>(context, luxfer_scene_load, path.get(), &params);
     }
 
-    /// Loads such a file from memory: any container of bytes. Other files that it names are read from base_path.
+    /// Loads a .glb or .gltf file from memory: any container of bytes. Files that it names are read from base_path.
     template <class Bytes>
     static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr,
                                      const luxfer_scene_load_params &params = SceneLoadParams()) {
@@ -79,13 +80,13 @@ public:
         return detail::finish(context().get(), status, at);
     }
 
-    /// An implausible size, and features of the scene's file that are not rendered.
+    /// Warnings about the scene's file: an implausible size, and features that are not rendered.
     Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
-    /// Objects and materials with area, height and direction, the likeliest ceilings first.
+    /// Lists objects and materials that may be the ceiling, with area, height and direction; the likeliest first.
     Result<Candidates> candidates() const { return make<Candidates>(luxfer_scene_get_candidates); }
 
-    /// A scene that the library generates: a LUXFER_DEMO_ value.
+    /// Generates a demonstration scene; `which` is a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {
         return make_in<Scene>(context, luxfer_demo_create_scene, which);
     }
@@ -105,7 +106,7 @@ public:
 
     Result<luxfer_scene_counts> counts() const { return value<luxfer_scene_counts>(luxfer_scene_get_counts); }
 
-    /// These functions return the index of the new object.
+    /// Adds a material. Like the following functions, it returns the index of the new object.
     Result<std::uint32_t> add_material(const luxfer_material_params &params = MaterialParams()) const {
         return value<std::uint32_t>(luxfer_scene_add_material, &params);
     }
@@ -137,7 +138,8 @@ public:
         return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, nullptr);
     }
 
-    /// Sets a texture with a transform, two rows of three, applied to (u, v, 1) before the look-up.
+    /// Sets a texture with a transform: a matrix of two rows and three columns, applied to (u, v, 1) before the
+    /// look-up.
     Result<> set_material_texture(std::uint32_t material, luxfer_texture_role role, std::uint32_t texture,
                                   std::uint32_t uv_set, Numbers<6, float> transform) const {
         return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, transform.data());
@@ -147,7 +149,7 @@ public:
         return call(luxfer_scene_set_camera, index, &params);
     }
 
-    /// Sets an environment of one radiance, in cd/m².
+    /// Sets an environment of uniform radiance, in cd/m².
     Result<> set_environment(Rgb light) const {
         return call(luxfer_scene_set_environment, nullptr, light.red, light.green, light.blue);
     }
@@ -169,7 +171,7 @@ public:
         return value<luxfer_surface>(luxfer_scene_find_surface, name.get());
     }
 
-    /// Maps an emissive texture onto it, which emits texture * scale in cd/m².
+    /// Maps an emissive texture onto the surface of that name; it then emits `texture * scale`, in cd/m².
     Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
         PlacedEmission placed;
         const luxfer_status status =
@@ -187,12 +189,13 @@ public:
         return call(luxfer_scene_intersect, rays.data(), rays.size(), hits.data());
     }
 
-    /// The features that the scene requires of the renderer; error is the share of light for the field bounces.
+    /// The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond
+    /// which at most the share error of all scattered light remains.
     Result<luxfer_requirements> requirements(float error = 0.01f) const {
         return value<luxfer_requirements>(luxfer_scene_get_requirements, error);
     }
 
-    /// Describes what the renderer skips, one sentence per line.
+    /// Describes the features that the renderer skips, one sentence per line.
     Result<std::string> requirements_text() const { return text(luxfer_scene_get_requirements_text); }
 
     // Reading back, by index.

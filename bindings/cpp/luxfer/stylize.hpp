@@ -14,7 +14,7 @@ using SheetParams = Params<luxfer_sheet_params, LUXFER_STRUCT_SHEET_PARAMS>;
 struct StylizeParams : Params<luxfer_stylize_params, LUXFER_STRUCT_STYLIZE_PARAMS> {
     StylizeParams() noexcept = default;
 
-    /// Any other value than a preset is refused when the settings are used.
+    /// Fills the settings by a preset. If the value is no preset, every call with these settings fails.
     explicit StylizeParams(luxfer_stylize_preset preset) noexcept {
         if (luxfer_stylize_params_preset(this, preset, sizeof(luxfer_stylize_params)) != LUXFER_OK)
             struct_size = 0;
@@ -34,13 +34,13 @@ public:
         return make<Job>(luxfer_guides_start, &params);
     }
 
-    /// A LUXFER_GUIDES_ value.
+    /// Gets an image of the results; `which` is a LUXFER_GUIDES_ value.
     Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
 
-    /// The motion of each pixel from the previous frame.
+    /// Computes the motion of each pixel since the previous frame, whose guides are `before`.
     Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
 
-    /// Draws an artwork of the scene in place of an artist: a LUXFER_ARTWORK_ value.
+    /// Draws an artwork of the scene in place of an artist; `style` is a LUXFER_ARTWORK_ value.
     Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_create_artwork, style); }
 };
 
@@ -49,14 +49,14 @@ class Stylize : public Handle<luxfer_stylize> {
 public:
     using Handle::Handle;
 
-    /// LUXFER_UNSUPPORTED if this build of the library has no stylisation.
+    /// Creates a stylisation. LUXFER_UNSUPPORTED if this build of the library has no stylisation.
     static Result<Stylize> create(const Context &context) { return make_in<Stylize>(context, luxfer_stylize_create); }
 
     // Inputs.
 
     Result<> set_artwork(const Image &artwork) const { return call(luxfer_stylize_set_artwork, artwork.get()); }
 
-    /// Adds a guide, a pair of images; an empty target means source.
+    /// Adds a guide: an image of the exemplar (source) and one of the target; an empty target means source.
     Result<> add_guide(Text name, const Image &source, const Image &target, float weight = 1.0f,
                        luxfer_guide_range range = LUXFER_GUIDE_LIGHT) const {
         return call(luxfer_stylize_add_guide, name.get(), source.get(), target.get(), weight, range);
@@ -69,15 +69,15 @@ public:
     }
     Result<> clear_guides() const { return call(luxfer_stylize_clear_guides); }
 
-    /// Sets the pixels of the artwork that may be copied; may be empty: all.
+    /// Sets the mask of the artwork's pixels that may be copied; empty means all.
     Result<> set_source_mask(const Image &mask) const { return call(luxfer_stylize_set_source_mask, mask.get()); }
 
-    /// Sets the pixels to paint, and the known picture elsewhere; both may be empty.
+    /// Sets the mask of the target's pixels to paint, and the known picture elsewhere; both may be empty.
     Result<> set_target_mask(const Image &mask, const Image &known = Image()) const {
         return call(luxfer_stylize_set_target_mask, mask.get(), known.get());
     }
 
-    /// Sets the motion between frames of an animation; may be empty: each job starts from nothing.
+    /// Sets the motion since the previous frame of an animation; if it is empty, each job starts from nothing.
     Result<> set_motion(const Image &motion) const { return call(luxfer_stylize_set_motion, motion.get()); }
 
     /// Lets the library paint the rest of a half-painted picture.
@@ -94,19 +94,19 @@ public:
 
     // Results.
 
-    /// A LUXFER_STYLIZE_IMAGE_ value.
+    /// Gets an image of the results; `which` is a LUXFER_STYLIZE_IMAGE_ value.
     Result<Image> image(luxfer_stylize_image which = LUXFER_STYLIZE_IMAGE_PICTURE) const {
         return make<Image>(luxfer_stylize_get_image, which);
     }
 
     Result<luxfer_stylize_report> report() const { return value<luxfer_stylize_report>(luxfer_stylize_get_report); }
 
-    /// Size of a level and number of its rounds.
+    /// The size of a pyramid level in pixels, and the number of its rounds.
     struct Level {
         std::uint32_t width = 0, height = 0, rounds = 0;
     };
 
-    /// Level 0 is the coarsest.
+    /// Gets a pyramid level; level 0 is the coarsest.
     Result<Level> level(std::uint32_t index) const {
         Level level;
         const luxfer_status status = luxfer_stylize_get_level(get(), index, &level.width, &level.height, &level.rounds);
@@ -120,7 +120,8 @@ public:
     }
 };
 
-/// A print sheet to paint over on paper, with marks to align a photo of it. See luxfer_sheet_params.
+/// A sheet that an artist prints and paints over, with marks by which a photo of it is aligned. See
+/// luxfer_sheet_params.
 class Sheet {
 public:
     /// Draws the sheet to print.

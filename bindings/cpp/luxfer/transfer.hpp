@@ -8,7 +8,7 @@
 
 namespace luxfer {
 
-/// Its pointers to the settings of the stages must live until start() returns.
+/// The settings of a transfer. It points to the settings of the stages, which must live until start() returns.
 using TransferParams = Params<luxfer_transfer_params, LUXFER_STRUCT_TRANSFER_PARAMS>;
 using PatternParams = Params<luxfer_pattern_params, LUXFER_STRUCT_PATTERN_PARAMS>;
 using DemoPhotoParams = Params<luxfer_demo_photo_params, LUXFER_STRUCT_DEMO_PHOTO_PARAMS>;
@@ -24,7 +24,7 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_transfer_set_photo, photo.get()); }
 
-    /// Sets the depth map; may be empty: no depth map.
+    /// Sets the depth map; empty means none.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_transfer_set_depth, depth.get(), kind);
     }
@@ -34,18 +34,18 @@ public:
         return call(luxfer_transfer_set_scene, scene.get(), surface.get());
     }
 
-    /// Sets an emissive texture to use instead of one made from the photo; may be empty: make one.
+    /// Sets an emissive texture that replaces the one made from the photo; empty means to make it from the photo.
     Result<> set_texture(const Image &texture) const { return call(luxfer_transfer_set_texture, texture.get()); }
 
     /// Sets the camera of the picture; the default is the first camera of the scene, or one in a corner of the room.
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
     Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
 
-    /// Sets the strokes on the photo; may be empty: no strokes.
+    /// Sets the strokes on the photo; empty means none.
     Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_transfer_set_strokes, strokes.get()); }
 
-    /// Sets the rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace earlier
-    /// ones.
+    /// Sets rectangles of the surface that stay without lamps: u0, v0, u1 and v1 of each, in metres. They replace
+    /// those of earlier calls.
     Result<> set_zones(Span<const double> zones) const {
         return call(luxfer_transfer_set_zones, zones.data(), zones.size() / 4);
     }
@@ -56,7 +56,7 @@ public:
         return call(luxfer_transfer_set_triangles, triangles.data(), triangles.size() / 2);
     }
 
-    // Results of the caller instead of its own.
+    // Results of the caller that replace results of the transfer's own stages.
 
     Result<> use(const Rectify &rectify) const { return call(luxfer_transfer_use_rectify, rectify.get()); }
     Result<> use(const Features &features) const { return call(luxfer_transfer_use_features, features.get()); }
@@ -77,10 +77,10 @@ public:
 
     // Results, available as soon as their stage has ended.
 
-    /// A LUXFER_TRANSFER_ value.
+    /// Gets an image of the results; `which` is a LUXFER_TRANSFER_ value.
     Result<Image> image(luxfer_transfer_image which) const { return make<Image>(luxfer_transfer_get_image, which); }
 
-    /// A LUXFER_SCENE_ value.
+    /// Gets a scene of the results; `which` is a LUXFER_SCENE_ value.
     Result<Scene> scene(luxfer_transfer_scene which = LUXFER_SCENE_LIT) const {
         return make<Scene>(luxfer_transfer_get_scene, which);
     }
@@ -94,7 +94,7 @@ public:
         return value<luxfer_fixture>(luxfer_transfer_get_fixture, index);
     }
 
-    /// Reasons to doubt the results that there are, in the order of the stages.
+    /// Reasons to doubt the results so far, in the order of the stages.
     Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Writes all fixtures to a .csv or .json file.
@@ -114,7 +114,7 @@ public:
         return make<Job>(luxfer_demo_photo_start, &params);
     }
 
-    /// A LUXFER_DEMO_PHOTO_ value.
+    /// Gets an image of the results; `which` is a LUXFER_DEMO_PHOTO_ value.
     Result<Image> image(luxfer_demo_photo_image which) const { return make<Image>(luxfer_demo_photo_get_image, which); }
 };
 

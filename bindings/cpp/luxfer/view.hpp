@@ -26,7 +26,7 @@ private:
     const char *text_;
 };
 
-/// A view of contiguous elements, as std::span of C++20: from an array, a std::vector or std::array, or a pointer and
+/// A view of contiguous elements, like std::span of C++20: of an array, a std::vector, a std::array, or a pointer and
 /// a count.
 template <class T>
 class Span {
@@ -67,9 +67,8 @@ struct Rgb {
     float red, green, blue;
 };
 
-/// A versioned struct of the C header that starts with the library's defaults. It is the C struct: set its fields,
-/// which the C header documents. (If its initialisation fails, its size stays 0, and the call that receives it refuses
-/// it.)
+/// A versioned struct of the C header, filled with the library's defaults. It derives from the C struct: set the
+/// fields, which the C header documents. (If the initialisation fails, the size stays 0, and calls refuse the struct.)
 template <class C, luxfer_struct_type which>
 struct Params : C {
     Params() noexcept : C() { luxfer_init(which, static_cast<C *>(this), sizeof(C)); }

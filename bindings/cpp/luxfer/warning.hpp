@@ -7,14 +7,15 @@
 
 namespace luxfer {
 
-/// The warnings of a stage, of a whole transfer or of a scene, as they were when they were asked for. See luxfer_warnings.
+/// The warnings of a stage, a whole transfer or a scene at the time when the list was created. See luxfer_warnings.
 class Warnings : public Handle<luxfer_warnings> {
 public:
     using Handle::Handle;
 
     Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_warnings_get_count); }
 
-    /// Code, stage, figure, limit, place, defect and remedy. Its strings live as long as the list.
+    /// Gets a warning: code, stage, severity and its limit, place, message and advice. Its strings live as long as the
+    /// list.
     Result<luxfer_warning> warning(std::uint32_t index) const {
         return value<luxfer_warning>(luxfer_warnings_get, index);
     }

@@ -1,4 +1,4 @@
-"""numpy arrays as the library's image views, without a copy if two strides can describe the layout."""
+"""Describes numpy arrays as image views of the library, without a copy if two strides can describe the layout."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def is_direct(array: np.ndarray[Any, Any]) -> bool:
 
 
 def view(array: np.ndarray[Any, Any], colour_space: ColourSpace | str | int) -> tuple[Any, np.ndarray[Any, Any]]:
-    """A luxfer_image_view of an array, and the array whose memory it describes: the given array, or a copy if a view
-    cannot describe it. A view can describe rows in reverse order, as in array[::-1]."""
+    """Returns a luxfer_image_view of an array, and the array whose memory the view describes: the given array, or a
+    copy if no view can describe it. A view can describe rows in reverse order, as in array[::-1]."""
     if array.ndim == 2:
         array = array[:, :, None]
     if array.ndim != 3:
         raise ValueError(f"an image has the shape (height, width) or (height, width, channels), not {array.shape}")
     if array.dtype == bool or array.dtype.kind in "iu" and array.dtype not in SAMPLES:
-        # Whole numbers of other widths, such as masks of bool, are data: their values are kept.
+        # Other integer types, such as bool masks, are data: convert them to float without scaling to [0, 1].
         array = array.astype(np.float32)
     elif array.dtype.kind == "f" and array.dtype not in SAMPLES:
         array = array.astype(np.float32)

@@ -33,16 +33,16 @@ if hasattr(os, "register_at_fork"):
 
 
 def call(context: Context, name: str, *arguments: Any) -> None:
-    """A function of the library that returns a status, whose failure is an exception. Objects are given as themselves, so
-    that they live until the call is done."""
+    """Calls a function of the library that returns a status; a failure becomes an exception. Pass objects themselves
+    and not their handles, so that they live until the call ends."""
     status = getattr(library, name)(*(a.handle if isinstance(a, Handle) else a for a in arguments))
     if status != _abi.LUXFER_OK:
         raise error(status, context.last_error())
 
 
 class Handle:
-    """An object of the library. Releasing it twice is fine; using it afterwards is an error. In a forked child process an
-    object of the parent cannot be used; closing it there does nothing."""
+    """An object of the library. It may be closed twice; using it after that is an error. A forked child process cannot
+    use an object of its parent; closing the object there does nothing."""
 
     kind: ClassVar[str]
     _pointer: Any = None
@@ -84,22 +84,22 @@ class Handle:
         self.close()
 
     def __del__(self) -> None:
-        if library is not None:  # else the interpreter is ending
+        if library is not None:  # it is None while the interpreter shuts down
             self.close()
 
     def __copy__(self: H) -> H:
         raise TypeError(f"a {type(self).__name__} cannot be copied")
 
     def _call(self, verb: str, *arguments: Any) -> None:
-        """luxfer_<kind>_<verb>(this, ...)."""
+        """Calls luxfer_<kind>_<verb> with this object as first argument."""
         call(self._context, f"luxfer_{self.kind}_{verb}", self, *arguments)
 
     def _read(self, verb: str, struct: Any, *arguments: Any) -> Any:
-        """A report, as its dataclass."""
+        """Calls a function that fills a report; returns the report as its dataclass."""
         return _params.report(self._fill(verb, struct, *arguments))
 
     def _fill(self, verb: str, struct: Any, *arguments: Any) -> Any:
-        """A struct that the library has filled."""
+        """Calls a function that fills a struct; returns the struct."""
         out = struct()
         self._call(verb, *arguments, out, ctypes.sizeof(out))
         return out
@@ -120,13 +120,13 @@ class Handle:
 
     @classmethod
     def _adopt(cls: type[H], context: Context, pointer: Any) -> H:
-        """Takes over a handle that the library has returned."""
+        """Creates an object that owns a handle returned by the library."""
         out = cls.__new__(cls)
         out._context, out._pointer = context, pointer
         return out
 
     def _create(self, context: Context) -> None:
-        """luxfer_<kind>_create."""
+        """Creates the C object by luxfer_<kind>_create."""
         self._context = context
         pointer = POINTER(getattr(_abi, f"luxfer_{self.kind}"))()
         call(context, f"luxfer_{self.kind}_create", context, pointer)

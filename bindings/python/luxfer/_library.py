@@ -13,7 +13,7 @@ NAME = {"darwin": "libluxfer.dylib", "win32": "luxfer.dll"}.get(sys.platform, "l
 
 
 def _candidates() -> list[str]:
-    """Where the library may be: what LUXFER_LIBRARY says, in the wheel, in the source tree, on the system."""
+    """The paths at which to look for the library: LUXFER_LIBRARY if it is set, else wheel, source tree and system."""
     if named := os.environ.get("LUXFER_LIBRARY"):
         return [named]
     here = Path(__file__).resolve().parent
@@ -27,7 +27,7 @@ def _load() -> ctypes.CDLL:
     failures = []
     for path in _candidates():
         try:
-            library = ctypes.CDLL(path)  # which lets go of the interpreter's lock during every call
+            library = ctypes.CDLL(path)  # CDLL releases the interpreter's lock during every call
         except OSError as error:
             failures.append(f"{path}: {error}")
             continue

@@ -1,5 +1,5 @@
-"""Keyword arguments to the library's structs, and its structs to dataclasses. An unknown name is an error that
-suggests the nearest one."""
+"""Converts keyword arguments to structs of the library, and its structs to dataclasses. The error for an unknown name
+suggests the most similar one."""
 
 from __future__ import annotations
 
@@ -24,13 +24,14 @@ INTEGERS = {
 
 
 def nearest(name: str, names: list[str]) -> str:
-    """A hint for who mistyped a name."""
+    """A hint for a mistyped name: the most similar name, if any, and the list of all names."""
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     return (f"did you mean '{close[0]}'? " if close else "") + "There are " + ", ".join(names)
 
 
 def member(kind: type[E], value: E | str | int) -> E:
-    """A member of an enumeration by itself, its number, or its name in any case, with - for _; of flags also 'a|b'."""
+    """Finds the member of an enumeration for a member, a number, or a name in any case with - or _; for flags also
+    'a|b'."""
     if isinstance(value, str):
         names = {name.lower().replace("_", "-"): m for name, m in kind.__members__.items()}
         parts = value.lower().replace("_", "-").split("|") if issubclass(kind, IntFlag) else [value.lower().replace("_", "-")]
@@ -48,7 +49,7 @@ def member(kind: type[E], value: E | str | int) -> E:
 
 
 def per_channel(kind: type[E], values: E | str | int | Sequence[E | str | int]) -> tuple[E, E, E]:
-    """A member for red, green and blue: one for all, or one for each."""
+    """Members for red, green and blue, from one value for all channels or one for each."""
     red, green, blue = (values,) * 3 if isinstance(values, (str, int)) else values
     return member(kind, red), member(kind, green), member(kind, blue)
 
@@ -58,7 +59,7 @@ def is_array(kind: type) -> bool:
 
 
 def _convert(kind: Any, value: Any, name: str, keep: list[Any]) -> Any:
-    """A value as a field of a ctypes type takes it; what it points to is kept alive in `keep`."""
+    """Converts a value for a field of a ctypes type; appends objects that the result points to, to `keep`."""
     if kind in INTEGERS:
         low, high = INTEGERS[kind]
         try:
@@ -85,7 +86,7 @@ def _convert(kind: Any, value: Any, name: str, keep: list[Any]) -> Any:
         return kind(*(_convert(kind._type_, v, f"{name}[{i}]", keep) for i, v in enumerate(values)))
     if kind is ctypes.c_void_p:
         return value
-    # A pointer to settings of another stage.
+    # The remaining fields point to the settings of another stage.
     if value is None:
         return None
     if not isinstance(value, Mapping):
@@ -96,7 +97,7 @@ def _convert(kind: Any, value: Any, name: str, keep: list[Any]) -> Any:
 
 
 def text(value: Any, name: str) -> bytes:
-    """A string as the library takes it."""
+    """Encodes a string for the library: UTF-8."""
     if not isinstance(value, str):
         raise TypeError(f"{name} is a str, not {value!r}")
     if "\0" in value:
@@ -105,7 +106,10 @@ def text(value: Any, name: str) -> bytes:
 
 
 def fill(struct: type[ctypes.Structure], values: Mapping[str, Any], keep: list[Any], prefix: str = "") -> Any:
-    """A struct with the library's defaults, and `values` over them. Keep `keep` until the call that takes it is done."""
+    """A struct with the library's defaults, replaced by `values`.
+
+    Keep the list `keep` until the call that uses it ends.
+    """
     params = struct()
     name = struct.__name__
     status = library.luxfer_init(vars(struct)["struct_type"], ctypes.byref(params), ctypes.sizeof(params))
@@ -116,7 +120,7 @@ def fill(struct: type[ctypes.Structure], values: Mapping[str, Any], keep: list[A
 
 
 def update(params: ctypes.Structure, values: Mapping[str, Any], keep: list[Any], prefix: str = "") -> None:
-    """Sets fields of a struct."""
+    """Sets the fields of a struct that `values` names."""
     kinds = {f[0]: f[1] for f in params._fields_ if f[0] not in ("struct_size", "reserved")}
     enumerations: dict[str, Any] = getattr(params, "enumerations", {})
     for key, value in values.items():
@@ -128,7 +132,7 @@ def update(params: ctypes.Structure, values: Mapping[str, Any], keep: list[Any],
 
 
 def settings(params: ctypes.Structure) -> dict[str, Any]:
-    """A struct as the dict that would fill it; pointers are left out."""
+    """The fields of a struct as a dict of settings; pointers are left out."""
     return {
         f[0]: plain(getattr(params, f[0]), params, f[0])
         for f in params._fields_
@@ -138,7 +142,7 @@ def settings(params: ctypes.Structure) -> dict[str, Any]:
 
 
 def defaults(struct: type[ctypes.Structure]) -> dict[str, Any]:
-    """What the library fills a struct with."""
+    """The default settings with which the library fills a struct."""
     return settings(fill(struct, {}, []))
 
 
@@ -158,6 +162,6 @@ def plain(value: Any, params: ctypes.Structure, name: str) -> Any:
 
 
 def report(struct: Any) -> Any:
-    """A struct the library has written, as its dataclass."""
+    """Converts a struct that the library has filled to its dataclass."""
     names = [f[0] for f in struct._fields_ if f[0] not in ("struct_size", "reserved")]
     return struct.result(**{name: plain(getattr(struct, name), struct, name) for name in names})

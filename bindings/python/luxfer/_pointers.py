@@ -1,7 +1,7 @@
-"""Types of pointers, each made once.
+"""Pointer types, each created once per interpreter.
 
-ctypes keeps such types too, but the interpreters of a process share its store, and the first to end empties it for all.
-A pointer type that is made anew is another type, which functions declared before refuse.
+The cache of ctypes does not suffice: all interpreters of a process share it, and the first one that ends empties it. A
+pointer type that is created again is a different type, and functions that were declared with the first one refuse it.
 """
 
 from __future__ import annotations

@@ -25,9 +25,9 @@ class SurfaceCandidate:
     """
 
     kind: CandidateKind
-    """Whether it is an object or a material."""
+    """Whether the candidate is an object or a material."""
     name: str
-    """Its name, by which a transfer finds the surface."""
+    """Name of the candidate, by which a transfer finds the surface."""
     index: int
     """Index of the object's first mesh, or of the material."""
     triangles: int
@@ -37,7 +37,7 @@ class SurfaceCandidate:
     level_area: float
     """Area in m² of the triangles that are inclined by less than 15 degrees."""
     height: float
-    """Mean height of these triangles, or of all if there are none, in metres."""
+    """Mean height in metres of these nearly horizontal triangles, or of all triangles if there are none."""
     low: float
     """Lowest point, in metres."""
     high: float
@@ -47,16 +47,16 @@ class SurfaceCandidate:
     score: float
     """Resemblance to a ceiling, in [0, 1]."""
     reason: str
-    """Words for the score."""
+    """The reasons for the score, in words."""
 
 
 class Candidates(Handle):
-    """A list of candidates in the library."""
+    """A list of candidates, owned by the library."""
 
     kind = "candidates"
 
     def read(self) -> list[SurfaceCandidate]:
-        """All of them."""
+        """Reads all candidates."""
         count = ctypes.c_uint32()
         self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class DemoPhoto(StageBase):
-    """The photo, and strokes on it; see also Scene.demo and Guides.demo_artwork.
+    """Generates a photo and strokes on it; see also Scene.demo and Guides.demo_artwork.
 
     >>> demo = DemoPhoto(context).run(width=60, height=40, samples=2)
     >>> demo.image("picture").size, demo.image("strokes").size
@@ -26,11 +26,11 @@ class DemoPhoto(StageBase):
     kind = "demo_photo"
 
     def start(self, **params: Unpack[DemoPhotoParams]) -> Job[DemoPhoto]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_demo_photo_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[DemoPhotoParams]) -> DemoPhoto:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: DemoPhotoImage | str = DemoPhotoImage.PICTURE) -> Image:

@@ -3,9 +3,9 @@
 Needs `distributed` from PyPI (pip install luxfer[distributed]), here and on the workers. If a worker dies, Dask runs
 its tasks again on other workers; the results are equal to the bit.
 
-Scenes are not sent to the workers; each worker creates them: `prepare` is a function of a module that the workers have
-too, or a functools.partial of one. It receives a Context and sets up the work in it, once on each worker. `params` are
-the settings of the work, as keyword arguments.
+Scenes are not sent to the workers; each worker creates them itself. For this, the caller passes `prepare`: a function
+of a module that the workers have too, or a functools.partial of one. It receives a Context and sets up the work in it,
+once on each worker. `params` are the settings of the work, as keyword arguments.
 
     client = distributed.Client("scheduler:8786")
     with luxfer.Context() as context:
@@ -50,13 +50,14 @@ def render(
     progress: Progress | None = None,
     **params: Unpack[RenderParams],
 ) -> Render:
-    """Renders columns x rows rectangles of a view, in ranges of their paths, on the workers, and merges them here into
-    the image of a single part. Use a few times more parts than workers. prepare returns a Render with its scene,
-    camera and layers; if progress returns False, the work ends with errors.Cancelled."""
+    """Renders a view on the workers: divides the image into columns x rows rectangles, and the paths of each into
+    ranges, then merges all parts here. The result equals a rendering on one machine. Use a few times more parts than
+    workers. prepare returns a Render with its scene, camera and layers; if progress returns False, the work ends with
+    errors.Cancelled."""
     here = prepare(context)
     parts = [here.split(columns, rows, ranges, index, **params) for index in range(columns * rows * ranges)]
     with tempfile.TemporaryDirectory() as folder:
-        # What a worker has made is fetched at once, and is safe from then on.
+        # Fetch each finished part at once, so that it is not lost if its worker dies.
         paths = [Path(folder, f"{index}.exr") for index in range(len(parts))]
         task = _Part(prepare, params)
         for done, (index, data) in enumerate(_as_completed(client, task, parts), 1):
@@ -82,13 +83,13 @@ def relight(
     targets: Iterable[Sequence[float]],
     **params: Unpack[RelightParams],
 ) -> list[RelightReport]:
-    """Solves for each of some targets, mean radiances in cd/m² per channel, on the workers. prepare returns a Relight with
-    its scene; the reports come in the order of the targets."""
+    """Solves a relighting for each target on the workers; a target is a mean radiance in cd/m² per channel. prepare
+    returns a Relight with its scene. Returns the reports in the order of the targets."""
     return _all(client, _Target(prepare, params), [tuple(float(v) for v in target) for target in targets])
 
 
 class _Task:
-    """A task for a worker, as it is sent: its work does not depend on the worker that receives it."""
+    """A task that is sent to a worker. Its result does not depend on the worker."""
 
     def __init__(self, work: Callable[..., Any], params: Any = None) -> None:
         self.work, self.params, self.key = work, params, uuid.uuid4().hex

@@ -56,8 +56,8 @@ class Emission(StageBase):
         self._call("set_exemplar", *images)
 
     def set_photo(self, photo: ImageLike | None, to_photo: ArrayLike | None = None) -> None:
-        """Sets the photo from which full detail is recovered, and the 3 x 3 map to it (RectifyReport.to_photo); None:
-        no photo."""
+        """Sets the photo from which full detail is recovered, and the 3 x 3 homography from unwarped to photo pixels
+        (RectifyReport.to_photo). None means no photo."""
         if photo is None:
             return self._call("set_photo", None, None)
         if to_photo is None:
@@ -76,8 +76,8 @@ class Emission(StageBase):
         photo: ImageLike | None = None,
         to_photo: ArrayLike | None = None,
     ) -> None:
-        """Adds an exemplar with scale unwarped pixels per texel. Each lamp comes from it with the probability that
-        weights, stretched over the texture, has there."""
+        """Adds an exemplar with scale unwarped pixels per texel. The image weights is stretched over the texture; its
+        value at a lamp is the probability that the lamp is taken from this exemplar."""
         images = [image_of(self._context, image) for image in (unwarped, light, valid)]
         if (photo is None) != (to_photo is None):
             raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")
@@ -94,19 +94,19 @@ class Emission(StageBase):
         return self._job("start_plan", _params.fill(_abi.luxfer_emission_params, params, []))
 
     def tile(self, x: int, y: int, width: int, height: int) -> Image:
-        """Renders a part of the planned texture: RGB, and a mask that is 1 on lamps."""
+        """Renders a part of the planned texture: an image with four channels, RGB and a mask that is 1 on lamps."""
         return self._get_image("render_tile", x, y, width, height)
 
     def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_emission_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[EmissionParams]) -> Emission:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: EmissionImage | str = EmissionImage.TEXTURE) -> Image:
-        """ "texture", "mask", "exemplar-metadata" or "metadata"."""
+        """An image of the results: "texture", "mask", "exemplar-metadata" or "metadata"."""
         return self._get_image("get_image", _params.member(EmissionImage, which))
 
     @property

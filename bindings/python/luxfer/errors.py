@@ -1,4 +1,4 @@
-"""One exception for each status of the library, all of them luxfer.Error, with the library's message."""
+"""One exception for each status of the library. All derive from luxfer.Error and have the library's message."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ class Error(Exception):
     """A call of the library has failed; the message names the parameter, its value and its allowed range."""
 
     status: Status = Status.UNKNOWN
-    """What the library returned."""
+    """The status that the library returned."""
 
 
 class InvalidArgument(Error, ValueError):

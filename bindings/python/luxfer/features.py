@@ -41,14 +41,15 @@ class Features(StageBase):
         self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
-        """Sets a depth map of the photo's size in any unit, "along-z" or "along-ray"; None: no depth map."""
+        """Sets a depth map of the photo's size in any unit, "along-z" or "along-ray". None means no depth map."""
         image = None if depth is None else image_of(self._context, depth)
         self._call("set_depth", image, _params.member(DepthKind, kind))
 
     def set_network(
         self, path: str | os.PathLike[str] | None, normalisation: Normalisation | str = Normalisation.BY_SIZE
     ) -> None:
-        """Sets an ONNX file, such as MiDaS or DPT, that estimates depth if there is no depth map; None: no network.
+        """Sets an ONNX file, such as MiDaS or DPT, that estimates depth if there is no depth map. None means no
+        network.
 
         normalisation is the normalisation of its input colours: "by-size", "imagenet", "half" or "none".
         """
@@ -56,24 +57,25 @@ class Features(StageBase):
         self._call("set_network", name, _params.member(Normalisation, normalisation))
 
     def set_view(self, rectify: Rectify | None) -> None:
-        """Takes the lines and the camera that a Rectify has found in this photo; None: no lines."""
+        """Takes the lines and the camera that a Rectify has found in this photo. None means no lines."""
         self._call("set_view", None if rectify is None else rectify)
 
     def set_strokes(self, strokes: Strokes | ImageLike | None) -> None:
-        """Sets strokes on the photo, to fit the room: those for the plane lie on one of its planes or off this plane, and
-        lights lie on it. A drawing is taken as by Strokes.from_image. None: no strokes."""
+        """Sets the strokes on the photo, which help to fit the room layout: strokes for the plane show where one of
+        its planes is and where it is not, and lights lie on this plane. A drawing is converted by Strokes.from_image.
+        None means no strokes."""
         set_strokes(self, strokes)
 
     def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_features_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[FeaturesParams]) -> Features:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: FeaturesImage | str = FeaturesImage.CHANNELS) -> Image:
-        """ "channels", "depth-confidence" or "network-depth"."""
+        """An image of the results: "channels", "depth-confidence" or "network-depth"."""
         return self._get_image("get_image", _params.member(FeaturesImage, which))
 
     @property

@@ -1,4 +1,4 @@
-"""The guide images of a scene for a stylisation."""
+"""Renders the guide images of a scene for a stylisation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Guides(StageBase):
-    """Light by five light path expressions, normals, edges and materials of a scene.
+    """Renders the light of a scene by light path expressions, and its normals, edges and materials.
 
     >>> Guides(context, ball).run(width=48, height=36, samples=4).image("normals").size
     (48, 36, 3)
@@ -36,19 +36,20 @@ class Guides(StageBase):
         self._call("set_scene", scene)
 
     def start(self, **params: Unpack[GuidesParams]) -> Job[Guides]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_guides_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[GuidesParams]) -> Guides:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: GuidesImage | str = GuidesImage.FULL) -> Image:
-        """ "full", "direct", "specular", "indirect", "two-bounces", "normals", "edges", "materials" or "caustics"."""
+        """A guide: "full", "direct", "specular", "indirect", "two-bounces", "normals", "edges", "materials" or
+        "caustics"."""
         return self._get_image("get_image", _params.member(GuidesImage, which))
 
     def motion(self, before: Guides) -> Image:
-        """The motion of each pixel from the previous frame, for Stylize.set_motion."""
+        """The motion of each pixel since the previous frame, whose guides are `before`; for Stylize.set_motion."""
         return self._get_image("get_motion", before)
 
     def demo_artwork(self, style: Artwork | str) -> Image:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Illuminance(StageBase):
-    """Lux with the standard error of every point.
+    """Computes the illuminance in lux, with the standard error, at every point.
 
     >>> desk = {"origin": (-1, 0.8, -1), "across": (2, 0, 0), "down": (0, 0, 2)}
     >>> lux = Illuminance(context, lit_room).run_grid(desk, columns=4, rows=3)
@@ -43,7 +43,7 @@ class Illuminance(StageBase):
     def start_grid(
         self, grid: IlluminanceGrid | Mapping[str, Any] | None = None, **params: Unpack[IlluminanceParams]
     ) -> Job[Illuminance]:
-        """Starts a calculation on a grid: origin, across, down and normal, in metres."""
+        """Starts a calculation on a grid, which origin, across and down (in metres) and normal define."""
         rectangle = _params.fill(_abi.luxfer_illuminance_grid, grid or {}, [], "grid.")
         return self._job("start_grid", rectangle, _params.fill(_abi.luxfer_illuminance_params, params, []))
 
@@ -57,7 +57,8 @@ class Illuminance(StageBase):
         return self.start_grid(grid, **params).wait(progress)
 
     def start_mesh(self, mesh: int, back: bool = False, **params: Unpack[IlluminanceParams]) -> Job[Illuminance]:
-        """Starts a job for a mesh by its texture coordinates; back=True for the back side by its winding."""
+        """Starts a calculation on a mesh, at points that its texture coordinates define. back=True is the back side;
+        the winding of the triangles defines the front side."""
         return self._job("start_mesh", mesh, int(back), _params.fill(_abi.luxfer_illuminance_params, params, []))
 
     def run_mesh(
@@ -67,7 +68,7 @@ class Illuminance(StageBase):
         return self.start_mesh(mesh, back, **params).wait(progress)
 
     def image(self, which: IlluminanceImage | str = IlluminanceImage.LUX) -> Image:
-        """ "lux" or "error"."""
+        """An image of the results: "lux" or "error"."""
         return self._get_image("get_image", _params.member(IlluminanceImage, which))
 
     @property

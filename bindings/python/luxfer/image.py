@@ -1,4 +1,4 @@
-"""Images, from and to files and arrays."""
+"""Images: from files and arrays, and back."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Image(Handle):
-    """Pixels, as 32-bit floats: scene-linear Rec.709 colour, or data. It never changes.
+    """An image of 32-bit floats: scene-linear Rec.709 colours, or data. It never changes.
 
     `pixels` is an array of the shape (height, width) or (height, width, channels), of uint8, uint16, float16 or float32,
     copied directly from its memory; integers represent [0, 1]. `colour_space` is the encoding of the values: "linear"
@@ -53,7 +53,7 @@ class Image(Handle):
 
     @classmethod
     def from_bytes(cls, context: Context, data: bytes, colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
-        """As load, from a file in memory."""
+        """Loads an image file from its bytes, as load does."""
         space = _params.member(ColourSpace, colour_space)
         return made(context, "luxfer_image_load_memory", context, data, len(data), space)
 
@@ -70,20 +70,20 @@ class Image(Handle):
 
     @property
     def metadata(self) -> PhotoMetadata:
-        """Metadata of the file of a loaded photo, and how its colours were understood; 0 is unknown."""
+        """Metadata of a loaded photo's file, and how its colours were converted; 0 means unknown."""
         return cast(PhotoMetadata, self._read("get_metadata", _abi.luxfer_photo_metadata))
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Height, width and channels: the shape of numpy()."""
+        """Height, width and number of channels: the shape of numpy()."""
         width, height, channels = self.size
         return height, width, channels
 
     def read(
         self, out: NDArray[Any], first_channel: int = 0, colour_space: ColourSpace | str = ColourSpace.LINEAR
     ) -> NDArray[Any]:
-        """Writes the channels from first_channel on into an array of uint8, uint16, float16 or float32, which may be a
-        part of a larger one as long as the channels of a pixel lie together; returns it.
+        """Writes the channels from first_channel on into an array of uint8, uint16, float16 or float32; returns the
+        array. It may be a part of a larger array, but the channels of a pixel must be contiguous.
 
         >>> frame = np.zeros((2, 4, 4), np.float32)
         >>> _ = Image(context, [[0.25, 1.0]]).read(frame[1:, 2:, 3])
@@ -104,11 +104,11 @@ class Image(Handle):
         return out
 
     def numpy(self, dtype: DTypeLike = np.float32, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
-        """A new array of the shape (height, width, channels); for a display use uint8 and "srgb". Images with more
-        than 4 channels are float32."""
+        """A new array of the shape (height, width, channels). For a display, use uint8 and "srgb". Images with more
+        than 4 channels are always float32."""
         height, width, channels = self.shape
         out = np.empty((height, width, channels), dtype)
-        for first in range(0, channels, 4):  # a view has four at most: each goes into its place
+        for first in range(0, channels, 4):  # read 4 channels at a time, because a view has at most 4
             self.read(out[:, :, first : first + 4], first, colour_space)
         return out
 
@@ -119,7 +119,8 @@ class Image(Handle):
         return out if dtype is None else out.astype(dtype, copy=False)
 
     def warp(self, to_source: ArrayLike, width: int, height: int) -> Image:
-        """An image whose pixel at p is this one's at to_source(p), a 3 x 3 matrix of homogeneous points; see homography."""
+        """Creates an image whose pixel at p is the pixel of this image at to_source p; to_source is a 3 x 3
+        homography."""
         matrix = _matrix(to_source, "to_source", 9)
         return self._get_image("warp", _arrays.pointer(matrix, ctypes.c_double), width, height)
 
@@ -131,7 +132,7 @@ class Image(Handle):
 
 
 def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
-    """The 3 x 3 matrix that maps four points, x and y of each, to four points.
+    """The 3 x 3 matrix that maps four points to four points; each array has x and y of each point.
 
     >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
     >>> m = homography(context, square, np.multiply(square, 10))
@@ -148,14 +149,14 @@ def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArra
 
 
 def made(context: Context, name: str, *arguments: Any) -> Image:
-    """The image that a function of the library makes."""
+    """Calls a function of the library that creates an image; returns the image."""
     handle = POINTER(_abi.luxfer_image)()
     call(context, name, *arguments, handle)
     return Image._adopt(context, handle)
 
 
 def image_of(context: Context, value: ImageLike, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> Image:
-    """An Image by itself, or one made from an array."""
+    """Converts an array to an Image; an Image is returned as it is."""
     return value if isinstance(value, Image) else Image(context, value, colour_space)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Importance(StageBase):
-    """Traced once; then it gives the light of any texture on the surface, at any placement, within milliseconds.
+    """Traces paths once; then computes the light of any texture on the surface, at any placement, within milliseconds.
 
     >>> room = Scene.demo(context, "target-room")
     >>> mesh, material = room.place_emission("Ceiling", np.zeros((1, 1, 3)), (1, 1, 1))
@@ -42,21 +42,21 @@ class Importance(StageBase):
         self._call("set_scene", scene, material, mesh)
 
     def start(self, **params: Unpack[ImportanceParams]) -> Job[Importance]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_importance_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[ImportanceParams]) -> Importance:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     @property
     def image(self) -> Image:
-        """For each cell, the target's mean radiance if only this cell emitted, with 1 cd/m²."""
+        """The map. The value of a cell is the mean radiance of the target if only this cell emitted, with 1 cd/m²."""
         return self._get_image("get_image")
 
     def respond(self, texture: ImageLike, placement: Sequence[float] | None = None) -> ImportanceReport:
-        """The light that the target receives from a texture in cd/m². placement, nine numbers row by row, maps the
-        surface's texture coordinates to those of the texture."""
+        """Computes the light that the target receives from a texture in cd/m². The matrix placement (nine numbers, row
+        by row) maps the texture coordinates of the surface to those of the texture."""
         image = image_of(self._context, texture)
         out = self._read("respond", _abi.luxfer_importance_report, image, _nine(placement))
         return cast(ImportanceReport, out)
@@ -64,25 +64,26 @@ class Importance(StageBase):
     def solve(
         self, texture: ImageLike, radiance: Sequence[float], placement: Sequence[float] | None = None
     ) -> RelightReport:
-        """What to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel."""
+        """Solves for the factor of a texture that gives the target a mean radiance, in cd/m² per channel."""
         image, (red, green, blue) = image_of(self._context, texture), (float(v) for v in radiance)
         out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), red, green, blue)
         return cast(RelightReport, out)
 
     def start_placement(self, texture: ImageLike, **params: Unpack[PlacementParams]) -> Job[Importance]:
-        """Starts to look for where a texture in cd/m² should lie; see placement."""
+        """Starts a job that finds the best placement of a texture in cd/m²; then read placement."""
         settings = _params.fill(_abi.luxfer_placement_params, params, [])
         return self._job("start_placement", image_of(self._context, texture), settings)
 
     def place(
         self, texture: ImageLike, progress: Progress | None = None, **params: Unpack[PlacementParams]
     ) -> Placement:
-        """Where a texture in cd/m² should lie: by default at any offset, to bring the target most light."""
+        """Finds the best placement of a texture in cd/m². By default, it varies the offset so that the target gets the
+        most light."""
         return self.start_placement(texture, **params).wait(progress).placement
 
     @property
     def placement(self) -> Placement:
-        """What start_placement has found."""
+        """The placement that the job of start_placement has found."""
         return cast(Placement, self._read("get_placement", _abi.luxfer_placement))
 
 

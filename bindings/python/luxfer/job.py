@@ -1,4 +1,4 @@
-"""Long work: progress, time-outs, and Ctrl-C."""
+"""Jobs: long work with progress, timeouts and cancelling, also by Ctrl-C."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-#: Told the share that is done: rises from 0, ends with exactly 1 after success. Returning False cancels.
+#: A progress function. It receives the finished share, which rises from 0 and is exactly 1 after success. If it
+#: returns False, the job is cancelled.
 Progress = Callable[[float], Any]
 
-#: The library is waited for in slices, after each of which Python sees to its signals.
+#: Milliseconds of each call that waits for a job; between calls, Python handles its signals, such as Ctrl-C.
 SLICE_MS = 20
 
 NO_PROGRESS = _abi.luxfer_progress_fn()
 
 
 class Job(Handle, Generic[T]):
-    """Work in progress. wait() returns the object that the job works for; closing the last reference to a job cancels
+    """Work in progress. wait() returns the object on which the job runs. Closing the last reference to a job cancels
     it.
 
     >>> seen = []
@@ -61,10 +62,10 @@ class Job(Handle, Generic[T]):
                     break
                 fraction, finished = self.poll()
                 if finished:
-                    continue  # meanwhile: the next wait tells how
+                    continue  # it has ended since the wait; the next wait returns its status
                 if end is not None and time.monotonic() >= end:
                     break
-                fraction = min(fraction, 1 - 2.0**-52)  # 1 is for after success
+                fraction = min(fraction, 1 - 2.0**-52)  # only success is exactly 1
                 if progress is not None and fraction > told:
                     told = fraction
                     if progress(fraction) is False:
@@ -82,7 +83,7 @@ class Job(Handle, Generic[T]):
         return self._owner
 
     def _stop(self) -> None:
-        """Cancels and waits, so that nothing runs on behind an exception."""
+        """Cancels the job and waits for its end, so that it does not keep running after an exception."""
         if not self._pointer:
             return
         self.cancel()
@@ -101,7 +102,7 @@ class Job(Handle, Generic[T]):
 
     @property
     def finished(self) -> bool:
-        """Whether the job has ended, well or not."""
+        """Whether the job has ended, with or without success."""
         return self.poll()[1]
 
     @property
@@ -110,7 +111,7 @@ class Job(Handle, Generic[T]):
         return self._progress()[1]
 
     def cancel(self) -> None:
-        """Asks the job to end early, which takes at most about 100 ms; any thread."""
+        """Asks the job to end early, which takes at most about 100 ms. Any thread may call it."""
         self._call("cancel")
 
     def __exit__(self, *_: Any) -> None:
@@ -119,7 +120,7 @@ class Job(Handle, Generic[T]):
 
 
 class _Outcome(Generic[T]):
-    """What a function returned or raised."""
+    """Stores the value that a function returned, or the exception that it raised."""
 
     returned: T
     raised: BaseException | None = None
@@ -134,10 +135,10 @@ class _Outcome(Generic[T]):
 
 
 class Task(Job[T]):
-    """A function of yours as a job: for calls that have no job of their own, such as those that read and write files.
+    """Runs a function of yours as a job: for calls that have no job of their own, such as reading and writing files.
 
-    The calls of the library that it makes with objects of the context end early when the job is cancelled. wait() returns
-    what the function returns, and raises what it raises.
+    When the job is cancelled, the calls of the library that the function makes with objects of the context end early.
+    wait() returns the value that the function returns, or raises the exception that it raises.
 
     >>> task = Task(context, lambda: Image(context, [[0.25, 1.0]]).size)
     >>> task.wait()
@@ -146,14 +147,15 @@ class Task(Job[T]):
 
     def __init__(self, context: Context, work: Callable[[], T]) -> None:
         outcome = _Outcome[T]()
-        # The job does not keep what keeps the job, so that losing the last reference to it ends it at once.
+        # The callback refers to the outcome and not to this job: a cycle of references would delay the job's end until
+        # the garbage collector runs.
         self._outcome, self._run = outcome, _abi.luxfer_work_fn(lambda _: outcome.take(work))
         pointer = POINTER(_abi.luxfer_job)()
         call(context, "luxfer_job_start", context, self._run, None, pointer)
         self._context, self._pointer = context, pointer
 
     def wait(self, progress: Progress | None = None, timeout: float | None = None) -> T:
-        """As Job.wait."""
+        """Waits for the function, as Job.wait."""
         try:
             return super().wait(progress, timeout)
         except Error:

@@ -1,4 +1,4 @@
-"""Solves for the powers of the lamps of an emission that come nearest to several goals."""
+"""Solves for lamp powers that come as near as possible to several goals."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 class Lamps(StageBase):
-    """One set of paths per goal measures its response to every lamp; the powers are solved within bounds.
+    """Traces one set of paths per goal, which measures the goal's response to every lamp; then solves for powers in
+    bounds.
 
     >>> room = Scene.demo(context, "target-room")
     >>> mesh, material = room.place_emission("Ceiling", np.eye(4).repeat(3).reshape(4, 4, 3), (100, 100, 100))
@@ -34,8 +35,8 @@ class Lamps(StageBase):
     kind = "lamps"
 
     def set_scene(self, scene: Scene, material: int | None) -> None:
-        """Sets the scene and the emitting material whose lamps are solved for, or None for its punctual lights, such
-        as luminaires; removes all goals."""
+        """Sets the scene and the emitting material whose lamps are solved for; None means the scene's punctual lights,
+        such as luminaires. Removes all goals."""
         self._call("set_scene", scene, _abi.LUXFER_NONE if material is None else material)
 
     def add_mesh(
@@ -46,8 +47,8 @@ class Lamps(StageBase):
         self._call("add_mesh", mesh, _params.member(Quantity, quantity), red, green, blue, weight)
 
     def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
-        """Adds a goal: the mean illuminance that a calculation grid should have; origin, across, down and normal in
-        metres."""
+        """Adds a goal: the mean illuminance that a calculation grid should have. Its origin, across and down (in
+        metres) and normal define the grid."""
         self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
 
     def set_constraint(self, goal: int, constraint: Constraint | str | Sequence[Constraint | str]) -> None:
@@ -55,8 +56,8 @@ class Lamps(StageBase):
         self._call("set_constraint", goal, *_params.per_channel(Constraint, constraint))
 
     def set_levels(self, levels: Sequence[float]) -> None:
-        """Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without
-        steps."""
+        """Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous
+        dimming."""
         numbers = (ctypes.c_double * len(levels))(*(float(v) for v in levels))
         self._call("set_levels", numbers if len(levels) else None, len(levels))
 
@@ -65,11 +66,11 @@ class Lamps(StageBase):
         self._call("clear_goals")
 
     def start(self, **params: Unpack[LampsParams]) -> Job[Lamps]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_lamps_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[LampsParams]) -> Lamps:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     @property

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Distribution(Handle):
-    """A luminous intensity distribution, from and to IES and EULUMDAT files.
+    """A luminous intensity distribution; loads and saves IES and EULUMDAT files.
 
     >>> panel = "IESNA:LM-63-2002\\nTILT=NONE\\n1 -1 1 3 1 1 2 0.6 0.6 0\\n1 1 30\\n0 45 90\\n0\\n1000 707 0\\n"
     >>> distribution = Distribution.load_memory(context, panel.encode(), "ies")
@@ -41,14 +41,14 @@ class Distribution(Handle):
 
     @classmethod
     def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str) -> Distribution:
-        """Loads the bytes of a file, "ies" or "ldt"."""
+        """Loads a distribution from the bytes of a file in the format "ies" or "ldt"."""
         pointer = POINTER(_abi.luxfer_distribution)()
         kind = _params.member(DistributionFormat, format)
         call(context, "luxfer_distribution_load_memory", context, data, len(data), kind, pointer)
         return cls._adopt(context, pointer)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Saves to an .ies or .ldt file."""
+        """Saves the distribution as an .ies or .ldt file."""
         self._call("save", os.fspath(path).encode())
 
     @property
@@ -62,15 +62,15 @@ class Distribution(Handle):
         return self._get_text("get_name")
 
     def intensity(self, c: float, gamma: float) -> float:
-        """The luminous intensity in candela in a direction; angles in degrees: c around the axis, gamma from straight
-        down."""
+        """The luminous intensity in candela in a direction. Angles in degrees: c around the vertical axis, gamma from
+        straight down."""
         out = ctypes.c_double()
         self._call("get_intensity", c, gamma, out)
         return out.value
 
 
 def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float, float]:
-    """Correlated temperature in kelvin of a linear colour, and its distance from the blackbody.
+    """The correlated colour temperature in kelvin of a linear colour, and its signed distance Duv from the blackbody.
 
     >>> [round(v, 3) for v in colour_temperature(context, (1, 1, 1))][1]
     0.003
@@ -89,7 +89,8 @@ def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tu
 
 
 def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
-    """The unified glare rating of a luminance image in cd/m²; threshold 0 is five times its mean."""
+    """The unified glare rating of a luminance image in cd/m². Pixels above threshold are glare sources; 0 means five
+    times the mean luminance."""
     report = _abi.luxfer_glare_report()
     call(context, "luxfer_image_get_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
@@ -104,7 +105,7 @@ def false_colour(context: Context, image: ImageLike, **params: Unpack[FalseColou
 def mix_primaries(
     context: Context, primaries: Sequence[Sequence[float]], colour: Sequence[float], max_drive: float = 1
 ) -> tuple[list[float], Mixture]:
-    """The drive levels of a luminaire's LEDs for a linear colour, and the mixture that they give.
+    """Finds the drive levels of a luminaire's LEDs for a linear colour; returns them and a report on the mixture.
 
     >>> drives, light = mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
     >>> [round(drive, 3) for drive in drives], light.in_gamut
@@ -121,8 +122,8 @@ def mix_primaries(
 def fit_temperature(
     context: Context, response: Sequence[float], target: Sequence[float], background: Sequence[float] = (0, 0, 0)
 ) -> TemperatureFit:
-    """The blackbody light that brings a target nearest to a mean radiance; response is the response to white light of
-    1 cd/m²."""
+    """Finds the blackbody light that brings the mean radiance of a target nearest to a given one. response is the
+    target's radiance for white light of 1 cd/m²."""
     report = _abi.luxfer_temperature_fit()
     vectors = (_three(v) for v in (response, background, target))
     call(context, "luxfer_fit_temperature", context, *vectors, report, ctypes.sizeof(report))

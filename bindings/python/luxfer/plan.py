@@ -1,4 +1,4 @@
-"""Chooses settings for a given error or time before anything is rendered, and predicts the time and the error of
+"""Plans: chooses settings for a given error or time before the work starts, and predicts the time and the error of
 relighting and rendering, or of a stylisation."""
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 
 class Plan(StageBase):
-    """A plan has one goal: either target_error, the noise of the picture relative to its mean, or time_budget_ms.
+    """Chooses settings for one goal: either target_error (the noise of the picture relative to its mean) or
+    time_budget_ms.
 
     >>> render = Render(context, lit_room)
     >>> plan = Plan(context).run_render(render, target_error=0.5, settings={"width": 32, "height": 24})
@@ -30,13 +31,13 @@ class Plan(StageBase):
     def start_render(
         self, render: Render, *, target_error: float = 0.0, time_budget_ms: int = 0, settings: RenderParams | None = None
     ) -> Job[Plan]:
-        """Starts to plan a rendering, with its scene and camera."""
+        """Starts to plan a rendering with the scene and the camera of render."""
         goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
         params = _params.fill(_abi.luxfer_render_params, settings or {}, [])
         return self._job("start_render", render, params, _params.fill(_abi.luxfer_plan_params, goal, []))
 
     def run_render(self, render: Render, progress: Progress | None = None, **goal: Any) -> Plan:
-        """Starts to plan a rendering and waits for it."""
+        """Plans a rendering and waits for the plan."""
         return self.start_render(render, **goal).wait(progress)
 
     def start_transfer(
@@ -54,19 +55,19 @@ class Plan(StageBase):
         return self._job("start_transfer", transfer, params, _params.fill(_abi.luxfer_plan_params, goal, []))
 
     def run_transfer(self, transfer: Transfer, progress: Progress | None = None, **goal: Any) -> Plan:
-        """Starts to plan those stages and waits for it."""
+        """Plans the stages RELIGHT and RENDER of a transfer and waits for the plan."""
         return self.start_transfer(transfer, **goal).wait(progress)
 
     def start_stylize(
         self, stylize: Stylize, *, target_error: float = 0.0, time_budget_ms: int = 0, settings: StylizeParams | None = None
     ) -> Job[Plan]:
-        """Starts to plan a stylisation; target_error is the square root of the energy of its report."""
+        """Starts to plan a stylisation; target_error bounds the square root of the energy in the report of stylize."""
         goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
         params = _params.fill(_abi.luxfer_stylize_params, settings or {}, [])
         return self._job("start_stylize", stylize, params, _params.fill(_abi.luxfer_plan_params, goal, []))
 
     def run_stylize(self, stylize: Stylize, progress: Progress | None = None, **goal: Any) -> Plan:
-        """Starts to plan a stylisation and waits for it."""
+        """Plans a stylisation and waits for the plan."""
         return self.start_stylize(stylize, **goal).wait(progress)
 
     @property
@@ -76,18 +77,18 @@ class Plan(StageBase):
 
     @property
     def render_params(self) -> RenderParams:
-        """The settings to render with."""
+        """The chosen settings of the rendering."""
         params = self._fill("get_render_params", _abi.luxfer_render_params)
         return cast("RenderParams", _params.settings(params))
 
     @property
     def relight_params(self) -> RelightParams:
-        """The settings to relight with."""
+        """The chosen settings of the relighting."""
         params = self._fill("get_relight_params", _abi.luxfer_relight_params)
         return cast("RelightParams", _params.settings(params))
 
     @property
     def stylize_params(self) -> StylizeParams:
-        """The settings to stylise with."""
+        """The chosen settings of the stylisation."""
         params = self._fill("get_stylize_params", _abi.luxfer_stylize_params)
         return cast("StylizeParams", _params.settings(params))

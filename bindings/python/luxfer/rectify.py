@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Rectify(StageBase):
-    """Finds lines, vanishing points and the camera; with a mask, unwarps the plane it marks.
+    """Finds lines, vanishing points and the camera; with a mask, also unwarps the plane that the mask marks.
 
     >>> rectify = Rectify(context, photo).run(max_side=256)
     >>> [len(axis) for axis in rectify.report.vanishing_points]
@@ -36,25 +36,25 @@ class Rectify(StageBase):
             self.set_mask(mask)
 
     def set_photo(self, photo: ImageLike) -> None:
-        """Linear RGB."""
+        """Sets the photo: linear RGB."""
         self._call("set_photo", image_of(self._context, photo))
 
     def set_mask(self, mask: ImageLike | None) -> None:
-        """Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere, of the photo's size; None: only lines and
-        vanishing points are found."""
+        """Sets the mask of the plane to unwarp: of the photo's size, 1 on the plane, 0 elsewhere. With None, only
+        lines and vanishing points are found."""
         self._call("set_mask", None if mask is None else image_of(self._context, mask))
 
     def start(self, **params: Unpack[RectifyParams]) -> Job[Rectify]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         keep: list[object] = []
         return self._job("start", _params.fill(_abi.luxfer_rectify_params, params, keep))
 
     def run(self, progress: Progress | None = None, **params: Unpack[RectifyParams]) -> Rectify:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: RectifyImage | str) -> Image:
-        """ "unwarped" or "valid"."""
+        """An image of the results: "unwarped" or "valid"."""
         return self._get_image("get_image", _params.member(RectifyImage, which))
 
     def warp(self, source: ImageLike) -> Image:

@@ -46,11 +46,11 @@ class Relight(StageBase):
         self._call("set_constraint", *_params.per_channel(Constraint, constraint))
 
     def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_relight_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[RelightParams]) -> Relight:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     @property

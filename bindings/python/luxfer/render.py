@@ -1,4 +1,5 @@
-"""A path tracer of a scene's light, in cd/m², with layers by light path expressions and of surfaces."""
+"""A path tracer: renders the light of a scene in cd/m², with layers of light (by light path expressions) and of
+surfaces."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Render(StageBase):
-    """Gets better pass by pass: while its job runs, and after a cancel, the image so far can be read.
+    """Renders a scene in passes. The current image can be read while the job runs, and after a cancel.
 
     >>> render = Render(context, lit_room, expressions={"direct": "LDE"}, aovs="depth|normal")
     >>> render.run(width=32, height=24, samples=4).image().size
@@ -53,7 +54,7 @@ class Render(StageBase):
         self._call("set_scene", scene)
 
     def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
-        """Sets the camera, such as scene.camera(1); without arguments it is the first camera of the scene."""
+        """Sets the camera, such as scene.camera(1); without arguments, selects the first camera of the scene."""
         values = {**(camera or {}), **params}
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
@@ -70,22 +71,22 @@ class Render(StageBase):
         self._call("set_emitter_as", _params.member(EmitterAs, emitter_as))
 
     def set_aovs(self, flags: Aov | str | int) -> None:
-        """Sets the AOVs, such as "depth|normal|albedo"."""
+        """Sets the layers of surface properties (AOVs), such as "depth|normal|albedo"."""
         self._call("set_aovs", _params.member(Aov, flags))
 
     def start(self, **params: Unpack[RenderParams]) -> Job[Render]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_render_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[RenderParams]) -> Render:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     # -- in parts, on many machines
 
     def split(self, columns: int, rows: int, ranges: int, index: int, **params: Unpack[RenderParams]) -> RenderPart:
-        """Part number index, below columns * rows * ranges, of a rendering that is split into columns x rows
-        rectangles and ranges of paths.
+        """Gets part number index of a rendering that is divided into columns x rows rectangles, with ranges of paths
+        for each; index is below columns * rows * ranges.
 
         >>> Render(context).split(2, 1, 4, 3, width=64, height=32, samples=16)["x"]
         32
@@ -109,12 +110,12 @@ class Render(StageBase):
         return self._job("start_merge", _params.fill(_abi.luxfer_render_params, params, []))
 
     def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
-        """ The current "beauty", "variance", "paths", "interval" or, if its setting is not 0, "preview"."""
+        """The current image: "beauty", "variance", "paths", "interval" or, if its setting is not 0, "preview"."""
         return self._get_image("get_image", _params.member(RenderImage, which))
 
     @property
     def layers(self) -> dict[str, Image]:
-        """The current layers by name, first those of the expressions."""
+        """The current layers by name; those of the expressions come first."""
         count = ctypes.c_uint32()
         self._call("get_layer_count", count)
         names = [self._get_text("get_layer_name", i) for i in range(count.value)]
@@ -127,7 +128,8 @@ class Render(StageBase):
         return self._get_image("get_layer", index)
 
     def write_exr(self, path: str | os.PathLike[str]) -> None:
-        """Writes the image and all layers into one OpenEXR file, named as Blender and Nuke read them."""
+        """Writes the image and all layers into one OpenEXR file; Blender and Nuke recognise the names of its
+        channels."""
         self._call("write_exr", _params.text(os.fspath(path), "path"))
 
     @property

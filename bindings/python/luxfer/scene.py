@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from .photometry import Distribution
     from .types import LightParams, LuminaireParams, SceneLoadParams
 
-#: What intersect() returns of each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
+#: The entry that intersect() returns for each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
 
-#: What glare() returns of each observer; ugr is -inf without a luminaire in view.
+#: The entry that glare() returns for each observer; ugr is -inf without a luminaire in view.
 GLARE = np.dtype(
     [(name, "f8") for name in ("ugr", "background", "background_error", "unrated_lux", "solid_angle")]
     + [("sources", "u4"), ("outside_range", "u4")]
@@ -67,7 +67,8 @@ class Scene(Handle):
 
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str], **params: Unpack[SceneLoadParams]) -> Scene:
-        """Loads a glTF 2.0 file, .glb or .gltf with the files it names. unit is the length of its unit in metres."""
+        """Loads a glTF 2.0 file: a .glb, or a .gltf with the files that it names. unit is the length of the file's
+        unit in metres."""
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
         return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"), settings)
 
@@ -79,7 +80,7 @@ class Scene(Handle):
         base_path: str | os.PathLike[str] | None = None,
         **params: Unpack[SceneLoadParams],
     ) -> Scene:
-        """Loads a glTF file in memory; files that it names are read from base_path."""
+        """Loads a glTF file from its bytes; files that it names are read from base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
         return cls._made(context, "luxfer_scene_load_memory", data, len(data), base, settings)
@@ -93,12 +94,12 @@ class Scene(Handle):
 
     @property
     def warnings(self) -> list[StageWarning]:
-        """An implausible size, and each feature of the file that is not rendered."""
+        """Warnings about the file: an implausible size, and features that are not rendered."""
         return warnings_of(self)
 
     @property
     def candidates(self) -> list[SurfaceCandidate]:
-        """Objects and materials with their area, height and direction, the likeliest ceilings first."""
+        """Objects and materials that may be the ceiling, with area, height and direction; the likeliest first."""
         return candidates_of(self)
 
     @classmethod
@@ -112,7 +113,7 @@ class Scene(Handle):
         self._call("export", _params.text(os.fspath(path), "path"))
 
     def to_bytes(self) -> bytes:
-        """The GLB file in memory."""
+        """The scene as the bytes of a GLB file."""
         parts: list[bytes] = []
 
         def write(_: Any, data: int, size: int) -> int:
@@ -143,7 +144,7 @@ class Scene(Handle):
         and colours (n, 4) are read directly from their memory if they are float32 and uint32, with any stride between
         rows."""
         params = _params.fill(_abi.luxfer_mesh_params, {"material": material, "name": name}, [])
-        arrays = []  # kept until the call is done
+        arrays = []  # keeps the arrays alive until the call ends
         for field, stride, values, width, dtype in (
             ("positions", "position_stride", positions, 3, np.float32),
             ("normals", "normal_stride", normals, 3, np.float32),
@@ -193,12 +194,12 @@ class Scene(Handle):
         return index.value
 
     def set_material(self, index: int, **params: Unpack[MaterialParams]) -> None:
-        """Changes values of a material; it keeps missing settings, its textures and its name."""
+        """Changes the given settings of a material; its other settings, its textures and its name stay."""
         values = {**self.material(index), **params}
         self._call("set_material", index, _params.fill(_abi.luxfer_material_params, values, []))
 
     def add_texture(self, image: ImageLike, wrap: Wrap | str = Wrap.REPEAT, wrap_v: Wrap | str | None = None) -> int:
-        """Adds a texture in linear values, 1, 3 or 4 channels; returns its index."""
+        """Adds a texture with linear values and 1, 3 or 4 channels; returns its index."""
         wraps = [_params.member(Wrap, w) for w in (wrap, wrap if wrap_v is None else wrap_v)]
         index = ctypes.c_uint32()
         self._call("add_texture", image_of(self._context, image), *wraps, index)
@@ -213,7 +214,7 @@ class Scene(Handle):
         transform: ArrayLike | None = None,
     ) -> None:
         """Sets the texture of a material for "base-color", "metallic-roughness", "normal" or "emission"; None removes
-        it. transform is 2 x 3, applied to (u, v, 1)."""
+        it. transform is a 2 x 3 matrix that is applied to (u, v, 1) before the look-up."""
         matrix = None if transform is None else np.ascontiguousarray(transform, np.float32)
         if matrix is not None and matrix.size != 6:
             raise ValueError(f"transform is 6 numbers, not {matrix.size}")
@@ -224,7 +225,8 @@ class Scene(Handle):
     # -- light
 
     def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
-        """Sets an environment of one radiance, in cd/m², or an equirectangular image multiplied by it."""
+        """Sets an environment of uniform radiance colour, in cd/m²; or, with image, an equirectangular image
+        multiplied by colour."""
         sky = None if image is None else image_of(self._context, image)
         self._call("set_environment", sky, *_colour(colour))
 
@@ -267,7 +269,7 @@ class Scene(Handle):
         return cast(TextureUse, use)
 
     def texture(self, index: int) -> Image:
-        """A texture, linear."""
+        """A texture of the scene, with linear values."""
         return self._get_image("get_texture", index)
 
     def mesh(self, index: int) -> MeshInfo:
@@ -300,8 +302,8 @@ class Scene(Handle):
     # -- questions
 
     def intersect(self, origins: ArrayLike, directions: ArrayLike, t_max: ArrayLike = np.inf) -> NDArray[Any]:
-        """The nearest hits of rays with origins (n, 3) and directions (n, 3): a structured array with the fields t,
-        mesh, triangle, u, v.
+        """Finds the nearest hits of rays with origins (n, 3) and directions (n, 3). Returns a structured array with
+        the fields t, mesh, triangle, u, v.
 
         >>> Scene.demo(context, "target-room").intersect([[0, 1.5, 0]], [[0, 1, 0]])["t"].round(2).item() > 0
         True
@@ -317,8 +319,8 @@ class Scene(Handle):
     def glare(
         self, positions: ArrayLike, directions: ArrayLike, samples: int = 4096, seed: int = 1
     ) -> NDArray[Any]:
-        """The unified glare rating of observers with positions (n, 3) and lines of sight (n, 3), from the scene's
-        luminaires: a structured array with the fields ugr, background, background_error, unrated_lux, solid_angle,
+        """Rates the glare of the scene's luminaires (UGR) for observers with positions (n, 3) and lines of sight (n,
+        3). Returns a structured array with the fields ugr, background, background_error, unrated_lux, solid_angle,
         sources, outside_range.
 
         >>> Scene.demo(context, "target-room").glare([[3, 1.2, 1]], [[0, 0, 1]], samples=16)["sources"].item()
@@ -334,12 +336,13 @@ class Scene(Handle):
         return ratings
 
     def requirements(self, error: float = 0.01) -> Requirements:
-        """The features that the scene requires of the renderer; error is the share of light for the field bounces."""
+        """The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond which
+        at most the share error of all scattered light remains."""
         out = self._fill("get_requirements", _abi.luxfer_requirements, error)
         return cast(Requirements, _params.report(out))
 
     def requirements_text(self) -> str:
-        """Describes what the renderer skips, one sentence per line."""
+        """Describes the features that the renderer skips, one sentence per line."""
         return self._get_text("get_requirements_text")
 
     @classmethod
@@ -351,7 +354,7 @@ class Scene(Handle):
 
 
 def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:
-    """An array (n, width) with packed rows; a copy only if the values are not packed yet."""
+    """Converts values to an array (n, width) with packed rows; copies only if they are not packed yet."""
     raw = np.asarray(values)
     if dtype == np.uint32 and raw.size and (raw.dtype.kind not in "iu" or raw.min() < 0):
         raise ValueError(f"{name} are whole numbers from 0 on")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Segment(StageBase):
-    """Segmentation by strokes; set more strokes after a result and run again.
+    """Segments a photo by strokes. To improve the result, set more strokes and run again.
 
     >>> segment = Segment(context, Features(context, photo).run().image())
     >>> segment.set_strokes(strokes, "plane")
@@ -41,24 +41,24 @@ class Segment(StageBase):
         self._call("set_features", image_of(self._context, features))
 
     def set_region(self, region: ImageLike | None) -> None:
-        """Restricts the segmentation to pixels where the mask is 1; None: everywhere."""
+        """Restricts the segmentation to pixels where the mask is 1. None means the whole image."""
         self._call("set_region", None if region is None else image_of(self._context, region))
 
     def set_strokes(self, strokes: Strokes | ImageLike | None, phase: Phase | str) -> None:
-        """Sets the strokes of this mask, those for the "plane" or for the "lights"; a drawing is taken as by
-        Strokes.from_image. None: no strokes."""
+        """Sets the strokes and selects those for the "plane" or for the "lights". A drawing is converted by
+        Strokes.from_image. None means no strokes."""
         set_strokes(self, strokes, _params.member(Phase, phase))
 
     def start(self, **params: Unpack[SegmentParams]) -> Job[Segment]:
-        """Starts the work."""
+        """Starts this stage as a job; the settings are keyword arguments."""
         return self._job("start", _params.fill(_abi.luxfer_segment_params, params, []))
 
     def run(self, progress: Progress | None = None, **params: Unpack[SegmentParams]) -> Segment:
-        """Starts the work and waits for it."""
+        """Starts this stage and waits for it; the settings are keyword arguments."""
         return self.start(**params).wait(progress)
 
     def image(self, which: SegmentImage | str = SegmentImage.MASK) -> Image:
-        """ "mask", "confidence" or "unseen"."""
+        """An image of the results: "mask", "confidence" or "unseen"."""
         return self._get_image("get_image", _params.member(SegmentImage, which))
 
     @property
@@ -68,5 +68,5 @@ class Segment(StageBase):
 
     @property
     def warnings(self) -> list[StageWarning]:
-        """Reasons to doubt the mask, held against the strokes as they are now."""
+        """Reasons to doubt the mask, checked against the current strokes."""
         return warnings_of(self)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 
 def print_sheet(context: Context, picture: ImageLike, **params: Unpack[SheetParams]) -> Image:
-    """The sheet to print for a picture (linear, 1 is white): save it as PNG and print it at `dpi` without scaling.
+    """Draws the sheet to print for a picture (linear, 1 is white). Save it as PNG and print it at `dpi` without
+    scaling.
 
     >>> sheet = print_sheet(context, np.full((90, 120, 3), 0.5), dpi=60)
     >>> artwork, report = align_sheet(context, sheet, 120, 90, dpi=60)
@@ -34,8 +35,9 @@ def print_sheet(context: Context, picture: ImageLike, **params: Unpack[SheetPara
 def align_sheet(
     context: Context, photo: ImageLike, width: int, height: int, **params: Unpack[SheetParams]
 ) -> tuple[Image, SheetReport]:
-    """Finds the marks in a photo of a sheet, printed with equal settings for a picture of width x height, and
-    resamples it to that picture: returns the artwork and the quality of the alignment."""
+    """Aligns a photo of a painted sheet: finds the marks and resamples the photo to the printed picture, which had
+    width x height pixels. The settings must be those of the print. Returns the artwork and the quality of the
+    alignment."""
     pointer = POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
     report = _abi.luxfer_sheet_report()

@@ -38,14 +38,15 @@ class Strokes(Handle):
 
     @classmethod
     def from_image(cls, context: Context, drawing: ImageLike) -> Strokes:
-        """The strokes of a drawing, as add_image, for images of its size."""
+        """Creates the strokes of a drawing (see add_image), for images of its size."""
         image = image_of(context, drawing, "srgb")
         out = cls(context, *image.size[:2])
         out.add_image(image)
         return out
 
     def add(self, phase: Phase | str, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) in pixels, for the "plane" or the "lights"; positive on them."""
+        """Adds a stroke along points (n, 2), for the "plane" or the "lights"; points and radius are in pixels. It
+        marks the plane (or lights) if positive, else its surroundings."""
         array = np.ascontiguousarray(points, np.float32)
         if array.ndim == 1 and array.size == 2:
             array = array[None]
@@ -55,12 +56,13 @@ class Strokes(Handle):
         self._call("add", _params.member(Phase, phase), place, len(array), radius, int(bool(positive)))
 
     def add_image(self, drawing: ImageLike) -> None:
-        """Adds the strokes of a drawing of the same size: green plane, red not plane, yellow light, blue not light. An array
-        of uint8 is taken as sRGB."""
+        """Adds the strokes of a drawing of the same size: green is plane, red not plane, yellow light, blue not light.
+        An array of uint8 is sRGB."""
         self._call("add_image", image_of(self._context, drawing, "srgb"))
 
     def add_text(self, description: str) -> None:
-        """Adds the strokes of a text, one a line: "light 3 310.5 30 320 31"."""
+        """Adds the strokes of a text, one per line: kind, radius, and x and y of each point, as in
+        "light 3 310.5 30 320 31"."""
         self._call("add_text", _params.text(description, "description"))
 
     def clear(self) -> None:
@@ -69,7 +71,7 @@ class Strokes(Handle):
 
 
 def set_strokes(stage: Handle, strokes: Strokes | ImageLike | None, *arguments: Any) -> None:
-    """luxfer_<stage>_set_strokes, also from a drawing."""
+    """Calls luxfer_<stage>_set_strokes; converts a drawing to strokes first."""
     if strokes is not None and not isinstance(strokes, Strokes):
         strokes = Strokes.from_image(stage.context, strokes)
     stage._call("set_strokes", strokes, *arguments)

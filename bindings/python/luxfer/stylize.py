@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Level:
-    """A resolution level of a stylisation, with its rounds."""
+    """A pyramid level of a stylisation, with its rounds."""
 
     width: int
     height: int
@@ -51,8 +51,8 @@ class Stylize(StageBase):
     # -- inputs
 
     def set_artwork(self, artwork: ImageLike) -> None:
-        """Sets the artwork: the painted exemplar scene, linear, 1, 3 or 4 channels, aligned with the sources of the
-        guides."""
+        """Sets the artwork, the painted exemplar scene: linear, with 1, 3 or 4 channels, and aligned with the source
+        images of the guides."""
         self._call("set_artwork", image_of(self._context, artwork))
 
     def add_guide(
@@ -63,8 +63,8 @@ class Stylize(StageBase):
         weight: float = 1.0,
         range: GuideRange | str = GuideRange.LIGHT,
     ) -> None:
-        """Adds a guide: source shows the exemplar, target the scene to paint; "light" or "data". None as target: use
-        source for both, for a half-painted picture."""
+        """Adds a guide of "light" or "data": source shows the exemplar, target the scene to paint. With None as
+        target, source is used for both, as for a half-painted picture."""
         first = image_of(self._context, source)
         second = None if target is None else image_of(self._context, target)
         self._call("add_guide", _params.text(name, "name"), first, second, weight, _params.member(GuideRange, range))
@@ -79,28 +79,30 @@ class Stylize(StageBase):
         self._call("clear_guides")
 
     def set_source_mask(self, mask: ImageLike | None) -> None:
-        """Sets the pixels of the artwork that may be copied, those above 0.5; None: all."""
+        """Sets the mask of the artwork: pixels above 0.5 may be copied. None means all pixels."""
         self._call("set_source_mask", None if mask is None else image_of(self._context, mask))
 
     def set_target_mask(self, mask: ImageLike | None, known: ImageLike | None = None) -> None:
-        """Sets the pixels to paint, those above 0.5; the others come from known, or are black. None: paint all
-        pixels."""
+        """Sets the mask of the target: pixels above 0.5 are painted; the others come from known, or are black. None
+        means that all pixels are painted."""
         images = [None if image is None else image_of(self._context, image) for image in (mask, known)]
         self._call("set_target_mask", *images)
 
     def set_motion(self, motion: ImageLike | None) -> None:
-        """Makes each job start from the previous result; see Guides.motion. None: each job starts from nothing."""
+        """Sets the motion since the previous frame (Guides.motion), so that each job starts from the previous result.
+        With None, each job starts from nothing."""
         self._call("set_motion", None if motion is None else image_of(self._context, motion))
 
     def set_painted(self, painted: ImageLike) -> None:
-        """Lets the library paint the rest of a half-painted picture, which is the artwork; painted is above 0.5 where
-        it is finished."""
+        """Lets the library complete a half-painted picture, which is the artwork. The mask painted is above 0.5 where
+        the picture is finished."""
         self._call("set_painted", image_of(self._context, painted))
 
     # -- work
 
     def start(self, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]) -> Job[Stylize]:
-        """Starts the work with a preset, "full", "fast", "preview" or "paper", and settings over it."""
+        """Starts the stylisation with a preset, "full", "fast", "preview" or "paper"; keyword arguments replace some
+        of its settings."""
         settings = _preset(preset)
         _params.update(settings, params, [])
         return self._job("start", settings)
@@ -111,19 +113,19 @@ class Stylize(StageBase):
         preset: StylizePreset | str = StylizePreset.FULL,
         **params: Unpack[StylizeParams],
     ) -> Stylize:
-        """Starts the work and waits for it."""
+        """Starts the stylisation and waits for it; see start."""
         return self.start(preset, **params).wait(progress)
 
     def update(self, artwork: ImageLike, changed: ImageLike) -> Job[Stylize]:
-        """Starts a job that updates the picture after new paint in the artwork, where changed is above 0.5; needs
-        keep_for_update=1."""
+        """Starts a job that updates the picture after the artwork was repainted where changed is above 0.5. The
+        previous run must have had keep_for_update=1."""
         images = [image_of(self._context, image) for image in (artwork, changed)]
         return self._job("update", *images)
 
     # -- results
 
     def image(self, which: StylizeImage | str = StylizeImage.PICTURE) -> Image:
-        """ "picture", "guide-error" or "sources"."""
+        """An image of the results: "picture", "guide-error" or "sources"."""
         return self._get_image("get_image", _params.member(StylizeImage, which))
 
     @property
@@ -133,7 +135,7 @@ class Stylize(StageBase):
 
     @property
     def levels(self) -> list[Level]:
-        """The levels with their rounds, the coarsest first."""
+        """The pyramid levels with their rounds, the coarsest first."""
         out = []
         for level in range(self.report.levels):
             numbers = [ctypes.c_uint32() for _ in range(3)]
@@ -161,5 +163,5 @@ def preset(which: StylizePreset | str) -> StylizeParams:
 def _preset(which: StylizePreset | str) -> Any:
     settings = _abi.luxfer_stylize_params()
     which = _params.member(StylizePreset, which)
-    library.luxfer_stylize_params_preset(settings, which, ctypes.sizeof(settings))  # of a member: cannot fail
+    library.luxfer_stylize_params_preset(settings, which, ctypes.sizeof(settings))  # cannot fail for a member
     return settings

@@ -60,7 +60,7 @@ class Transfer(StageBase):
         self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
-        """Sets a depth map of the photo, "along-z" or "along-ray"; None: no depth map."""
+        """Sets a depth map of the photo, "along-z" or "along-ray". None means no depth map."""
         image = None if depth is None else image_of(self._context, depth)
         self._call("set_depth", image, _params.member(DepthKind, kind))
 
@@ -70,28 +70,28 @@ class Transfer(StageBase):
         self._call("set_scene", scene, _params.text(surface, "surface"))
 
     def set_texture(self, texture: ImageLike | None) -> None:
-        """Sets an emissive texture to use instead of one made from the photo; None: make one."""
+        """Sets an emissive texture that replaces the one made from the photo. None means to make it from the photo."""
         self._call("set_texture", None if texture is None else image_of(self._context, texture))
 
     def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
-        """Sets the camera of the picture; without arguments it is the first camera of the scene, or one in a corner of
-        the room."""
+        """Sets the camera of the picture; without arguments, selects the first camera of the scene or, without
+        cameras, one in a corner of the room."""
         values = {**(camera or {}), **params}
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
     def set_strokes(self, strokes: Strokes | ImageLike | None) -> None:
-        """Sets the strokes on the photo; a drawing is taken as by Strokes.from_image. None: no strokes."""
+        """Sets the strokes on the photo; a drawing is converted by Strokes.from_image. None means no strokes."""
         set_strokes(self, strokes)
 
     def set_zones(self, zones: ArrayLike) -> None:
-        """Sets rectangles (n, 4) of the surface without lamps: u0, v0, u1, v1 in metres from its corner along its
-        axes. They replace earlier ones."""
+        """Sets rectangles (n, 4) of the surface that stay without lamps: u0, v0, u1, v1 in metres from the surface's
+        corner along its axes. They replace those of earlier calls."""
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
         self._call("set_zones", values.ctypes.data_as(POINTER(ctypes.c_double)), len(values))
 
     def set_triangles(self, triangles: ArrayLike) -> None:
-        """Sets the triangles that receive the lights, (n, 2) with mesh and triangle index, instead of the named
-        surface; empty: use the name again."""
+        """Sets the triangles that receive the lights, instead of the named surface: an array (n, 2) with mesh and
+        triangle index. An empty array selects the named surface again."""
         values = np.ascontiguousarray(triangles, np.uint32).reshape(-1, 2)
         self._call("set_triangles", values.ctypes.data_as(POINTER(ctypes.c_uint32)), len(values))
 
@@ -131,18 +131,19 @@ class Transfer(StageBase):
         progress: Progress | None = None,
         **params: Unpack[TransferParams],
     ) -> Transfer:
-        """Starts the stages and waits for them."""
+        """Runs the stages from first to last and waits for them; see start."""
         return self.start(first, last, **params).wait(progress)
 
     # -- results
 
     def image(self, which: TransferImage | str = TransferImage.RENDER) -> Image:
-        """ "features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence", "unwarped", "unwarped-valid",
-        "emission", "emission-mask", "render", "render-variance" or "render-preview"."""
+        """An image of the results: "features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence",
+        "unwarped", "unwarped-valid", "emission", "emission-mask", "render", "render-variance" or "render-preview"."""
         return self._get_image("get_image", _params.member(TransferImage, which))
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
-        """ "lit", the result; "unsolved", before relighting; "white", with white light of equal luminance."""
+        """A scene of the results: "lit" is the result, "unsolved" the scene before relighting, and "white" the scene
+        in white light of equal luminance."""
         pointer = POINTER(_abi.luxfer_scene)()
         self._call("get_scene", _params.member(TransferScene, which), pointer)
         return Scene._adopt(self._context, pointer)
@@ -154,7 +155,7 @@ class Transfer(StageBase):
 
     @property
     def warnings(self) -> list[StageWarning]:
-        """Reasons to doubt the results that there are, in the order of the stages."""
+        """Reasons to doubt the results so far, in the order of the stages."""
         return warnings_of(self)
 
     @property
@@ -174,6 +175,6 @@ class Transfer(StageBase):
         return [cast(Fixture, self._read("get_fixture", _abi.luxfer_fixture, i)) for i in range(count)]
 
     def save_fixtures(self, path: str | os.PathLike[str]) -> None:
-        """Writes the lamps to a .csv or .json file; the names of the columns contain the units; .json also has their
-        outlines."""
+        """Writes the lamps to a .csv or .json file. The names of the columns contain the units. A .json file also has
+        the outlines of the lamps."""
         self._call("save_fixtures", _params.text(os.fspath(path), "path"))

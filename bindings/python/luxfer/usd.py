@@ -1,4 +1,4 @@
-"""Scenes from USD files (.usda, .usdc, .usdz) and back, by Pixar's own library: `pip install luxfer[usd]`.
+"""Loads and saves scenes as USD files (.usda, .usdc, .usdz) by Pixar's own library: `pip install luxfer[usd]`.
 
 load() reads the composed stage at the default time and converts it to metres and Y up:
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from .context import Context
 
-#: How textures go on beyond their edges: USD's words and ours.
+#: Wrap modes of textures: the names of USD and those of luxfer.
 WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp", "useMetadata": "repeat"}
 
 
@@ -53,12 +53,12 @@ def load(context: Context, path: str | os.PathLike[str]) -> Scene:
 
 
 def from_stage(context: Context, stage: Any) -> Scene:
-    """The scene of a Usd.Stage."""
+    """Converts a Usd.Stage to a scene."""
     return _Reader(context, stage).scene
 
 
 class _Reader:
-    """Walks a stage once."""
+    """Traverses a stage and adds its prims to a scene."""
 
     def __init__(self, context: Context, stage: Any):
         from pxr import Usd, UsdGeom, UsdLux
@@ -75,7 +75,7 @@ class _Reader:
         prims = iter(Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies()))
         for prim in prims:
             if prim.IsA(UsdGeom.PointInstancer):
-                prims.PruneChildren()  # its prototypes are not things themselves
+                prims.PruneChildren()  # prototypes of an instancer are not objects themselves
                 continue
             if (shown := UsdGeom.Imageable(prim)) and (
                 shown.ComputeVisibility() == UsdGeom.Tokens.invisible or shown.ComputePurpose() not in seen
@@ -89,7 +89,7 @@ class _Reader:
                 self.add_light(prim)
 
     def matrix(self, prim: Any) -> NDArray[np.float64]:
-        """To world space in metres; rows are transformed from the left, as in USD."""
+        """The matrix from a prim to world space in metres; it is applied to row vectors, as in USD."""
         return np.array(self.cache.GetLocalToWorldTransform(prim)) @ self.world
 
     # -- meshes
@@ -113,7 +113,8 @@ class _Reader:
             normals = np.array(mesh.GetNormalsAttr().Get(), np.float64), mesh.GetNormalsInterpolation()
         uvs = self.primvar(mesh, "st", 2)
 
-        # A vertex for each point, or for each corner of a face where values differ between faces.
+        # Use one vertex per point or, if normals or texture coordinates differ between faces, one per corner of a
+        # face.
         apart = any(found is not None and found[1] == "faceVarying" for found in (normals, uvs))
         vertices = np.arange(len(points)) if not apart else corners
         triangles = triangles if apart else corners[triangles]
@@ -124,9 +125,9 @@ class _Reader:
             lengths = np.linalg.norm(normals, axis=1, keepdims=True)
             normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
         if uvs is not None:
-            uvs = np.stack((uvs[:, 0], 1 - uvs[:, 1]), 1)  # USD's t goes up
+            uvs = np.stack((uvs[:, 0], 1 - uvs[:, 1]), 1)  # in USD, t points up
 
-        # The faces of each subset with a material of its own, and the rest.
+        # Make one mesh of the faces of each subset that has its own material, and one of the remaining faces.
         binding = UsdShade.MaterialBindingAPI(prim)
         rest = np.ones(len(counts), bool)
         groups = []
@@ -150,7 +151,7 @@ class _Reader:
                 )
 
     def primvar(self, mesh: Any, name: str, width: int) -> tuple[NDArray[Any], str] | None:
-        """Values of a mesh, and their interpolation."""
+        """The values of a primvar of a mesh, and their interpolation; None if the mesh lacks it."""
         from pxr import UsdGeom
 
         found = UsdGeom.PrimvarsAPI(mesh.GetPrim()).FindPrimvarWithInheritance(name)
@@ -175,7 +176,7 @@ class _Reader:
             return index
 
         def number(name: str, default: Any) -> tuple[Any, Any]:
-            """The value of an input, and its texture if it is connected to one."""
+            """The value of an input, and the texture to which it is connected, if any."""
             given = shader.GetInput(name)
             if not given:
                 return default, None
@@ -212,7 +213,7 @@ class _Reader:
         return index
 
     def texture(self, node: Any) -> int | None:
-        """The image of a UsdUVTexture; None if there is none."""
+        """Adds the image of a UsdUVTexture; returns its index, or None if it has no image."""
         from pxr import Ar
 
         def word(name: str, default: str) -> str:
@@ -225,7 +226,7 @@ class _Reader:
         raw = word("sourceColorSpace", "auto") == "raw"
         key = (file.resolvedPath, *wraps, raw)
         if key not in self.textures:
-            asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file.resolvedPath))  # inside a .usdz too
+            asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(file.resolvedPath))  # also finds files inside a .usdz
             data = bytes(memoryview(asset.GetBuffer()))
             image = Image.from_bytes(self.context, data, "linear" if raw else "srgb")
             self.textures[key] = self.scene.add_texture(image, *wraps)
@@ -310,8 +311,8 @@ def fans(counts: NDArray[Any], turned: bool) -> tuple[NDArray[Any], NDArray[Any]
 def spread(
     values: NDArray[Any], interpolation: str, vertices: NDArray[Any], points: int, corners: int
 ) -> NDArray[Any] | None:
-    """Values per vertex from values per point, per corner (then the vertices are the corners) or constant; None for
-    other interpolations, or if the lengths do not match."""
+    """Converts values per point, per corner (if the vertices are the corners) or for the whole mesh to values per
+    vertex. None for other interpolations, or if the lengths do not match."""
     if interpolation in ("vertex", "varying") and len(values) == points:
         return values[vertices]
     if interpolation == "faceVarying" and len(values) == corners == len(vertices):
@@ -348,7 +349,7 @@ def _write(scene: Scene, path: Path) -> None:
     textures: dict[tuple[int, str], str] = {}
 
     def file(number: int, kind: str) -> str:
-        """A texture beside the file, and its path from there."""
+        """Writes a texture beside the file; returns its relative path."""
         if (number, kind) not in textures:
             folder = path.with_name(f"{path.stem}_textures")
             folder.mkdir(exist_ok=True)
@@ -418,7 +419,7 @@ def _write(scene: Scene, path: Path) -> None:
 
 
 def _names(scene: Scene) -> Iterator[tuple[str, int]]:
-    """A valid, unique USD name for each mesh, and its material."""
+    """A valid and unique USD name for each mesh, and the index of the mesh's material."""
     from pxr import Tf
 
     taken = {"Materials"}

@@ -1,4 +1,4 @@
-"""Reasons to doubt the result of a job that has succeeded: the defect, its figure, the place in the photo, the remedy."""
+"""Warnings: reasons to doubt the result of a job that has succeeded, each with a remedy."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class StageWarning:
     """
 
     code: WarningCode
-    """Its kind."""
+    """The kind of the warning."""
     stage: Stage
-    """The stage whose result is in doubt; of a Segment it is LIGHTS with a mask to look within, PLANE without."""
+    """The stage whose result is in doubt. For a Segment, it is LIGHTS if a region is set, else PLANE."""
     severity: float
-    """The figure that raised it; each code has its own."""
+    """The figure that caused the warning; its meaning depends on the code."""
     limit: float
     """The limit that the figure has passed."""
     message: str
@@ -34,7 +34,7 @@ class StageWarning:
     advice: str
     """The remedy."""
     place: tuple[float, float] | None
-    """The place in the photo, in pixels."""
+    """The place in the photo, x and y in pixels; None without a place."""
 
     def __str__(self) -> str:
         at = "" if self.place is None else f" (at {int(self.place[0])}, {int(self.place[1])})"
@@ -42,12 +42,12 @@ class StageWarning:
 
 
 class Warnings(Handle):
-    """A list of warnings in the library."""
+    """A list of warnings, owned by the library."""
 
     kind = "warnings"
 
     def read(self) -> list[StageWarning]:
-        """All of them."""
+        """Reads all warnings."""
         count = ctypes.c_uint32()
         self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]
@@ -59,7 +59,7 @@ class Warnings(Handle):
 
 
 def warnings_of(stage: Handle) -> list[StageWarning]:
-    """The warnings of a stage that has some."""
+    """The warnings of a stage, a transfer or a scene."""
     pointer = POINTER(_abi.luxfer_warnings)()
     call(stage.context, "luxfer_get_warnings", stage, pointer)
     with Warnings._adopt(stage.context, pointer) as warnings:

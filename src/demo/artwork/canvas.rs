@@ -1,4 +1,4 @@
-//! Paper and canvas, and the marks that tools leave on them.
+//! Paper and canvas for the artworks, and the marks that tools leave on them.
 
 use crate::demo::pattern::noise;
 use crate::error::Result;
@@ -7,19 +7,19 @@ use crate::image::{Image, try_vec};
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
-/// A sheet; its colours are sRGB-encoded.
+/// A sheet of paper or canvas. Its colours are sRGB-encoded.
 pub struct Canvas {
     pub width: usize,
     pub height: usize,
     colour: Vec<Vec3>,
-    /// Surface roughness in `[0, 1]`: raised places take ink first.
+    /// Surface texture in `[0, 1]`: ink covers best where this value is high.
     tooth: Vec<f32>,
-    /// Thickness of paint.
+    /// Thickness of the paint, which is lit as a relief.
     relief: Vec<f32>,
 }
 
 impl Canvas {
-    /// Paper of a colour, with cloudy variation and fibres.
+    /// Creates paper of a colour, with fibres and cloudy variations.
     pub fn paper(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
         let mut canvas = Self {
             width,
@@ -39,7 +39,7 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// Woven canvas.
+    /// Creates woven canvas.
     pub fn linen(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
         let mut canvas = Self::paper(width, height, colour, seed)?;
         for i in 0..width * height {
@@ -51,7 +51,8 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// A round spot with a soft rim; `opacity` in `[0, 1]`. Surface roughness breaks it up where it is thin.
+    /// Draws a round spot with a soft rim. `opacity` lies in `[0, 1]`; a thin spot is broken up by the surface
+    /// texture.
     pub fn spot(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
             let taken = cover * opacity * (0.55 + 0.9 * canvas.tooth[i]).min(1.0);
@@ -59,10 +60,10 @@ impl Canvas {
         });
     }
 
-    /// A dab of thick paint.
+    /// Paints a round dab of thick paint.
     pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
-            // A loaded brush covers everything; a dry one touches only the raised places of the canvas.
+            // A loaded brush covers everything; a dry one covers only places where the surface texture is low.
             let coverage = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
             canvas.colour[i] = canvas.colour[i].lerp(colour, cover * coverage);
             canvas.relief[i] += (thickness - canvas.relief[i]) * cover * coverage;
@@ -83,7 +84,7 @@ impl Canvas {
         }
     }
 
-    /// The sheet in linear colour, with its relief lit from the upper left.
+    /// Returns the sheet in linear colour, with its relief lit from the upper left.
     pub fn into_image(self) -> Result<Image> {
         let (width, height) = (self.width, self.height);
         let relief = |x: usize, y: usize| self.relief[y.min(height - 1) * width + x.min(width - 1)];
@@ -98,7 +99,7 @@ impl Canvas {
     }
 }
 
-/// Smooth noise in `[-1, 1]` along a line, to imitate a human hand.
+/// Returns smooth noise in `[-1, 1]` at the position `at` along a line, to imitate the tremor of a hand.
 pub fn tremor(at: f32, seed: u64) -> f32 {
     2.0 * noise(Vec2::new(at, 0.5), [1 << 20, 1], seed) - 1.0
 }

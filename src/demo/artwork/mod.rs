@@ -1,10 +1,10 @@
 //! Artworks of the sphere on a table, drawn by a program in place of an artist: a pen drawing, a stipple drawing and a
 //! painting.
 //!
-//! Each is drawn stroke by stroke on paper or canvas from the guides of the scene, so that it is exactly aligned with
-//! them. Each responds to light as artists do: highlights stay white, shadows are cross-hatched or take another
-//! colour, and red ink appears where the ball's red light falls onto the table. Stroke sizes are proportional to the
-//! width of the picture. The result is the same to the bit every time.
+//! Each artwork is drawn stroke by stroke on paper or canvas from the guides of the scene, so that artwork and guides
+//! are exactly aligned. Each artwork responds to light as artists do: highlights stay white, shadows are cross-hatched
+//! or take another colour, and red ink marks the red light that the ball casts onto the table. Stroke sizes are
+//! proportional to the width of the picture. The result is the same to the bit every time.
 
 mod canvas;
 mod paint;
@@ -28,7 +28,7 @@ pub enum Style {
     Paint,
 }
 
-/// Draws the guides in a style; the result is linear RGB of their size.
+/// Draws the subject of the guides in a style. Returns linear RGB in the size of the guides.
 pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
     let subject = Subject::new(guides)?;
     let canvas = match style {
@@ -66,7 +66,8 @@ mod tests {
                 y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| art.rgb(x, y)).sum::<Vec3>() / count
             };
             let tone = |c: Vec3| luminance(c);
-            // Lit table, shadow; lit and dark side of the ball; red light on the table beside it.
+            // Compare the lit table with the shadow, the lit with the dark side of the ball, and the table beside the
+            // ball, which receives red light, with the lit table.
             let (lit, shadow) = (mean(190..230, 130..170), mean(60..100, 128..142));
             assert!(tone(lit) > 1.5 * tone(shadow), "{style:?}: {lit} {shadow}");
             let (day, night) = (mean(128..140, 42..56), mean(90..115, 100..115));

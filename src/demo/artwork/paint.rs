@@ -1,5 +1,5 @@
-//! A painting: brush strokes along the form, broad ones first, fine ones in detailed areas (after Hertzmann 1998);
-//! each stroke is a bundle of bristles.
+//! A painting by brush strokes along the form: broad ones first, then fine ones in detailed areas (after Hertzmann
+//! 1998). Each stroke is a bundle of bristles.
 
 use super::canvas::{Canvas, tremor};
 use super::subject::{Appearance, Subject};
@@ -9,12 +9,12 @@ use glam::{Vec2, Vec3};
 
 const GROUND: Vec3 = Vec3::new(0.80, 0.52, 0.34);
 
-/// A brush size.
+/// A brush size. One unit is a pixel of a picture 800 pixels wide.
 struct Brush {
-    /// Half the brush width, and the length of a stroke, in units.
+    /// Half the width of the brush, and the length of its strokes, in units.
     radius: f32,
     length: f32,
-    /// Minimum local detail at which the brush is used.
+    /// The brush is used where the local detail of the picture is at least this value.
     detail: f32,
 }
 
@@ -24,7 +24,8 @@ const BRUSHES: [Brush; 3] = [
     Brush { radius: 2.6, length: 30.0, detail: 0.22 },
 ];
 
-/// The painter's palette: differs from the scene's colours but follows its light.
+/// Returns the colour that the painter mixes for a place. The palette differs from the scene's colours but follows its
+/// light.
 fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;
@@ -64,7 +65,7 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     let radius = brush.radius * subject.unit;
     let spacing = 0.85 * radius;
     let (columns, rows) = ((subject.width as f32 / spacing) as u64 + 1, (subject.height as f32 / spacing) as u64 + 1);
-    // Place strokes in random order.
+    // Place the strokes in random order.
     let mut places: Vec<u64> = (0..columns * rows).collect();
     places.sort_by_key(|&p| crate::rng::hash(seed, &[p]));
     for place in places {
@@ -78,7 +79,8 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     }
 }
 
-/// Local variation of the picture around a position.
+/// Returns the local detail: the largest colour difference from four neighbouring places, or the edge strength if that
+/// is larger.
 fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
     let around = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].map(|d| mixed(subject.at(at + d * 2.0 * radius)));
     let here = mixed(subject.at(at));
@@ -88,11 +90,12 @@ fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
 fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mut rng: Rng) {
     let (unit, radius) = (subject.unit, brush.radius * subject.unit);
     let here = *subject.at(start);
-    // No two strokes have the same colour.
+    // Vary the colour of each stroke at random.
     let shift = Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5;
     let colour = mixed(&here) * (0.93 + 0.14 * rng.next_f32()) + 0.07 * shift;
 
-    // Direction of the stroke: along the form, or slanted on table and wall. It ends where the colour would be wrong.
+    // Run the stroke along the form of the object, or slanted on table and wall. End it where the object ends or the
+    // colour differs too much.
     let lean = if here.is_object { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
     let length = brush.length * unit * (0.4 + 0.6 * rng.next_f32());
     let (bend, wobble) = (0.006 / unit * (rng.next_f32() - 0.5), rng.next_u32() as u64);
@@ -116,7 +119,7 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
     let along = Vec2::from_angle(lean).rotate(here.along);
     let path: Vec<(Vec2, Vec2)> = ends[1].iter().rev().chain([&(start, along)]).chain(&ends[0]).copied().collect();
 
-    // Bristles, each with a limited load of paint.
+    // Draw the bristles, each with a limited load of paint.
     let bristles = (2.0 * radius / 0.9).ceil().max(2.0) as usize;
     let last = path.len() as f32;
     for b in 0..bristles {

@@ -1,5 +1,5 @@
-//! Hatching: evenly spaced lines (after Jobard and Lefer 1997), in sets that cross as the tone darkens (Winkenbach and
-//! Salesin 1994).
+//! A pen drawing by hatching: evenly spaced lines (after Jobard and Lefer 1997), in sets that cross as the tone
+//! darkens (Winkenbach and Salesin 1994).
 
 use super::canvas::{Canvas, tremor};
 use super::subject::{Appearance, Subject};
@@ -12,19 +12,19 @@ const PAPER: Vec3 = Vec3::new(0.955, 0.935, 0.885);
 const INK: Vec3 = Vec3::new(0.12, 0.10, 0.13);
 const SANGUINE: Vec3 = Vec3::new(0.66, 0.21, 0.12);
 
-/// A set of lines.
+/// A set of parallel hatching lines.
 struct Set {
-    /// Drawing weight at a position: lines appear above 0 and are full at 1.
+    /// Drawing weight at a place of the picture: lines appear above 0 and have full strength at 1.
     weight: fn(&Appearance) -> f32,
-    /// Angle to the direction of the form, in radians.
+    /// Angle in radians between the lines and the direction of the form.
     turn: f32,
-    /// Distance between lines, and their maximum length, in units.
+    /// Distance between lines, and their maximum length, in units of a pixel of a picture 800 pixels wide.
     spacing: f32,
     length: f32,
     ink: Vec3,
 }
 
-/// Drawing weight of places darker than `tone`: 0 at `tone`, 1 at a quarter below it.
+/// Returns the drawing weight for places darker than `tone`: 0 at `tone`, 1 where the tone is lower by 0.25.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, whatever surrounds them.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }
@@ -53,7 +53,7 @@ const SETS: [Set; 7] = [
         length: 36.0,
         ink: INK,
     },
-    // The object: around its form, across it, and both.
+    // The object: lines around its form, then across it, then both.
     Set { weight: |s| if s.is_object { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
     Set { weight: |s| if s.is_object { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
     Set {
@@ -63,7 +63,7 @@ const SETS: [Set; 7] = [
         length: 34.0,
         ink: INK,
     },
-    // Red light from the object, on the table and reflected back onto the object.
+    // Red ink for the red light from the object, on the table and reflected back onto the object.
     Set {
         weight: |s| (s.bleed - 0.035) * if s.is_object { 5.0 } else { 18.0 },
         turn: 0.5,
@@ -84,7 +84,7 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// The positions of lines drawn so far, for spacing.
+/// The points of the lines drawn so far, in a grid of cells, to keep lines apart.
 struct Drawn {
     cell: f32,
     columns: usize,
@@ -109,7 +109,7 @@ impl Drawn {
         }
     }
 
-    /// Whether another line is nearer than `distance`, which is at most one cell.
+    /// Whether a point of another line is nearer than `distance`, which must be at most the side of a cell.
     fn is_near(&self, at: Vec2, distance: f32, line: usize) -> bool {
         let (x, y) = self.place(at);
         (y.saturating_sub(1)..=y + 1).any(|row| {
@@ -135,7 +135,7 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         if (set.weight)(subject.at(start)) <= 0.05 || drawn.is_near(start, keep, line) {
             continue;
         }
-        // Trace in both directions from the start, as far as there is something to draw.
+        // Trace the line in both directions from its start, as far as there is something to draw.
         let lean = set.turn + 0.10 * (rng.next_f32() - 0.5);
         let half_length = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
         let mut ends = [Vec::new(), Vec::new()];
@@ -175,7 +175,7 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
     Ok(())
 }
 
-/// The outline of the object, redrawn with an unsteady hand.
+/// Draws the outline of the object with an unsteady hand.
 fn outline(canvas: &mut Canvas, subject: &Subject, seed: u64) {
     let unit = subject.unit;
     for y in 0..subject.height {
@@ -189,7 +189,7 @@ fn outline(canvas: &mut Canvas, subject: &Subject, seed: u64) {
             }
             let (a, b) = (at.x / (38.0 * unit), at.y / (38.0 * unit));
             let sway = Vec2::new(tremor(a + 2.0 * b, seed), tremor(2.0 * a - b + 90.0, seed + 1)) * 1.8 * unit;
-            // Thin or absent on the lit side.
+            // The outline is thin or absent on the lit side.
             let press = (1.15 - 0.8 * here.tone + 0.4 * tremor(a - b + 50.0, seed + 2)).clamp(0.0, 1.0);
             if press > 0.12 {
                 canvas.spot(at + sway, unit * (0.4 + 0.9 * press), INK, 0.35 + 0.6 * press);

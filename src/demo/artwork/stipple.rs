@@ -1,4 +1,5 @@
-//! Stippling, denser where it is darker (Poisson disks of varying radius, by dart throwing).
+//! A stipple drawing, with denser dots where the subject is darker (Poisson disks of varying radius, by dart
+//! throwing).
 
 use super::canvas::Canvas;
 use super::subject::{Appearance, Subject};
@@ -11,12 +12,12 @@ const PAPER: Vec3 = Vec3::new(0.96, 0.95, 0.92);
 const BLUE: Vec3 = Vec3::new(0.09, 0.13, 0.33);
 const RED: Vec3 = Vec3::new(0.80, 0.16, 0.18);
 
-/// A kind of dot.
+/// A kind of dots: their ink, size and distribution.
 struct Ink {
-    /// Target darkness, in `[0, 1]`.
+    /// Wanted darkness at a place of the picture, in `[0, 1]`.
     darkness: fn(&Appearance) -> f32,
     colour: Vec3,
-    /// Radius in units.
+    /// Radius of a dot, in units of a pixel of a picture 800 pixels wide.
     radius: f32,
 }
 
@@ -49,12 +50,12 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Maximum distance between dots, in radii: wider dots do not read as a tone [convention].
+/// Maximum distance between dots, in radii of a dot: dots farther apart do not read as a tone. [convention]
 const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {
     let radius = ink.radius * subject.unit;
-    // Store the dots in a grid with at most one dot per cell.
+    // Store the dots in a grid whose cells hold at most one dot each.
     let cell = (1.45 * radius).max(1.0) / std::f32::consts::SQRT_2;
     let (columns, rows) = ((subject.width as f32 / cell) as usize + 1, (subject.height as f32 / cell) as usize + 1);
     let mut taken = try_vec(columns * rows, Vec2::NAN)?;
@@ -66,7 +67,7 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
         if darkness < 0.03 {
             continue;
         }
-        // The share of the paper covered by ink equals the darkness.
+        // Space the dots such that the share of the paper that they cover roughly equals the darkness.
         let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, MAX_SPACING);
         let (x, y, span) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
         let mut near = (y.saturating_sub(span)..(y + span + 1).min(rows))

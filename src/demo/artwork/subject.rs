@@ -6,33 +6,34 @@ use crate::image::colour::{linear_to_srgb, luminance};
 use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
-/// The axis, in camera space, around which strokes run, and the direction of strokes on the table.
+/// The axis in camera space around which the strokes on objects run, and the direction in the picture of strokes on
+/// the table.
 const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
 const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
-/// A position in the picture.
+/// How the artist sees one pixel of the picture.
 #[derive(Clone, Copy)]
 pub struct Appearance {
-    /// Overall lightness, in `[0, 1]`.
+    /// Lightness of all light together, in `[0, 1]`.
     pub tone: f32,
-    /// Lightness of the direct light.
+    /// Lightness of the direct light, in `[0, 1]`.
     pub lit: f32,
-    /// Strength of the highlight.
+    /// Lightness of the highlight (specular light), in `[0, 1]`.
     pub shine: f32,
-    /// Redness of the light from other objects.
+    /// Redness of the indirect light, which other objects reflect.
     pub bleed: f32,
-    /// Whether the position shows an object, as opposed to table or wall.
+    /// Whether the pixel shows an object, as opposed to table or wall.
     pub is_object: bool,
     /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,
-    /// Strength of the edge of a shape.
+    /// Strength of the edge of a shape at this pixel.
     pub edge: f32,
 }
 
 pub struct Subject {
     pub width: usize,
     pub height: usize,
-    /// Size in pixels of one pixel of a picture 800 wide.
+    /// Unit of stroke sizes: the size in pixels of one pixel of a picture 800 pixels wide.
     pub unit: f32,
     appearances: Vec<Appearance>,
 }
@@ -44,9 +45,9 @@ impl Subject {
         let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
         };
-        // The material in the corner is the background.
+        // Take the material in the top-left corner as the background.
         let background = guides.materials.pixel(0, 0);
-        // Normalise tones by the object's own colour: its brightest part is light, however dark its paint.
+        // Normalise tones by the object's own colour, so that its brightest part is light even if its paint is dark.
         let objects =
             direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
         let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
@@ -58,7 +59,7 @@ impl Subject {
             for x in 0..full.width {
                 let is_object = guides.materials.pixel(x, y) != background;
                 let normal = Vec3::from_slice(guides.normals.pixel(x, y));
-                // Around the form, like the rings of a turned object with a tilted axis.
+                // Strokes run around the form, like the rings on a turned object with a tilted axis.
                 let ring = normal.cross(AXIS);
                 let along = if is_object { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
                 let light = indirect.rgb(x, y) * exposure;
@@ -81,7 +82,7 @@ impl Subject {
         at.x >= 0.0 && at.y >= 0.0 && at.x < self.width as f32 && at.y < self.height as f32
     }
 
-    /// The nearest pixel.
+    /// Returns the appearance of the nearest pixel.
     pub fn at(&self, at: Vec2) -> &Appearance {
         let clamp = |v: f32, n: usize| (v.max(0.0) as usize).min(n - 1);
         &self.appearances[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]

@@ -1,4 +1,4 @@
-//! How far the lights of a texture agree with its exemplar's.
+//! Compares the lights of a texture with the lights of its exemplar.
 
 pub mod pairs;
 pub mod sampling;

@@ -1,28 +1,28 @@
-//! How far apart the lamps of a pattern are from each other, at all distances: the pair correlation function.
+//! The pair correlation function of a pattern of lamps, which compares the distances between lamps at all ranges.
 
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Longest distance that is looked at, and the half width of the kernel, as multiples of the mean distance to the
-/// nearest point.
+/// Longest distance that is compared, and half width of the kernel, both as multiples of the mean distance between
+/// nearest neighbours.
 const REACH: f64 = 2.5;
 const KERNEL: f64 = 0.15;
-/// Number of steps into which the distances are divided.
+/// Number of steps into which the range of distances is divided.
 const STEPS: usize = 100;
 
-/// Points in a window that begins at 0.
+/// Points in a window of the given size; one corner of the window is the origin.
 pub struct Points<'a> {
     pub at: &'a [DVec2],
     pub size: DVec2,
 }
 
-/// How far the distances between near points differ from one pattern to another: the share of one pattern's pairs that
-/// lie at other distances than the other's. 0 where both have the same share of pairs at each distance, 1 where they
-/// have no distance in common. `None` where either pattern has no two points near each other.
+/// Difference between two patterns in the distances between close points: the share of one pattern's pairs that would
+/// have to change their distance to match the other pattern. 0 if both have equal shares of pairs at each distance, 1
+/// if they have no distance in common. `None` if a pattern has no two points close to each other.
 ///
-/// A pair counts the more, the smaller the part of the window that can show a pair so far apart (translation
-/// correction, Ohser 1983). Pairs are spread over distances by a kernel (Stoyan and Stoyan 1994), whose width the first
-/// pattern sets.
+/// A pair is weighted by the inverse of the window area in which a pair with this offset can appear (translation
+/// correction, Ohser 1983). A kernel spreads each pair over neighbouring distances (Stoyan and Stoyan 1994); its width
+/// is set by the first pattern.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;
@@ -35,7 +35,7 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
 }
 
-/// The number of pairs at each step of distance, up to a constant factor: `g(r) r`.
+/// Computes the density of pairs at each step of distance, up to a constant factor: `g(r) r`.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
     let (reach, width) = (REACH * spacing, KERNEL * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();
@@ -49,7 +49,7 @@ fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
                 continue;
             }
             for (step, sum) in sums.iter_mut().enumerate() {
-                // Epanechnikov's kernel.
+                // Weigh the pair by the Epanechnikov kernel.
                 let r = (step as f64 + 0.5) / STEPS as f64 * reach;
                 let t = (r - apart.length()) / width;
                 *sum += (1.0 - t * t).max(0.0) / shown;
@@ -82,7 +82,7 @@ mod tests {
         assert!(between(&plain, &grid(DVec2::splat(3.0), 0.0, 1)) < 1e-9);
         assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.15);
         assert!(between(&plain, &scattered) > 0.35);
-        // A part of the same grid: the window is corrected for.
+        // A part of the grid in a smaller window must agree, because the weights correct for the window.
         let part: Vec<DVec2> = plain.iter().copied().filter(|p| p.x < 400.0 && p.y < 400.0).collect();
         let part = Points { at: &part, size: DVec2::splat(400.0) };
         assert!(distance(&Points { at: &plain, size }, &part).unwrap() < 0.02);

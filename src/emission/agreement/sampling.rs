@@ -1,9 +1,9 @@
-//! Estimates how far the statistics of an exemplar may be from those of its whole ceiling, because it shows only a part
-//! with few lamps.
+//! Estimates the sampling error of an exemplar's statistics: the exemplar shows only a part of its ceiling, with few
+//! lamps.
 //!
-//! The texture stands in for the ceiling (parametric bootstrap; Efron 1979). Parts of the texture with the extent of
-//! the exemplar, its missing corners included, are measured as the exemplar was. Their difference from the whole
-//! texture is an error that no synthesis could avoid.
+//! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture are measured
+//! like the exemplar; they have the size and shape of the region that the photo shows. The difference between a part
+//! and the whole texture is an error that no synthesis could avoid.
 
 use super::statistics::{Pattern, Statistics};
 use crate::emission::exemplar::{Exemplar, components, roles};
@@ -13,12 +13,12 @@ use crate::image::{Image, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Number of parts that are measured.
+/// Number of parts of the texture that are measured.
 const PARTS: usize = 6;
 
-/// Root mean square, over parts of the texture, of the largest relative difference between a part's statistics and
-/// `whole`, those of the texture; `None` where the texture has no room for several parts. A texel is `scale` unwarped
-/// pixels; `periods` are in unwarped pixels.
+/// Root mean square, over parts of the texture, of the largest relative difference between a part's statistics and the
+/// texture's statistics `whole`. `None` if the texture is too small for several parts. `scale` is the number of
+/// unwarped pixels per texel; `periods` are in unwarped pixels.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),
@@ -42,7 +42,7 @@ pub fn error(
     }))?;
     let periods = periods.map(|p| p.map(|p| p / scale));
     let parts = exec::map(PARTS, job, |k| -> Result<f64> {
-        // Spread the parts evenly (Roberts 2018).
+        // Spread the parts evenly by the R2 low-discrepancy sequence (Roberts 2018).
         let step = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
         let corner = (room * (step * (k as f64 + 0.5)).fract()).round();
         let at = |i: usize| (corner.y as usize + i / width) * mask.width + corner.x as usize + i % width;

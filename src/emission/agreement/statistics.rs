@@ -1,10 +1,11 @@
-//! Statistics of a light pattern, by which a texture is compared with its exemplar.
+//! Statistics of a light pattern. They measure how well a texture agrees with its exemplar.
 //!
-//! A border cuts a pattern anywhere, so plain counts in a window vary with the lamps that happen to lie on its rim, and
-//! vary more the fewer lamps there are. Every mean here is therefore weighted. Along an axis with a known period, the
-//! weights average over all positions of as many whole periods as the window holds: wherever the border cuts the
-//! pattern, each part of the period weighs the same. Along other axes, the weights are a Hann window, which fades to 0
-//! at the border (Harris 1978).
+//! The border of a window cuts the pattern at an arbitrary place. Plain means in the window vary with the lamps that
+//! happen to lie on the border, and vary more the fewer lamps there are. Every mean here is therefore weighted by
+//! position. Along an axis with a known period, a sub-window of a whole number of periods slides over the window; the
+//! weight of a position is the share of sub-window placements that contain the position. Each part of the period then
+//! has the same total weight, wherever the border cuts the pattern. Along other axes, the weights are a Hann window,
+//! which falls to 0 at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
 use crate::image::colour::luminance;
@@ -20,22 +21,22 @@ pub struct Statistics {
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other whole lamp; 0 where it is known for no lamp.
+    /// Mean distance from a whole lamp to the nearest other whole lamp; 0 if it is not known for any lamp.
     pub spacing: f64,
-    /// Number of lamps that end inside the pattern.
+    /// Number of whole lamps.
     pub whole: usize,
 }
 
-/// A pattern as pixels and as lamps.
+/// A pattern of lights: its pixels and its lamps.
 pub struct Pattern<'a, C> {
     pub width: usize,
     pub height: usize,
-    /// The connected lights of the pattern, and which of them count as whole lamps.
+    /// The connected lights of the pattern, and for each whether it counts as a whole lamp.
     pub components: &'a Components,
     pub whole: &'a [bool],
-    /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
+    /// Period along x and along y, in pixels; `None` without a period, infinite if the whole pattern is one period.
     pub periods: [Option<f64>; 2],
-    /// Linear colour of a pixel; nothing where the pattern is not shown.
+    /// Function from a pixel index to linear RGB; `None` where the pattern is not shown.
     pub colour: C,
 }
 
@@ -44,7 +45,7 @@ impl Statistics {
         let Pattern { width, height, components, whole, periods, colour } = pattern;
         let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
-        // Sums over pixels.
+        // Sum up light and area over the pixels, weighted by position.
         let (mut all, mut lit, mut light) = (0.0, 0.0, 0.0);
         for y in 0..*height {
             let row = weight(y as f64 + 0.5, *height, periods[1]);
@@ -58,7 +59,7 @@ impl Statistics {
             }
         }
 
-        // Means over lamps.
+        // Average over the lamps, weighted by position.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
         let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
@@ -67,7 +68,7 @@ impl Statistics {
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
             ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        // The distance to the nearest lamp is not known where a cut lamp is nearer than the nearest whole lamp.
+        // The distance to the nearest lamp is unknown if a cut lamp is nearer than the nearest whole lamp.
         let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
         let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
         let nearest = nearest_distances(&centres);
@@ -83,8 +84,8 @@ impl Statistics {
         }
     }
 
-    /// The statistics of a mixture of patterns with the given weights. The distance between lamps of different patterns
-    /// is unknown: with several patterns the spacing is 0.
+    /// The statistics of a mixture of patterns with the given weights. The spacing between lamps of different patterns
+    /// is unknown, so the spacing of several patterns is 0.
     pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
         let parts: Vec<(Self, f64)> = parts.collect();
         if let [(only, _)] = parts[..] {
@@ -102,17 +103,17 @@ impl Statistics {
         }
     }
 
-    /// The same statistics with all lengths multiplied by `scale`.
+    /// The statistics after all lengths are multiplied by `scale`.
     pub fn scaled(self, scale: f64) -> Self {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
     }
 
-    /// The statistics of the same lamps with this many times their area.
+    /// The statistics after the area of each lamp is multiplied by `ratio`.
     pub fn with_area(self, ratio: f64) -> Self {
         Self { lit: (self.lit * ratio).min(1.0), area: self.area * ratio, ..self }
     }
 
-    /// The largest relative difference of the two patterns in lit share, lamp area and lamp spacing; a quantity that
+    /// The largest relative difference between two patterns in lit share, lamp area and lamp spacing. A quantity that
     /// is 0 in either pattern is skipped. Luminance is not compared: a texture holds relative values, and its absolute
     /// luminance is solved for later.
     pub fn difference(&self, other: &Self) -> f64 {
@@ -121,9 +122,10 @@ impl Statistics {
     }
 }
 
-/// Root mean square distance of points from the lattice through them, in parts of its periods.
+/// Root mean square distance of points from the best-fitting lattice of the given basis, as a share of its periods.
 pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
-    // Phase angles of the points; their circular mean is the origin of the lattice.
+    // Compute the points in cell coordinates; the circular mean of their fractional parts is the origin of the
+    // lattice.
     let inverse = DMat2::from_cols(a, b).inverse();
     let cells: Vec<DVec2> = points.iter().map(|&p| inverse * p).collect();
     let angle =
@@ -136,11 +138,11 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
     (cells.iter().map(off).sum::<f64>() / cells.len().max(1) as f64).sqrt()
 }
 
-/// The weight of a position along a side.
+/// The weight of a position along an axis of length `side`: a Hann window, or for a known period a trapezoid.
 fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
     let side = side as f64;
     let Some(period) = period else { return (PI * at / side).sin().powi(2) };
-    // Where the window is no longer than one period, every position weighs the same.
+    // If the window is no longer than one period, all positions have equal weights.
     let spare = if period < side { side % period } else { 0.0 };
     if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
 }
@@ -149,8 +151,8 @@ fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// The distance from each point to the nearest other point; infinite for a single point. The points are swept in the
-/// order of x.
+/// The distance from each point to the nearest other point; infinite for a single point. The search sweeps the points
+/// in the order of x.
 pub fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
@@ -187,7 +189,7 @@ mod tests {
         }
     }
 
-    /// Lamps of 9 × 5 pixels every 20 × 16, cut by a window anywhere.
+    /// Statistics of a grid of lamps of 9 × 5 pixels with periods 20 and 16, shifted relative to the window.
     fn grid(width: usize, height: usize, shift: [usize; 2], periods: [Option<f64>; 2]) -> Statistics {
         let lit = |i: usize| (i % width + shift[0]) % 20 < 9 && (i / width + shift[1]) % 16 < 5;
         let components = components::find(width, height, lit).unwrap();
@@ -206,13 +208,13 @@ mod tests {
                 let seen = grid(width, height, shift, [None; 2]);
                 assert!(seen.difference(&truth) < 0.02, "{width} x {height}, {shift:?}: {seen:?}");
             }
-            // Where the periods are known, not at all.
+            // With known periods, the position of the border must not matter at all.
             for (width, height) in [(47, 39), (67, 61), (80, 64)] {
                 let seen = grid(width, height, shift, [Some(20.0), Some(16.0)]);
                 assert!(seen.difference(&truth) < 1e-9, "{width} x {height}, {shift:?}: {seen:?}");
             }
         }
-        // Plain counts would be off by a tenth.
+        // Plain counts would deviate by a tenth.
         let counted = 4.0 * 4.0 * 45.0 / (67.0 * 61.0) / truth.lit;
         assert!((counted - 1.0f64).abs() > 0.1, "{counted}");
     }
@@ -235,7 +237,7 @@ mod tests {
         let exact: Vec<DVec2> = (0..100).map(|k| at(k % 10, k / 10)).collect();
         assert!(phase(&exact, basis) < 1e-12);
         let off: Vec<DVec2> = exact.iter().map(|p| *p + basis[0] * 0.02 * (2.0 * rng.next_f64() - 1.0)).collect();
-        // Uniform in ± 0.02 of one period.
+        // The offsets are uniform in ± 0.02 periods along one axis.
         assert!((phase(&off, basis) / (0.02 / 3f64.sqrt()) - 1.0).abs() < 0.15);
     }
 }

@@ -1,14 +1,14 @@
-//! Bands of rows, each with a list of the lamps that may touch it, so that rendering a texel looks at few lamps.
+//! Bands of rows, each with a list of the lamps that may touch it, so that rendering a texel tests few lamps.
 
 use super::layer::Layer;
 use crate::emission::lamps::instance::Instance;
 use glam::DVec2;
 
-/// Rows of texels that share one list of lamps. [bench emission:seconds]
+/// Number of rows of texels that share one list of lamps. [bench emission:seconds]
 const BAND: usize = 16;
 
-/// For each band of rows, the lamps that may touch it: the index of the lamp, then the texels `[x0, y0, x1, y1)` that
-/// the lamp may touch.
+/// For each band of rows, the lamps that may touch it. An entry is the index of a lamp, and the texels `[x0, y0, x1,
+/// y1)` that the lamp may touch.
 #[derive(Default)]
 pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
 
@@ -24,13 +24,13 @@ impl Bands {
         Self(bands)
     }
 
-    /// The lamps that may touch a row, and their texels.
+    /// The lamps that may touch a row, each with the texels that it may touch.
     pub fn of_row(&self, y: usize) -> &[(u32, [u32; 4])] {
         &self.0[y / BAND]
     }
 }
 
-/// The texels `[x0, y0, x1, y1)` a lamp may touch.
+/// The texels `[x0, y0, x1, y1)` that a lamp may touch; `None` if it lies outside the texture.
 fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
     let shift = layer.rounded(instance.shift);
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);

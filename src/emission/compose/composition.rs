@@ -1,8 +1,8 @@
-//! The composition of a texture: which lamp and which patch goes where, and no texel yet.
+//! The composition of a texture: the plan of the positions of all lamps and patches, from which texels are rendered.
 //!
-//! A composition holds positions only. Any tile of the texture is rendered from it alone, so a texture of any size
-//! needs the memory of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the
-//! tiles, their order and the number of threads.
+//! A composition holds positions only. Any tile of the texture can be rendered from it, so a texture of any size needs
+//! the memory of one tile. A texel depends on nothing but its position, so the bits of the texture do not depend on
+//! the tiles, their order or the number of threads.
 
 use super::bands::Bands;
 use super::draw;
@@ -21,26 +21,28 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::DVec2;
 
-/// What a texture of `width` × `height` texels shows, and where.
+/// The plan of a texture of `width` × `height` texels: the positions of its lamps and patches.
 pub struct Composition {
     pub width: usize,
     pub height: usize,
     /// One layer for each exemplar.
     pub(in crate::emission) layers: Vec<Layer>,
-    /// Which lamps of each layer touch which rows.
+    /// For each layer, the lamps that may touch each band of rows.
     pub(in crate::emission) bands: Vec<Bands>,
     pub(in crate::emission) weights: Weights,
-    /// Area in texels below which a piece of light is a crumb.
+    /// Area in texels below which a piece of light is a crumb: a fragment broken off a lamp by resampling, which is
+    /// removed.
     pub(in crate::emission) crumb: f64,
 }
 
 impl Composition {
-    /// Plans the texture that [`crate::emission::blend`] makes. Errors as there.
+    /// Plans the texture that [`crate::emission::blend`] makes. Errors: as for that function.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but uses an earlier [`Reading`] of the first exemplar if one is given and fits the settings.
+    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Reading`]), if one is given and was
+    /// made with the same settings.
     pub(in crate::emission) fn of(
         mut reading: Option<Reading>,
         input: &Input,
@@ -76,17 +78,17 @@ impl Composition {
         Ok(Self { width: params.width, height: params.height, layers, bands, weights, crumb })
     }
 
-    /// The number of lamps that are copied as a whole.
+    /// The number of lamps that are copied as a whole, in all layers.
     pub fn lamps(&self) -> usize {
         self.layers.iter().map(|layer| layer.instances.len()).sum()
     }
 
-    /// How regular the lights of the first exemplar are, as in [`crate::emission::Emission::regularity`].
+    /// The regularity of the first exemplar, as in [`crate::emission::Emission::regularity`].
     pub fn regularity(&self) -> f64 {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// How the lights of the first exemplar go on, and how that law was chosen.
+    /// The law by which the lights of the first exemplar continue (lattice, row, repetition or none), and its score.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
@@ -97,13 +99,13 @@ impl Composition {
         self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
     }
 
-    /// Renders a tile of the texture, and its mask, from the exemplars that the composition was made of.
+    /// Renders a tile of the texture, and its mask, from the exemplars for which the composition was planned.
     ///
-    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another
-    /// number or size.
+    /// Errors (`InvalidArgument`): the tile is empty or reaches beyond the texture; the number or the sizes of the
+    /// exemplars have changed.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
-        // A crumb that touches the tile lies within this margin of it; so does any light that joins the crumb to a
+        // A crumb that touches the tile lies within this margin, and so does any light that connects the crumb to a
         // larger piece.
         let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
@@ -119,7 +121,7 @@ impl Composition {
         Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
     }
 
-    /// The whole texture, its coverage, and the connected lights of the coverage.
+    /// Renders the whole texture and its coverage, and finds the connected lights of the coverage.
     pub(in crate::emission) fn all(
         &self,
         input: &Input,
@@ -134,8 +136,8 @@ impl Composition {
         Ok((texture, coverage, found))
     }
 
-    /// Removes the crumbs from a tile. A piece that touches the border of the texture is the rest of a lamp, not a
-    /// crumb.
+    /// Removes crumbs from a tile. A piece that touches the border of the texture is kept: it is the rest of a lamp
+    /// that the border cuts.
     fn remove_crumbs(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
         let is_cut = |min: [usize; 2], max: [usize; 2]| {
             let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);
@@ -148,13 +150,13 @@ impl Composition {
         self.crumb > 1.0
     }
 
-    /// Renders a tile and its coverage, crumbs included.
+    /// Renders a tile and its coverage without removing crumbs.
     fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_exemplars(input, styles)?;
         self.render_lights(input, styles, tile, Lights::All, job)
     }
 
-    /// Renders some of the lights of a tile, and their coverage.
+    /// Renders either all lights of a tile or only the lights that are copied patch by patch, and their coverage.
     pub(in crate::emission) fn render_lights(
         &self,
         input: &Input,
@@ -170,7 +172,7 @@ impl Composition {
         render::run(&frame, &sources, &self.bands, tile, lights, job)
     }
 
-    /// Checks that the exemplars are as many and as large as those that the composition was made of.
+    /// Checks that the number and the sizes of the exemplars are those for which the composition was planned.
     pub(in crate::emission) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
         if styles.len() + 1 != self.layers.len() {
             let (given, planned) = (styles.len() + 1, self.layers.len());
@@ -207,7 +209,7 @@ impl Composition {
     }
 }
 
-/// All exemplars and their unwarped pixels per texel.
+/// Iterates over all exemplars, each with its number of unwarped pixels per texel.
 pub fn exemplars<'a>(first: &'a Input, scale: f64, styles: &'a [Style]) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
     std::iter::once((first, scale)).chain(styles.iter().map(|style| (&style.input, style.scale)))
 }

@@ -1,15 +1,15 @@
-//! Several exemplars in one texture: the blend of styles that the paper leaves to the future (§8).
+//! Blends several exemplars in one texture: the mixture of styles that the paper leaves to future work (§8).
 //!
-//! A lamp halfway between two designs would belong to neither. So lamps are drawn at random: each exemplar's pattern is
-//! planned over all of the texture, and each of its lamps is kept with a probability equal to the exemplar's weight at
-//! the lamp's centre. Lamps of different exemplars that would overlap share one draw, so that exactly one of them is
-//! kept; every other lamp has a draw of its own. The mean light per area then blends linearly. Where many lamps overlap
-//! several others, neighbouring lamps share a draw too, and the styles change from patch to patch; where two kept lamps
-//! overlap there, the lamp of the later exemplar is dropped. Lights that run out of their exemplar are not lamps: they
-//! are dimmed by the weight instead.
+//! A lamp halfway between two designs would belong to neither, so lamps are chosen at random. Each exemplar's pattern
+//! is planned over the whole texture. Each of its lamps is kept with a probability equal to the exemplar's weight at
+//! the lamp's centre. Lamps of different exemplars that would overlap share one random number, so that exactly one of
+//! them is kept; every other lamp has a random number of its own. The mean light per area then blends linearly. If
+//! many lamps overlap several others, neighbouring lamps share a random number too, and the style changes from one
+//! square of the texture to the next. If two kept lamps overlap in that case, the lamp of the later exemplar is
+//! dropped. Lights that run beyond the border of their exemplar do not count as lamps: the weight dims them instead.
 //!
-//! Lattices of different exemplars keep their own period and phase; [`crate::emission::Params::centred`] has them meet
-//! in the middle.
+//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], all of
+//! them have a site or a midpoint between sites at the texture's centre.
 
 use super::layer::Layer;
 use super::weights::Weights;
@@ -19,17 +19,18 @@ use crate::rng::Rng;
 use glam::DVec2;
 use std::collections::HashMap;
 
-/// Side of the squares whose lamps share a draw where lamps are dense, as a multiple of the longest lamp's length.
+/// Side of the squares whose lamps share a random number where lamps are dense, as a multiple of the longest lamp's
+/// length.
 const PATCH: f64 = 3.0;
 /// Lamps are dense if more than this share of the later exemplars' lamps overlap several lamps of earlier ones.
 const DENSE: f64 = 0.1;
 
-/// A lamp of some exemplar, and the box around it in texels.
+/// A lamp of an exemplar: its bounding box in texels, and its random number.
 struct Lamp {
     low: DVec2,
     high: DVec2,
-    /// A random number in [0, 1). The weights divide that interval among the exemplars; the lamp is kept if the number
-    /// falls into the part of its own exemplar.
+    /// A random number in [0, 1). The weights divide that interval into one subinterval per exemplar. The lamp is kept
+    /// if the number falls into the subinterval of its own exemplar.
     draw: f64,
 }
 
@@ -38,14 +39,14 @@ impl Lamp {
         (self.low + self.high) / 2.0
     }
 
-    /// Area that both boxes cover, with `other` moved by `shift`.
+    /// Area of the intersection of both boxes after moving `other` by `shift`.
     fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
         let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
         sides.max(DVec2::ZERO).element_product()
     }
 }
 
-/// Draws which lamps of every layer stay.
+/// Chooses the lamps of each layer at random by its weights, and removes the others.
 pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     if layers.len() < 2 {
         return;
@@ -54,7 +55,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         layers.iter().map(|layer| layer.instances.iter().map(|i| boxed(layer, i)).collect()).collect();
     let longest = lamps.iter().flatten().map(|l| (l.high - l.low).max_element()).fold(1.0, f64::max);
 
-    // Lamps of earlier layers that each lamp overlaps, largest overlap first.
+    // For each lamp, find the lamps of earlier layers that it overlaps, largest overlap first.
     let mut seen = Near { cells: HashMap::new(), side: longest, size: params.repeats() };
     let mut below: Vec<Vec<Vec<(usize, usize)>>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
@@ -64,8 +65,8 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let several = below.iter().flatten().filter(|b| b.len() > 1).count();
     let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
-    // A lamp takes the draw of the earlier lamp that it overlaps most; without one, the draw of its square where lamps
-    // are dense, else a draw of its own.
+    // A lamp takes the random number of the earlier lamp that it overlaps most. Without one, it takes the number of
+    // its square if lamps are dense, else a number of its own.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
             let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
@@ -79,14 +80,14 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         }
     }
 
-    // Decide which lamps stay. Of drawn lamps that overlap, the one of the earliest layer stays.
+    // Decide which lamps to keep. Of chosen lamps that overlap, the lamp of the earliest layer is kept.
     let size = DVec2::new(params.width as f64, params.height as f64);
     let mut stays: Vec<Vec<bool>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
         let is_drawn = |lamp: &Lamp| {
             let at = lamp.centre() / size;
             let start: f64 = (0..k).map(|j| f64::from(weights.at(j, at))).sum();
-            // The last interval ends at exactly 1, whatever rounding makes of the sum.
+            // The last interval must end at exactly 1, despite rounding of the sum.
             let end = if k + 1 == lamps.len() { 1.0 } else { start + f64::from(weights.at(k, at)) };
             weights.at(k, at) > 0.0 && (start..end).contains(&lamp.draw)
         };
@@ -102,7 +103,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     }
 }
 
-/// The box of a lamp in texels.
+/// The bounding box of a lamp in texels.
 fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
     let lamp = &layer.exemplar.components.list[instance.component];
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
@@ -110,12 +111,12 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
     Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
 }
 
-/// Lamps, listed by the square that their centre lies in. Squares are as long as the longest lamp, so that overlapping
-/// lamps lie in the same square or in adjacent ones.
+/// A hash grid of lamps by the square that holds their centre. The squares are as long as the longest lamp, so that
+/// overlapping lamps lie in the same square or in adjacent ones.
 struct Near {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,
-    /// Size of the texture, if it repeats.
+    /// Size of the texture in texels, if it is tileable.
     size: Option<DVec2>,
 }
 

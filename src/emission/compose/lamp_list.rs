@@ -1,9 +1,10 @@
-//! The lamps of a composition, one by one, listed without ever rendering the texture as a whole.
+//! Lists the lamps of a composition without rendering the whole texture.
 //!
-//! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and the place of
-//! each lamp. Where a texel is not one unwarped pixel, the list gives a lamp as it is in the exemplar, while the
-//! texture shows it to the texel. Some lights follow the patches instead: lights that run through their exemplar and,
-//! without [`crate::emission::Params::whole_lamps`], all lights. These are listed as the texture shows them.
+//! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and a position for
+//! each lamp. If a texel is not exactly one unwarped pixel, the outlines are more exact than those of the texture,
+//! which consist of whole texels. Some lights are copied patch by patch and not as a whole: lights that run through
+//! their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. Their outlines are measured in
+//! the texture.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
@@ -20,23 +21,24 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, Vec2Swizzles};
 
-/// A lamp is listed if more than this area of it, in texels, lies within the texture.
+/// A lamp is listed if at least this area of it, in texels, lies within the texture.
 const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.
 pub struct LampList {
-    /// The components of each exemplar, in its unwarped pixels.
+    /// Shapes of all components of each exemplar, in unwarped pixels.
     shapes: Vec<Vec<Luminaire>>,
-    /// Each lamp shown, after the index of its exemplar.
+    /// Each lamp in the texture, with the index of its exemplar.
     shown: Vec<(u32, Instance)>,
-    /// Lights that follow the patches.
+    /// Lights that are copied patch by patch, measured in the texture.
     others: Vec<Luminaire>,
-    /// Total flux of all listed lights.
+    /// Sum of luminance times area over all listed lights.
     flux: f64,
 }
 
 impl LampList {
-    /// Lists the lamps of a composition, from the exemplars it was made of. Errors as of [`Composition::tile`].
+    /// Lists the lamps of a composition, from the exemplars for which it was planned. Errors: as for
+    /// [`Composition::tile`].
     pub fn new(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Self> {
         composition.check_exemplars(input, styles)?;
         let mut list = Self { shapes: Vec::new(), shown: Vec::new(), others: Vec::new(), flux: 0.0 };
@@ -55,7 +57,7 @@ impl LampList {
         }
         for (k, layer) in composition.layers.iter().enumerate() {
             job.check()?;
-            // A texture that is a copied part of the exemplar shows the exemplar's components at one shift.
+            // A texture that is a copied part of the exemplar shows all components of the exemplar at one shift.
             let copied = layer.patch_map.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
             let copies = copied.map(|shift| {
                 let instance = |component| Instance { component, shift: shift.exact };
@@ -75,14 +77,15 @@ impl LampList {
         Ok(list)
     }
 
-    /// Numbers the kinds of the lamps shown, over all exemplars, and of the lights that follow the patches.
+    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that are copied
+    /// patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {
             let is_whole = composition.layers[*k as usize].exemplar.roles[instance.component].is_whole();
             counts[*k as usize][instance.component] += usize::from(is_whole);
         }
-        // Compare all shapes in texels.
+        // Convert all shapes to texels, so that they can be compared.
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let factors = composition.layers.iter().map(|layer| 1.0 / layer.scale);
         let shown = |(shapes, factor): (&Vec<Luminaire>, f64)| {
@@ -101,7 +104,7 @@ impl LampList {
         self.shown.len() + self.others.len()
     }
 
-    /// The light at an index; if the border cuts it, the part within the texture.
+    /// Returns the light with the given index. If the border cuts it, returns the part within the texture.
     pub fn get(&self, composition: &Composition, index: usize) -> Option<Luminaire> {
         let mut lamp = match self.shown.get(index) {
             Some(&(k, instance)) => self.placed(composition, k as usize, instance),
@@ -111,14 +114,14 @@ impl LampList {
         Some(lamp)
     }
 
-    /// A lamp where the texture shows it.
+    /// The lamp as the texture shows it: shifted, scaled, and clipped to the texture.
     fn placed(&self, composition: &Composition, k: usize, instance: Instance) -> Luminaire {
         let layer: &Layer = &composition.layers[k];
         let shape = &self.shapes[k][instance.component];
         let shift = layer.rounded(instance.shift);
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let whole = shape.moved(shift, 1.0 / layer.scale);
-        // Copied lights are dimmed by the exemplar's weight; other lamps are shown in full or not at all.
+        // In a copied part, lights are dimmed by the exemplar's weight; other lamps are shown in full or not at all.
         let whole = match layer.continuation {
             Continuation::Copy => {
                 Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole }
@@ -136,7 +139,7 @@ fn flux(lamp: &Luminaire) -> f64 {
     f64::from(luminance(lamp.colour)) * lamp.area
 }
 
-/// The part of a lamp that lies within a texture of the given size.
+/// Clips a lamp to a texture of the given size.
 fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
     let outline =
@@ -149,7 +152,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     }
     let axis = DVec2::from_angle(lamp.orientation);
     let extent = |axis: DVec2| polygon::extent(&outline, axis);
-    // The remaining part may be longer across the lamp's axis than along it.
+    // The remaining part may be longer across the lamp's axis than along it: then exchange the axes.
     let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
     let (size, orientation) = match lamp.orientation {
         angle if size.x >= size.y => (size, angle),

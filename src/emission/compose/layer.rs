@@ -1,4 +1,4 @@
-//! One exemplar over the whole texture: which of its lamps and patches go where.
+//! The layer of one exemplar: the positions of its lamps and patches over the whole texture.
 
 use super::window::{self, Window};
 use crate::emission::exemplar::Exemplar;
@@ -24,48 +24,52 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::{DVec2, Vec3};
 
-/// A piece of light is a crumb, broken off an edge by resampling, if its area is below this share of the smallest
-/// lamp's. [judged on 5 photos]
+/// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
+/// edges by resampling. [judged on 5 photos]
 const CRUMB: f64 = 0.02;
-/// Smallest side of a patch, in working pixels. [bench emission:knobs]
+/// Minimum side of a patch, in working pixels (pixels of the exemplar at the reduced size of the synthesis).
+/// [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
 /// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
 
-/// Where the texture shows which part of an exemplar.
+/// The plan of one exemplar's share of the texture: which part of the exemplar each place of the texture shows, and
+/// how its lamps are drawn.
 pub struct Layer {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
     pub regularity: f64,
     pub choice: Choice,
-    /// Metadata of the exemplar, at working size.
+    /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light.
     pub metadata: Image,
     pub patch_map: PatchMap,
-    /// Lamps copied as a whole.
+    /// Lamps that are copied as a whole, with their shifts.
     pub instances: Vec<Instance>,
-    /// Whether lamps are copied as a whole; else all lights follow the patches.
+    /// Whether lamps are copied as a whole. If not, all lights are copied patch by patch.
     pub has_pieces: bool,
-    /// Colours of the lamps for the parts that the photo shows clipped; `None` where it shows nothing clipped.
+    /// Colours for the clipped parts of lamps, read from their rims; `None` if the photo shows nothing clipped.
     pub rim_colours: Option<RimColours>,
-    /// The designs of the lamps; empty where lamps keep the outlines of the photo.
+    /// The designs (one size and one outline per kind of lamp) from which lamps are drawn; empty if lamps keep the
+    /// outlines of the photo.
     pub designs: Designs,
-    /// The mean colour of each component, where lamps shine evenly.
+    /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
     pub scale: f64,
 }
 
-/// How the exemplar is laid out on the texture.
+/// The settings by which an exemplar's pattern is placed on the texture.
 struct Setting<'a> {
     params: &'a Params,
-    /// The continuation as it was found, and as the texture uses it: stretched if the texture is tileable.
+    /// The continuation found in the exemplar, and the one that the texture uses. They differ if the texture is
+    /// tileable, because its lattice is stretched.
     found: Continuation,
     continuation: Continuation,
-    /// Where the lattice begins, in unwarped pixels.
+    /// Position of the lattice's origin in the texture, in unwarped pixels.
     offset: DVec2,
-    /// Working pixels of the texture.
+    /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
-    /// Side of a patch, and the distance to a lamp that the metadata give as 1, in working pixels.
+    /// Side of a patch, and the distance to a light at which the metadata saturate at 1; both in working pixels.
     block: usize,
     cap: f64,
 }
@@ -76,7 +80,8 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let setting = Setting::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata, then lay out patches and lamps.
+        // Compute the metadata of the exemplar, the guide channels of the synthesis: confidence, and signed x and y
+        // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
@@ -119,56 +124,57 @@ impl Layer {
         })
     }
 
-    /// Whether lamps are drawn from designs.
+    /// Whether lamps are drawn from designs, one size and one outline for all lamps of a kind.
     pub fn is_clean(&self) -> bool {
         !self.designs.kinds.is_empty()
     }
 
-    /// Whether a component follows the patches pixel by pixel.
+    /// Whether a component is rendered patch by patch rather than copied as a whole.
     pub fn is_by_pixel(&self, component: usize) -> bool {
         !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
-    /// Whether any component follows the patches pixel by pixel.
+    /// Whether any component is rendered patch by patch rather than copied as a whole.
     pub fn has_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }
 
-    /// Whether some lights follow the patches, and the patches are not just a copied part of the exemplar.
+    /// Whether some lights are copied patch by patch, and the texture is not just a copied part of the exemplar.
     pub fn follows_patches(&self) -> bool {
         self.has_by_pixel() && self.continuation != Continuation::Copy
     }
 
-    /// Rounds a shift to whole pixels where a texel is one unwarped pixel, so that copies are exact.
+    /// If a texel is one unwarped pixel, rounds a shift to whole pixels, so that copies are exact.
     pub fn rounded(&self, shift: DVec2) -> DVec2 {
         if self.scale == 1.0 { shift.round() } else { shift }
     }
 
-    /// Area in texels below which a piece of light is a crumb; 0 without lamps copied as a whole.
+    /// Area in texels below which a piece of light is a crumb; 0 if no lamps are copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
-/// Score from which a lattice is trusted to place clean lamps, in a texture that could also copy the photo with its
-/// ragged outlines. [bench photos:tune]
+/// A texture that fits inside the exemplar is a copy of the photo, with its ragged outlines. Lamps with clean outlines
+/// replace the copy only if they lie on a lattice with at least this score. [bench photos:tune]
 const SURE: f64 = 0.6;
 
-/// Outlines are ragged if a pixel of the photo is at least this many unwarped pixels long. [convention]: steps that
-/// show.
+/// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.
+/// [convention]
 const RAGGED: f64 = 2.0;
 
-/// What a texture is made from.
+/// The exemplar from which a texture is made, and the law by which its pattern continues: lattice, row, repetition or
+/// none.
 struct Source {
     exemplar: Exemplar,
-    /// How the pattern goes on.
+    /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
     found: Continuation,
     regularity: f64,
     choice: Choice,
 }
 
-/// Finds the part of the exemplar that a texture shows if it fits into the exemplar, else how the pattern goes on.
+/// Analyses the exemplar. If the texture fits into it, also finds the part of the exemplar that the texture copies.
 fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<(Option<Window>, Source)> {
     let (exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
         Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
@@ -182,7 +188,7 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     let stays = params.tileable || params.centred;
     let mut window = if stays { None } else { Window::find(&exemplar, params)? };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
-    // The ragged outlines of lamps that the photo shows coarsely are cleaned where a lattice places the lamps.
+    // If the photo shows lamps coarsely, their ragged outlines are cleaned, provided that a lattice places the lamps.
     let may_be_cleaned =
         is_inside && params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
     let copied = || (Continuation::Copy, 0.0, Choice::only(Continuation::Copy));
@@ -207,8 +213,8 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     Ok((window, Source { exemplar, found, regularity, choice }))
 }
 
-/// Whether outlines are ragged: a pixel of the photo is [`RAGGED`] or more unwarped pixels long, at the median of the
-/// whole lamps.
+/// Whether outlines are ragged: the median length of a photo pixel at the whole lamps is at least [`RAGGED`] unwarped
+/// pixels.
 fn is_ragged(exemplar: &Exemplar) -> bool {
     let lamps = exemplar.evidence(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
@@ -232,13 +238,13 @@ impl<'a> Setting<'a> {
         Ok(Self { params, found, continuation, offset, canvas, block, cap })
     }
 
-    /// The lattice as found and as stretched, where the texture repeats.
+    /// The lattice as found and as stretched, for a tileable texture.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
         let lattices = self.found.lattice().zip(self.continuation.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
     }
 
-    /// Which part of the exemplar each part of the texture shows.
+    /// Quilts the texture: finds the part of the exemplar that each part of the texture shows.
     fn place_patches(&self, exemplar: &Exemplar, metadata: &Image, job: Job) -> Result<PatchMap> {
         let &Self { params, continuation, canvas, .. } = self;
         let Params { metadata_weight, candidates, .. } = *params;
@@ -248,7 +254,8 @@ impl<'a> Setting<'a> {
         let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
         let guide = Guide { working, metadata, metadata_weight, cap: self.cap, lamp, candidates };
 
-        // For a row, one strip is laid out and repeated beside itself: the exemplar shows nothing beyond the strip.
+        // For a row of lamps, quilt one strip and repeat it side by side, because the exemplar shows nothing beyond
+        // the strip.
         let row = match continuation {
             Continuation::Row([_, across]) => {
                 let period = across.abs() / working.pitch;
@@ -258,7 +265,7 @@ impl<'a> Setting<'a> {
             _ => None,
         };
         let size = row.map_or(canvas, |r| r.1);
-        // A row that ends in the exemplar ends in the texture, and begins again at the same distance each time.
+        // A row that ends within the exemplar also ends in the texture, and begins again after a constant distance.
         let laid = match continuation {
             Continuation::Row([along, across]) if !params.tileable => {
                 Continuation::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
@@ -272,7 +279,7 @@ impl<'a> Setting<'a> {
         })
     }
 
-    /// Places lamps at the exact sites of their lattice. Returns `shown` unchanged where there are no designs or no
+    /// Places lamps at the exact sites of their lattice. Returns `shown` unchanged if there are no designs or no
     /// sites, and for a row that ends within the exemplar.
     fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
         let &Self { params, continuation, offset, .. } = self;
@@ -292,7 +299,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Places the lamps that are copied into the texture whole, not assembled from patches.
+    /// Places the lamps that are copied into the texture as a whole, not assembled from patches.
     fn place_lamps(
         &self,
         exemplar: &Exemplar,
@@ -326,8 +333,8 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Shifts the lamps of free patches by the offset. Free patches have no origin, so an offset is allowed only in a
-/// tileable texture.
+/// Shifts the lamps by the offset in a pattern without a lattice. Such a pattern has no origin, so an offset is
+/// allowed only in a tileable texture.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);
@@ -347,8 +354,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// Side of a patch that holds a lamp and parts of its neighbours: one and a half times the longer period of a lattice;
-/// without a lattice, a quarter of the exemplar's shorter side.
+/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours. It is one and a
+/// half times the longer period of a lattice; without a lattice, it is a quarter of the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -1,4 +1,5 @@
-//! The texture as a whole: the composition of positions, and its texels.
+//! Assembles the texture: plans the positions of lamps and patches (the composition), renders the texels, and lists
+//! the lamps.
 
 pub mod bands;
 pub mod composition;

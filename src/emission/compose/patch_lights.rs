@@ -1,8 +1,9 @@
-//! Finds the lights that follow the patches, without ever rendering the texture as a whole, though a light that runs
-//! through is as long as the texture.
+//! Finds the lights that are copied patch by patch, without holding the whole texture in memory: a light that runs
+//! through the exemplar is as long as the texture.
 //!
-//! The texture is swept from top to bottom in bands. For every connected light, running sums are kept, and its first
-//! and last texel in each row. Its outline encloses everything between these two texels, to the texel.
+//! A sweep renders the texture in bands from top to bottom. For every connected light, it keeps running sums, and the
+//! first and the last texel in each row. The outline encloses everything between these two texels, in steps of whole
+//! texels.
 
 use super::composition::Composition;
 use super::render::Lights;
@@ -19,14 +20,15 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Rows of texels in a band, and further rows above and below that are needed to tell how much of each texel is light.
+/// Number of rows of texels in a band, and number of further rows rendered above and below it. The further rows are
+/// needed to compute which part of each texel is light.
 const BAND: usize = 64;
 const BESIDE: usize = 2;
-/// The index of a texel without light.
+/// Index of the light at a texel without light.
 const NONE: u32 = u32::MAX;
 
-/// Every light of a composition that follows the patches, in the order of their first texel. Their shares of flux are
-/// 0.
+/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. Their shares
+/// of flux are 0.
 pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Vec<Luminaire>> {
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());
@@ -71,16 +73,16 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
         .collect())
 }
 
-/// Lights found so far; some of them turn out to be parts of one light and are joined.
+/// The lights found so far. Lights that turn out to be connected are merged into one (union-find).
 #[derive(Default)]
 struct Joined {
     parts: Vec<Light>,
-    /// For each light, the index of the light that it was joined to; its own index if there is none.
+    /// For each light, the index of the light that it was joined to, or its own index.
     into: Vec<u32>,
 }
 
 impl Joined {
-    /// Adds `count` empty lights and returns the index of the first.
+    /// Adds `count` empty lights and returns the index of the first one.
     fn add(&mut self, count: usize) -> u32 {
         let first = self.parts.len();
         self.parts.resize_with(first + count, Light::default);
@@ -106,7 +108,7 @@ impl Joined {
     }
 }
 
-/// The texels of some rows, from `left` to before `right`.
+/// The texels from column `left` up to, but not including, `right` in `rows` consecutive rows.
 #[derive(Clone, Copy)]
 struct Span {
     row: u32,
@@ -115,24 +117,24 @@ struct Span {
     right: u32,
 }
 
-/// The sums and the rows of a light.
+/// The moments of a light, and its extent in each row.
 #[derive(Default)]
 struct Light {
-    /// Number of its texels.
+    /// Number of texels.
     texels: f64,
-    /// Sums over the lit parts of texels: area, centres and products of centres, all relative to `origin`, the centre
-    /// of the first texel. `colours` is a sum over whole texels.
+    /// Sums over the lit parts of texels: area, first moments and second moments, relative to `origin`, the centre of
+    /// the first texel. `colours` is a sum over whole texels.
     area: f64,
     origin: DVec2,
     centres: DVec2,
     squares: DVec3,
     colours: DVec3,
-    /// From top to bottom; adjacent rows with equal ends share one span.
+    /// The spans from top to bottom; adjacent rows with equal ends share one span.
     spans: Vec<Span>,
 }
 
 impl Light {
-    /// Adds the lit `area` of the texel that lies a step `[u, v]` from `[x, y]`, a texel of the light.
+    /// Adds the lit `area` of the texel at `[x + u, y + v]`; `[x, y]` is a texel of the light.
     fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
         let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
         self.area += area;
@@ -140,7 +142,7 @@ impl Light {
         self.squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y) * area;
     }
 
-    /// Adds a texel; texels must come row by row.
+    /// Adds a texel to the light; texels must come row by row.
     fn push(&mut self, [x, y]: [usize; 2], colour: Vec3) {
         if self.texels == 0.0 {
             self.origin = DVec2::new(x as f64, y as f64) + 0.5;
@@ -159,7 +161,7 @@ impl Light {
         }
     }
 
-    /// Ends the last row: joins it to the span above if both have the same ends.
+    /// Ends the last row: if it has the same ends as the span above, merges it into that span.
     fn close(&mut self) {
         if let [.., before, last] = &mut self.spans[..]
             && (before.left, before.right, before.row + before.rows) == (last.left, last.right, last.row)
@@ -169,7 +171,7 @@ impl Light {
         }
     }
 
-    /// Merges another light into this one; the first row of the other must not lie above that of this light.
+    /// Merges another light into this one. The first row of `other` must not lie above the first row of this light.
     fn merge(&mut self, other: Self) {
         let by = other.origin - self.origin;
         let Self { area, centres: c, squares: s, .. } = other;
@@ -200,7 +202,8 @@ impl Light {
         }
     }
 
-    /// Whether the light is small and does not touch the border of a texture of the given size.
+    /// Whether the light's area is below `crumb` and the light does not touch the border of a texture of the given
+    /// size.
     fn is_crumb(&self, crumb: f64, [width, height]: [u32; 2]) -> bool {
         let touches = |s: &Span| s.row == 0 || s.row + s.rows == height || s.left == 0 || s.right == width;
         self.area < crumb && !self.spans.iter().any(touches)
@@ -211,7 +214,7 @@ impl Light {
         let [xx, xy, yy] =
             (self.squares - DVec3::new(mean.x * mean.x, mean.x * mean.y, mean.y * mean.y) * self.area).to_array();
         let orientation = orientation([xx, xy, yy]);
-        // The outline runs down the left ends of the spans and up their right ends.
+        // The outline runs down the left ends of the spans, then up their right ends.
         let corner = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let down = self.spans.iter().flat_map(|s| [corner(s.left, s.row), corner(s.left, s.row + s.rows)]);
         let up = self.spans.iter().rev().flat_map(|s| [corner(s.right, s.row + s.rows), corner(s.right, s.row)]);

@@ -1,5 +1,5 @@
-//! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of
-//! lamps.
+//! Restricts a texture to the places where light is possible: surfaces are seldom whole rectangles, and ducts and
+//! sprinklers obstruct lamps.
 
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{crumbs, luminaires};
@@ -10,21 +10,22 @@ use crate::job::Job;
 /// Whether light may be shown at a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// Room for light.
+    /// Light is allowed.
     Open,
-    /// Not visible: light there is removed.
+    /// The texel is not visible: light there is removed.
     Hidden,
-    /// No place for a lamp: lamps that reach the texel are removed whole.
+    /// No lamp may be here: a lamp that covers the texel is removed as a whole.
     KeepOut,
 }
 
 impl Emission {
     /// Removes light where `ground`, with one entry per texel, does not allow it. The statistics are not updated: they
-    /// keep describing the whole pattern.
+    /// describe the whole pattern.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
-        // Mark the lamps to remove whole before hidden light is removed: the hidden parts of a lamp count as well.
+        // Mark the lamps to remove as a whole before hidden light is removed, because hidden parts of a lamp count
+        // too.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {
@@ -44,7 +45,7 @@ impl Emission {
                 found.list.len()
             )));
         }
-        // Lamps that stay whole keep their outline and size; the others are measured again from the mask, to the texel.
+        // Complete lamps keep their outline and size; the other lamps are measured again from the mask.
         let mask = &self.mask;
         let mut lamps = luminaires::find(&self.texture, &left, &|i| mask.data[i], job)?;
         for (label, (lamp, component)) in (1..).zip(lamps.iter_mut().zip(&left.list)) {

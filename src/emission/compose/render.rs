@@ -1,10 +1,10 @@
-//! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer",
-//! §6, Fig. 12h).
+//! Renders the texels at full resolution: copies every lamp and every patch from the photo or, without a photo, from
+//! the unwarped image ("Lighting Style Transfer", §6, Fig. 12h).
 //!
-//! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the
-//! photo, where the area the texel covers is averaged. Whether a texel is light is decided in the unwarped image. Where
-//! that image is magnified, its confidence is interpolated between pixels, so that outlines are no staircases; where it
-//! is reduced, the lit share of the texel's area decides.
+//! The position of a texel minus its shift is a point of the unwarped image. The homography maps that point into the
+//! photo, where the colour is averaged over the area that the texel covers. The unwarped image decides whether a texel
+//! is light. If that image is magnified, its confidence is interpolated between pixels, so that outlines show no
+//! staircase. If it is reduced, the lit share of the texel's area decides.
 
 use super::bands::Bands;
 use super::source::{Source, Texel};
@@ -17,14 +17,14 @@ use crate::job::Job;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// The largest float below one half, or nearly so. [rounding]
+/// A float slightly below one half. [rounding]
 const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
 
-/// Which lights of a composition are rendered.
+/// Selects which lights of a composition are rendered.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
     All,
-    /// Those that follow the patches pixel by pixel, where the texture is no copy of a part of the exemplar.
+    /// Only lights that are copied patch by patch, and only if the texture is not a copied part of the exemplar.
     OfPatches,
 }
 
@@ -35,8 +35,8 @@ pub struct Frame<'a> {
     pub weights: &'a Weights,
 }
 
-/// Renders a tile of the texture, and how much of each texel is light: at least 0.5 for a texel of the mask, less for
-/// any other.
+/// Renders a tile of the texture, and the coverage: the share of each texel that light covers. Coverage is at least
+/// 0.5 for texels of the mask, and less than 0.5 for other texels.
 pub fn run(
     frame: &Frame,
     sources: &[Source],
@@ -75,10 +75,11 @@ pub fn run(
 /// A row of texels that is being rendered.
 struct Row<'a> {
     y: usize,
-    /// Column of its first texel.
+    /// Column of the first texel.
     first: usize,
     colours: &'a mut [f32],
-    /// Mean confidence of the lights at each texel, and the share of its samples that are light.
+    /// `coverage`: for each texel, the mean confidence that it is light. `shares`: share of the texel's samples that
+    /// are light.
     coverage: &'a mut [f32],
     shares: Vec<f32>,
 }
@@ -94,7 +95,7 @@ impl Row<'_> {
         }
     }
 
-    /// Adds the lamps that are copied as a whole.
+    /// Adds the lamps that are copied as a whole to the row.
     fn add_lamps(&mut self, source: &Source, bands: &Bands) {
         for &(i, range) in bands.of_row(self.y) {
             let [x0, y0, x1, y1] = range.map(|r| r as usize);
@@ -110,7 +111,7 @@ impl Row<'_> {
         }
     }
 
-    /// Adds the lights that follow the patches.
+    /// Adds the lights that are copied patch by patch to the row.
     fn add_patches(&mut self, source: &Source, frame: &Frame, k: usize) {
         let size = DVec2::new(frame.width as f64, frame.height as f64);
         for x in self.first..self.first + self.coverage.len() {
@@ -124,8 +125,8 @@ impl Row<'_> {
         }
     }
 
-    /// Makes the coverage agree with the share of lit samples: at least 0.5 where half of the samples or more are lit,
-    /// less than 0.5 elsewhere.
+    /// Clamps the coverage to agree with the share of lit samples: at least 0.5 if at least half of the samples are
+    /// lit, less than 0.5 otherwise.
     fn finish(&mut self) {
         for (coverage, &share) in self.coverage.iter_mut().zip(&self.shares) {
             *coverage = if share >= 0.5 { coverage.clamp(0.5, 1.0) } else { coverage.min(BELOW_HALF) };
@@ -133,7 +134,7 @@ impl Row<'_> {
     }
 }
 
-/// Turns coverage into a mask, in place: 1 where at least half of a texel is light, else 0.
+/// Thresholds the coverage to a mask in place: 1 where light covers at least half of a texel, else 0.
 pub fn threshold(coverage: &mut Image) {
     coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
 }

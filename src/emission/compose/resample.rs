@@ -1,27 +1,27 @@
-//! The photo beneath a texel: its mean colour over a small square of the unwarped image.
+//! Resamples the photo under a texel: computes its mean colour over a small square of the unwarped image.
 //!
-//! The homography makes the square a quadrangle. Points about a pixel of the photo apart along each of its sides are
-//! averaged, each between pixels by cubics (Catmull and Rom 1974), so that detail is neither lost where the photo is
-//! magnified nor missed where it is reduced.
+//! The homography maps the square to a quadrangle in the photo. Its sides are divided into steps of about one photo
+//! pixel, and the colours at these points are averaged. Cubic interpolation gives the colour at a point (Catmull and
+//! Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
 //!
-//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, yet is
-//! less exact. At its published width the Gaussian also weighs parts of the photo that belong to other texels; made as
-//! narrow as a texel, it does not have the texel's shape. Only where tens of texels share a photo pixel along one side,
-//! so that no detail is left to recover, its blur is nearer to the truth. `cargo bench --bench emission -- recovery`
-//! compares both methods with the truth.
+//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, but is
+//! less exact. At its published width, the Gaussian also weighs parts of the photo that belong to other texels; a
+//! Gaussian as narrow as a texel does not have the texel's shape. Only where tens of texels share a photo pixel along
+//! one side, so that no detail is left to recover, is its blur closer to the truth. `cargo bench --bench emission --
+//! recovery` compares both methods with the truth.
 
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::{DVec2, Vec3};
 
-/// Most points along each side; it limits texels next to the horizon.
+/// Maximum number of points along each side. It limits the cost of texels near the horizon.
 const MAX_POINTS: f64 = 32.0;
 
-/// Mean colour of a photo over a square of the unwarped image, given by its middle and its side. Only points within the
-/// photo count; `None` where there are none, or where the mean is not finite.
+/// Mean colour of a photo over a square of the unwarped image, given by its centre and side. Only points within the
+/// photo count. `None` if there are none, or if the mean is not finite.
 pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> Option<Vec3> {
     let at = |step: DVec2| to_photo.apply(middle + step * side);
-    // At the horizon the length is NaN, which makes no points.
+    // At the horizon the length is NaN, which the cast turns into 0 points.
     let points = |axis: DVec2| (at(axis * 0.5) - at(axis * -0.5)).length().ceil().clamp(1.0, MAX_POINTS) as usize;
     let (across, down) = (points(DVec2::X), points(DVec2::Y));
     let (mut sum, mut shown) = (Vec3::ZERO, 0.0);
@@ -35,8 +35,9 @@ pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> O
     Some(sum / shown).filter(|colour| colour.is_finite())
 }
 
-/// Colour at a point of the photo, whose border is extended; `None` off the photo. The result stays within the range of
-/// the four pixels around the point, because next to a bright lamp cubics fall below 0.
+/// Colour at a point of the photo by cubic interpolation; `None` outside the photo. Border pixels are repeated
+/// outwards. The result is limited to the range of the four pixels around the point, because the cubic would fall
+/// below 0 next to a bright lamp.
 fn cubic(photo: &Image, p: DVec2) -> Option<Vec3> {
     let size = DVec2::new(photo.width as f64, photo.height as f64);
     if !(p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
@@ -57,11 +58,11 @@ fn cubic(photo: &Image, p: DVec2) -> Option<Vec3> {
             }
         }
     }
-    // Only finite sums are limited: a sum that is not finite stays so.
+    // Only finite sums are limited, so that NaN and infinite values are passed on.
     Some(if sum.is_finite() { sum.max(least).min(most) } else { sum })
 }
 
-/// Weights of four pixels in a row at `t` of the way from the second to the third.
+/// Catmull-Rom weights of four pixels in a row, at the fraction `t` of the way from the second to the third pixel.
 fn weights(t: f32) -> [f32; 4] {
     let u = 1.0 - t;
     let (first, last) = (-0.5 * t * u * u, -0.5 * u * t * t);
@@ -90,16 +91,16 @@ mod tests {
 
     #[test]
     fn areas_are_averaged_and_what_is_beyond_the_photo_left_out() {
-        // Squares of 12 x 3 pixels, in which the mean of a plane is that of its middle.
+        // Squares that cover 12 x 3 photo pixels. The mean of a linear image over a square is its value at the centre.
         let photo = Image::from_fn(96, 30, |x, y| [x as f32 + 0.5 + 10.0 * (y as f32 + 0.5); 3]).unwrap();
         let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0)));
         let found = mean(&photo, &wide, DVec2::new(4.5, 5.5), 1.0).unwrap();
         assert!((found.x - (54.0 + 165.0)).abs() < 1e-3, "{found}");
-        // Of the half that the photo shows.
+        // If half of the square lies outside the photo, the mean is that of the other half.
         let found = mean(&photo, &wide, DVec2::new(0.0, 5.5), 1.0).unwrap();
         assert!((found.x - (3.0 + 165.0)).abs() < 0.2, "{found}");
         assert_eq!(mean(&photo, &wide, DVec2::new(-1.0, 5.5), 1.0), None);
-        // Nor is it so long that the horizon could hold it up.
+        // Texels at the horizon must end quickly: the number of points is limited.
         let horizon = Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);

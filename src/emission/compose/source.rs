@@ -1,4 +1,4 @@
-//! The source of a texel: the exemplar, and through it the photo.
+//! Computes the colour of a texel from its source: the photo or, without a photo, the unwarped image.
 
 use super::layer::Layer;
 use super::resample;
@@ -8,12 +8,12 @@ use crate::error::Result;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 
-/// Least and most samples along each side of a texel that is larger than an unwarped pixel. With fewer samples, an edge
-/// of the light could not be placed to an eighth of the texel's side. [rounding]
+/// Range of the number of samples along each side of a texel that is larger than an unwarped pixel. With fewer than
+/// `MIN_SAMPLES`, an edge of the light could not be located to within an eighth of the texel's side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
 
-/// The mean colour of every component of the exemplar.
+/// Computes the mean colour of every component of the exemplar.
 pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>> {
     let source = Source { layer, input };
     let exemplar = &layer.exemplar;
@@ -32,22 +32,22 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// Width in photo pixels of a lamp's rim that blur darkens, and the smallest share of the lamp's sides within which its
-/// colour is read. [judged on 20 photos]
+/// The colour of a designed lamp is read inside its blurred rim. `RIM` is the width of the rim in photo pixels;
+/// `MIN_INNER` is the minimum size of the inner part, as a share of the lamp's sides. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
-/// What a texel shows of some lights.
+/// The colour and coverage of a texel, for some of the lights.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
-    /// Share of the texel's samples that are light, and mean confidence that they are. Both measure the same; the
-    /// confidence has finer steps.
+    /// `share` is the share of the texel's samples that are light; `coverage` is the mean confidence of the samples.
+    /// Both measure the lit part of the texel; `coverage` has finer steps.
     pub share: f32,
     pub coverage: f32,
 }
 
-/// What is shown, and the images it is taken from.
+/// A layer, and the images from which its texels are taken.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     pub layer: &'a Layer,
@@ -55,7 +55,7 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The shift of the patch that shows a texel's centre.
+    /// The shift of the patch at a texel's centre; `None` if there is no patch.
     pub fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
         let Layer { patch_map, exemplar, scale, .. } = self.layer;
         let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * *scale / exemplar.working.pitch;
@@ -63,7 +63,7 @@ impl Source<'_> {
         patch_map.shift(u, v).map(|s| s.exact)
     }
 
-    /// The light of the components that `is_shown` names by label, averaged over a texel.
+    /// The light averaged over a texel, from the components for whose label `is_shown` is true.
     pub fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
         let scale = self.layer.scale;
         let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
@@ -91,7 +91,7 @@ impl Source<'_> {
         Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
     }
 
-    /// What a texel shows of a lamp that has a design.
+    /// The light of a lamp that is drawn from its design, at a texel; `None` if the component has no design.
     pub fn designed_texel(&self, x: usize, y: usize, shift: DVec2, component: usize) -> Option<Texel> {
         let (design, fitted) = self.layer.designs.of(component)?;
         let scale = self.layer.scale;
@@ -100,8 +100,8 @@ impl Source<'_> {
         if share <= 0.0 {
             return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
         }
-        // Read the colour at the matching point of the lamp in the photo, which bloom enlarges, but not from its
-        // blurred rim.
+        // Read the colour at the corresponding point of the lamp in the photo. The photo's lamp is enlarged by bloom,
+        // and its blurred rim is avoided.
         let axes = [design.axis, design.axis.perp()];
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
@@ -115,7 +115,7 @@ impl Source<'_> {
         Some(Texel { colour: colour * share, share, coverage: share })
     }
 
-    /// The light at a point, from the finest source there is.
+    /// The colour of the light at a point, from the photo or, outside it, from the unwarped image.
     fn colour(
         &self,
         p: DVec2,
@@ -125,7 +125,7 @@ impl Source<'_> {
         is_shown: &impl Fn(u32) -> bool,
     ) -> Vec3 {
         let value = self.from_photo(p, side).unwrap_or_else(|| {
-            // Only light mixes with light.
+            // Interpolate between lit pixels only, so that no dark pixel mixes with light.
             let unwarped = self.input.unwarped;
             let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
             let sum: Vec4 =
@@ -135,7 +135,7 @@ impl Source<'_> {
         self.unclipped(lamp.unwrap_or(0), value)
     }
 
-    /// The colour of a component where the photo shows `value`; clipped channels follow the colour of the rim.
+    /// Replaces clipped channels of a component's colour `value` by those of its rim.
     fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
         match (&self.layer.rim_colours, label.checked_sub(1)) {
             (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),
@@ -143,25 +143,25 @@ impl Source<'_> {
         }
     }
 
-    /// Label of an unwarped pixel; `usize::MAX` is none.
+    /// Label of an unwarped pixel; 0 for `usize::MAX`, which stands for no pixel.
     fn label(&self, pixel: usize) -> u32 {
         self.layer.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
     }
 
-    /// Whether an unwarped pixel belongs to a component that is shown.
+    /// Whether an unwarped pixel belongs to a component for which `is_shown` is true.
     fn is_light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> bool {
         let label = self.label(pixel);
         label != 0 && is_shown(label)
     }
 
-    /// How much of an unwarped pixel is light that is shown. The fading confidence beside a lamp counts for whichever
-    /// lamp is shown; a pixel of a component counts for that component only.
+    /// The share of an unwarped pixel that is light of the shown components. The fading confidence beside lamps counts
+    /// for every lamp; a pixel of a component counts for that component only.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
     }
 
-    /// Pixels and weights of a bilinear look-up; with `nearest`, only the pixel that the point lies in.
+    /// Pixels and weights of a bilinear look-up. With `nearest`, only the pixel that contains the point.
     fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
         let (width, height) = (self.layer.exemplar.width, self.layer.exemplar.height);
         let at = |x: f64, y: f64| {
@@ -181,7 +181,7 @@ impl Source<'_> {
         ]
     }
 
-    /// The photo's colour at a point of the unwarped image, averaged over a square of the given side there.
+    /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side.
     fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
         let (photo, to_photo) = self.input.photo?;
         resample::mean(photo, &to_photo, p, side)

@@ -1,9 +1,9 @@
-//! A part of a texture.
+//! A rectangular part of a texture.
 
 use crate::error::Result;
 use crate::image::Image;
 
-/// A part of a texture, in texels.
+/// A rectangular part of a texture, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
     pub x: usize,
@@ -19,7 +19,7 @@ impl Tile {
         Self { x, y, width: end(self.x, self.width, width) - x, height: end(self.y, self.height, height) - y }
     }
 
-    /// Cuts this tile out of an image of the larger tile `around` it.
+    /// Cuts this tile out of an image of the larger tile `around`.
     pub fn cut(self, image: &Image, around: Self) -> Result<Image> {
         let mut out = Image::new(self.width, self.height, image.channels)?;
         let (dx, dy) = (self.x - around.x, self.y - around.y);

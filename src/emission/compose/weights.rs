@@ -1,18 +1,18 @@
-//! Weights of exemplars over a texture.
+//! Weight maps, which blend several exemplars over a texture.
 
 use crate::emission::params::Input;
 use crate::error::{Error, Result};
 use crate::image::Image;
 use glam::DVec2;
 
-/// By how much the sum of the weights may exceed 1, for rounding.
+/// Tolerance for rounding: the sum of the weights may exceed 1 by this amount.
 const ROUNDING: f32 = 1e-4;
 
-/// A further exemplar, and the weights with which its lights replace those of the first exemplar.
+/// A further exemplar, and the weight map by which its lights replace those of the first exemplar.
 #[derive(Clone, Copy)]
 pub struct Style<'a> {
     pub input: Input<'a>,
-    /// Its unwarped pixels per texel, in `[1e-3, 1e3]`.
+    /// Unwarped pixels of this exemplar per texel, in `[1e-3, 1e3]`.
     pub scale: f64,
     /// Weight of this exemplar in `[0, 1]`: an image of one channel, stretched over the texture. The first exemplar's
     /// weight is 1 minus the weights of all further exemplars.
@@ -23,8 +23,8 @@ pub struct Style<'a> {
 pub struct Weights(Vec<Image>);
 
 impl Weights {
-    /// Errors: maps of different size or of several channels, values outside of [0, 1], weights that exceed 1
-    /// together.
+    /// Builds the weight maps. Errors: maps of different sizes or of several channels; values outside [0, 1]; weights
+    /// whose sum exceeds 1.
     pub fn new(styles: &[Style]) -> Result<Self> {
         let Some(map) = styles.first().map(|s| s.weights) else { return Ok(Self(Vec::new())) };
         let mut rest = Image::new(map.width, map.height, 1)?;
@@ -54,7 +54,8 @@ impl Weights {
         Ok(Self(maps))
     }
 
-    /// The weight of an exemplar at a point of the texture, whose sides are 1.
+    /// The weight of an exemplar at a point of the texture, interpolated; coordinates run from 0 to 1 over the
+    /// texture.
     pub fn at(&self, exemplar: usize, at: DVec2) -> f32 {
         let Some(map) = self.0.get(exemplar) else { return 1.0 };
         let last = DVec2::new(map.width as f64, map.height as f64) - 1.0;

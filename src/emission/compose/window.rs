@@ -1,4 +1,4 @@
-//! A texture that fits inside the exemplar is a part of it.
+//! Finds the part of the exemplar that a texture copies if it fits inside the exemplar.
 
 use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::emission::params::Params;
@@ -6,7 +6,7 @@ use crate::emission::quilt::patch_map::{PatchMap, Shift};
 use crate::error::Result;
 use glam::DVec2;
 
-/// A part of the exemplar as large as the texture.
+/// A part of the exemplar with the size of the texture.
 pub struct Window {
     pub corner: DVec2,
     /// Whether the photo shows every pixel of this part.
@@ -14,8 +14,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Finds the part, among those that are fully shown, whose share of light is nearest to the exemplar's, and moves
-    /// it back by the offset. `None` where no part is fully shown.
+    /// Finds the fully shown part whose lit share is closest to the exemplar's, and moves it by minus the offset.
+    /// `None` if no part is fully shown.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));
@@ -48,7 +48,7 @@ impl Window {
     }
 }
 
-/// The patch map of a texture that is a part of the exemplar.
+/// The patch map of a texture that copies a part of the exemplar: a single shift.
 pub fn copy(corner: DVec2, (width, height): (usize, usize), pitch: DVec2) -> PatchMap {
     let working = (-corner / pitch).round();
     PatchMap::single(width, height, Shift { working: [working.x as i32, working.y as i32], exact: -corner })

@@ -1,9 +1,9 @@
-//! Sums over rectangles of a mask in constant time (Crow 1984).
+//! Summed-area table: sums over rectangles of an image in constant time (Crow 1984).
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Sums over rectangles of a mask in constant time (Crow 1984).
+/// A summed-area table of a mask or of integers.
 pub struct AreaSums {
     width: usize,
     sums: Vec<u32>,
@@ -14,8 +14,8 @@ impl AreaSums {
         Self::of(|i| u32::from(mask(i)), width, height)
     }
 
-    /// Sums over rectangles of whole numbers. Running sums wrap around, which does no harm as long as the sum of each
-    /// rectangle asked for stays below 2³².
+    /// A table of the integers that `value` gives for each pixel index. Running sums may wrap around; a rectangle's
+    /// sum is correct as long as it is below 2³².
     pub fn of(value: impl Fn(usize) -> u32, width: usize, height: usize) -> Result<Self> {
         let stride = width + 1;
         let mut sums = try_vec(stride * (height + 1), 0u32)?;
@@ -29,7 +29,7 @@ impl AreaSums {
         Ok(Self { width: stride, sums })
     }
 
-    /// The number of set pixels, or the sum of the numbers, in `[x, x + w) × [y, y + h)`.
+    /// The number of set pixels, or the sum of the values, in `[x, x + w) × [y, y + h)`.
     pub fn count(&self, x: usize, y: usize, w: usize, h: usize) -> usize {
         let at = |x: usize, y: usize| self.sums[y * self.width + x];
         let rows = |x: usize| at(x, y + h).wrapping_sub(at(x, y));

@@ -1,9 +1,9 @@
-//! Bars of a luminous ceiling.
+//! Detects the bars between the panes of a luminous ceiling.
 //!
 //! The bars of a skylight or of a luminous ceiling run straight along the axes of the unwarped image. Far from the
-//! camera they are thinner than a photo pixel, or drown in the bloom of the panes. Yet a bar is darker than the panes
-//! on both sides of it over all of its length: the median over a whole line shows it where single pixels do not.
-//! Beyond the last bar that shows, the period of the bars gives the next ones.
+//! camera they are thinner than a photo pixel, or the bloom of the panes covers them. Yet over all of its length, a
+//! bar is darker than the panes on both sides. The median over a whole line therefore detects it where single pixels
+//! do not. Bars beyond the last visible one are predicted by the period of the bars.
 
 use super::foreshortening::LocalMap;
 use crate::error::Result;
@@ -13,26 +13,29 @@ use crate::image::{Image, try_vec};
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Widest bar, as a share of the longer side of the unwarped image. [bench photos:tune]
+/// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const WIDEST: f64 = 0.05;
-/// Smallest share of the panes' luminance that a bar lacks, in the median along it. [bench photos:tune]
+/// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
+/// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
-/// Share of the lines across a bar that must show light on both sides of it. [bench photos:tune]
+/// Minimum share of the positions along a bar with light on both sides of the bar. [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
-/// Number of stretches along a bar that are judged one by one. [convention]
+/// Number of stretches into which a bar is divided along its length; each is tested separately. [convention]
 const STRETCHES: usize = 24;
-/// Number of stretches that a crossing bar may cover: the widest bar lies in this many. [convention]
+/// A crossing bar hides at most this many consecutive stretches of a bar, even if it has the maximum width.
+/// [convention]
 const CROSSING: usize = 2;
-/// Depth of a stretch, as a share of the bar's depth, below which a sharp view of the stretch shows that there is no
-/// bar. [bench photos:tune]
+/// A stretch that the photo shows sharply has no bar if its depth is below this share of the whole bar's depth.
+/// [bench photos:tune]
 const ABSENT: f32 = 0.25;
-/// Largest relative difference between the distances of bars that form a period. [bench photos:tune]
+/// Maximum relative deviation of the distances between bars from their mean, for bars with a period.
+/// [bench photos:tune]
 const SAME_PERIOD: f64 = 0.12;
 
-/// The unwarped lights of a plane, and where the photo shows it.
+/// A plane with lights in the unwarped image, and the map into the photo.
 pub struct LitPlane<'a> {
     pub unwarped: &'a Image,
-    /// Confidence that a pixel is light.
+    /// Confidence of each pixel that it is light.
     pub light: &'a Image,
     pub valid: &'a Image,
     pub to_photo: Option<Homography>,
@@ -48,7 +51,8 @@ impl LitPlane<'_> {
     }
 }
 
-/// A bar: its first and last position across, and its depth, the share of the panes' luminance that it lacks.
+/// A bar: its first and last position across, and its depth. The depth is the share of the panes' luminance that the
+/// bar lacks.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     pub first: usize,
@@ -62,15 +66,17 @@ impl Bar {
     }
 }
 
-/// The plane seen along one of its axes: `across` and `along` are the numbers of positions across and along the bars.
+/// The plane as lines parallel to the bars of one direction. `across` and `along` are the numbers of positions across
+/// and along the bars.
 pub struct Lines<'a> {
     plane: &'a LitPlane<'a>,
     is_column: bool,
     across: usize,
     along: usize,
     widest: usize,
-    /// By what share each pixel is darker than the light beside it. The light beside it is the darker of two pixels:
-    /// the brightest lit pixel nearby on either side. NaN where a side has no light.
+    /// Share by which each pixel is darker than the light beside it; at least 0. The light of a side is the brightest
+    /// lit pixel within `widest` positions on that side. The darker of the two sides counts. NaN if a side has no
+    /// light.
     depth: Vec<f32>,
 }
 
@@ -105,15 +111,16 @@ impl<'a> Lines<'a> {
         if self.is_column { v * width + u } else { u * width + v }
     }
 
-    /// Photo pixels per unwarped pixel across the bars.
+    /// Sharpness of the photo across the bars: photo pixels per unwarped pixel.
     fn sharpness(&self, u: usize, v: usize) -> f64 {
         let i = self.index(u, v);
         let pixel = LocalMap::new(self.plane.to_photo, self.plane.unwarped.centre_of(i)).photo_pixel();
         1.0 / if self.is_column { pixel.x } else { pixel.y }
     }
 
-    /// Median depth along a position, weighed by the sharpness of the photo; `None` where fewer than `least` pixels
-    /// have light on both sides. A bar is dark over all of its length, and a bar that crosses it in a few places only.
+    /// Median depth of the pixels in `along` at position `u` across, weighted by sharpness. `None` if fewer than
+    /// `least` pixels have light on both sides. A bar is dark over all of its length; a bar that crosses it is dark in
+    /// a few places only.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.stretch()) {
@@ -130,7 +137,7 @@ impl<'a> Lines<'a> {
         self.along.div_ceil(STRETCHES)
     }
 
-    /// The bars that the photo shows.
+    /// Finds the bars that the photo shows.
     pub fn bars(&self) -> Vec<Bar> {
         let least = (self.along as f64 * MIN_LENGTH) as usize;
         let profile: Vec<Option<f32>> = (0..self.across).map(|u| self.median_depth(u, 0..self.along, least)).collect();
@@ -139,7 +146,8 @@ impl<'a> Lines<'a> {
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
-        // Take the deepest position first. A bar extends to where its depth falls to half.
+        // Take the deepest position first. A bar extends as far as the depth is at least half of the depth at this
+        // position.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
@@ -147,7 +155,7 @@ impl<'a> Lines<'a> {
             let first = (0..=peak).rev().take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             let last = (peak..self.across).take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             bars.push(Bar { first, last, depth });
-            // The flanks belong to the bar as well.
+            // The flanks, where the depth falls off, belong to the bar as well: clear them.
             let falls = |a: usize, b: usize| excess[b] <= excess[a] && excess[b] > 0.0;
             let start = (1..=first).rev().take_while(|&u| falls(u, u - 1)).last().map_or(first, |u| u - 1);
             let end = (last..self.across - 1).take_while(|&u| falls(u, u + 1)).last().map_or(last, |u| u + 1);
@@ -158,7 +166,8 @@ impl<'a> Lines<'a> {
         bars
     }
 
-    /// The bars that the period of the shown bars predicts beyond the first and the last one.
+    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns none if they have no
+    /// period.
     pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
         let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
@@ -178,7 +187,7 @@ impl<'a> Lines<'a> {
         beyond
     }
 
-    /// The stretches along a bar.
+    /// Divides a bar into its stretches, and measures each.
     pub fn stretches(&self, bar: &Bar) -> Vec<Stretch> {
         let middle = (bar.first + bar.last) / 2;
         let starts = (0..self.along).step_by(self.stretch());
@@ -193,12 +202,13 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Takes a bar out of the light, except where a view at least as sharp as `bluntest` shows no bar.
+    /// Removes a bar from the light, except in stretches where the photo shows no bar although its sharpness is at
+    /// least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, the bar does not stand out from it, so the stretch looks as if the bar were
-        // absent.
+        // Where another bar crosses, this bar does not stand out from the other one, so the stretch seems to have no
+        // bar.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;
@@ -218,22 +228,24 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A stretch of a bar: its positions along, the depth of the bar there, and how sharply the photo shows it.
+/// A stretch of a bar: its positions along the bar, the depth there, and the photo's sharpness in photo pixels per
+/// unwarped pixel.
 pub struct Stretch {
     along: Range<usize>,
     depth: f32,
     sharpness: f64,
 }
 
-/// The sharpness of the bluntest view in which a bar shows.
+/// The least sharpness among the stretches in which a bar is visible.
 pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
     let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 
-/// For each position of a line, the brightest light among the `count` positions before it; 0 without any.
+/// For each position of a line, computes the brightest light among the `count` positions before it; 0 if there is
+/// none.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
-    // Positions that may still become the brightest of a window, the brightest first.
+    // Keep the positions that may still become the maximum of a window, the brightest first (monotonic queue).
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();
     for (u, (light, brightest)) in light.zip(brightest).enumerate() {
         while window.front().is_some_and(|(first, _)| first + count < u) {

@@ -1,4 +1,4 @@
-//! Connected components of a light mask: one lamp each.
+//! Connected components of a light mask: each is one lamp.
 
 use crate::error::Result;
 use crate::image::try_vec;
@@ -9,9 +9,9 @@ use glam::DVec2;
 pub struct Component {
     /// Number of pixels.
     pub area: usize,
-    /// Mean of its pixel centres.
+    /// Mean of the pixel centres.
     pub centre: DVec2,
-    /// First and last column and row, inclusive.
+    /// First column and row, last column and row, inclusive.
     pub min: [usize; 2],
     pub max: [usize; 2],
 }
@@ -23,14 +23,14 @@ impl Component {
 }
 
 pub struct Components {
-    /// For every pixel 0, or one more than the index of its component.
+    /// For every pixel 0, or the index of its component plus 1.
     pub labels: Vec<u32>,
-    /// In the order of their first pixel, row by row.
+    /// The components in the order of their first pixel, row by row.
     pub list: Vec<Component>,
 }
 
 impl Components {
-    /// Removes the components for whose index `goes` returns true, and renumbers the rest.
+    /// Removes the components for whose index `goes` returns true, and renumbers the others.
     pub fn remove(&mut self, goes: impl Fn(usize) -> bool) {
         let mut left = 0;
         let numbers: Vec<u32> = std::iter::once(0)
@@ -53,7 +53,8 @@ pub fn find(width: usize, height: usize, lit: impl Fn(usize) -> bool) -> Result<
     let mut labels = try_vec(width * height, 0u32)?;
     let mut parent: Vec<u32> = vec![0];
 
-    // First pass: the smallest label among the four neighbours already seen; remember which labels meet.
+    // First pass: give each pixel the smallest label among its four neighbours already visited; record which labels
+    // meet.
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
@@ -80,7 +81,7 @@ pub fn find(width: usize, height: usize, lit: impl Fn(usize) -> bool) -> Result<
         }
     }
 
-    // Second pass: final numbers in order of appearance, and the statistics of each.
+    // Second pass: assign final numbers in order of appearance, and measure each component.
     let mut number = vec![0u32; parent.len()];
     let mut list: Vec<Component> = Vec::new();
     for (i, label) in labels.iter_mut().enumerate().filter(|(_, l)| **l != 0) {
@@ -132,7 +133,7 @@ mod tests {
         assert_eq!(found.list[1].centre, DVec2::new(5.5, 0.5));
         assert!(found.labels.iter().zip(&lit).all(|(&l, &on)| (l != 0) == on));
 
-        // Without one it is as if that had never been.
+        // The result must equal that of an image without the removed component's pixels.
         let (mut rest, gone) = (found, 1);
         let label = gone as u32 + 1;
         let alone = find(6, 4, |i| lit[i] && rest.labels[i] != label).unwrap();

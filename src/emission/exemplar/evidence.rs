@@ -1,22 +1,23 @@
-//! Lamps as evidence: where they are and how large, each weighed by the photo pixels that show it.
+//! Lamps as evidence for a lattice: their position and size, weighted by the number of photo pixels that show them.
 
 use super::components::Component;
 use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Largest relative difference, in each of both sides, of two lamps that are alike. [judged on 20 photos]
+/// Maximum relative difference between the sides of two lamps of one kind. [judged on 20 photos]
 const LIKE: f64 = 0.2;
-/// Pixels of the photo by which a side may be measured wrongly, and by which bloom may lengthen a side. They are more
-/// unwarped pixels where the photo is magnified more. [judged on 20 photos]
+/// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the
+/// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
-/// The same two limits for lamps that only may be alike: another fact, such as a place on a lattice, must confirm them.
-/// [judged on 20 photos]
+/// Lamps are possibly of one kind if their sides differ by at most the share `MAYBE_LIKE` and, for each of the two
+/// lamps, `MAYBE_BLUR` photo pixels of measurement error. Other evidence, such as their position on a lattice, must
+/// confirm it. [judged on 20 photos]
 const MAYBE_LIKE: f64 = 0.33;
 const MAYBE_BLUR: f64 = 2.5;
 
-/// A lamp of the exemplar as evidence.
+/// A lamp of the exemplar as evidence: index of its component, position and size in unwarped pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence {
     pub component: usize,
@@ -24,7 +25,7 @@ pub struct Evidence {
     pub size: DVec2,
     /// Number of photo pixels that show the lamp.
     pub weight: f64,
-    /// Unwarped pixels along x and y by which one photo pixel of blur moves the lamp's edges.
+    /// Distance in unwarped pixels by which the lamp's edges move, along x and y, if they move by one photo pixel.
     pub blur: DVec2,
 }
 
@@ -35,9 +36,10 @@ impl Evidence {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups lamps that are alike but for blur. In each group the lamps that the photo shows best come first.
+    /// Groups lamps that have equal sizes apart from blur. Within a group, the lamps with most photo pixels come
+    /// first.
     pub fn kinds(lamps: &[Self]) -> Vec<Vec<Self>> {
-        // Go from little blur to much, so that each lamp is compared with lamps of similar blur.
+        // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur.
         let mut order = lamps.to_vec();
         order.sort_by(|a, b| a.blur.length().total_cmp(&b.blur.length()));
         let mut kinds: Vec<Vec<Self>> = Vec::new();
@@ -55,14 +57,14 @@ impl Evidence {
         kinds
     }
 
-    /// Whether two lamps may have the same size, considering their blur.
+    /// Whether two lamps may have equal sizes, considering their blur.
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
         let slack = self.size.max(other.size) * LIKE + blur;
         (self.size - other.size).abs().cmple(slack).all()
     }
 
-    /// Whether two lamps may have the same size, if they lie at the same place of a lattice.
+    /// Whether two lamps may have equal sizes, with the wider tolerance for lamps at one site of a lattice.
     pub fn may_be_like(&self, other: &Self) -> bool {
         let slack = self.size.max(other.size) * MAYBE_LIKE + (self.blur + other.blur) * MAYBE_BLUR;
         (self.size - other.size).abs().cmple(slack).all()

@@ -1,17 +1,17 @@
-//! Foreshortening: how finely the photo shows each part of the unwarped image.
+//! Foreshortening: the number of photo pixels that show each part of the unwarped image.
 
 use crate::geometry::Homography;
 use glam::{DMat2, DVec2};
 
-/// The map from the unwarped image into the photo near a point, to first order.
+/// The map from the unwarped image into the photo near a point: its first-order approximation.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalMap {
-    /// Photo pixels per unwarped pixel.
+    /// Derivative of the map, in photo pixels per unwarped pixel.
     jacobian: DMat2,
 }
 
 impl LocalMap {
-    /// The map near a point; without a photo the unwarped image is the photo.
+    /// The map near a point. Without a homography, the unwarped image stands for the photo.
     pub fn new(to_photo: Option<Homography>, at: DVec2) -> Self {
         let jacobian = to_photo.map_or(DMat2::IDENTITY, |h| {
             let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
@@ -20,17 +20,18 @@ impl LocalMap {
         Self { jacobian }
     }
 
-    /// Photo pixels per unwarped pixel, in area.
+    /// Area in photo pixels of one unwarped pixel.
     pub fn area(&self) -> f64 {
         self.jacobian.x_axis.perp_dot(self.jacobian.y_axis).abs()
     }
 
-    /// Unwarped pixels per photo pixel.
+    /// Derivative of the inverse map, in unwarped pixels per photo pixel.
     pub fn inverse(&self) -> DMat2 {
         self.jacobian.inverse()
     }
 
-    /// By how many unwarped pixels an edge across x, and an edge across y, move if they move by one pixel in the photo.
+    /// Distance in unwarped pixels by which edges perpendicular to x, and edges perpendicular to y, move if they move
+    /// by one pixel in the photo.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
@@ -38,8 +39,8 @@ impl LocalMap {
     }
 }
 
-/// The part of an unwarped image whose magnification in length, relative to the least magnified pixel, stays within a
-/// limit.
+/// The part of an unwarped image in which the magnification is limited. Magnification is a ratio of lengths, relative
+/// to the least magnified pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,
@@ -49,7 +50,7 @@ pub struct MagnificationLimit {
 }
 
 impl MagnificationLimit {
-    /// The limit for an image whose shown pixels are given; `None` where nothing lies beyond it.
+    /// The part of the shown pixels with at most `max_magnification`; `None` if that is all of them.
     pub fn new(to_photo: Homography, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
         let denominator = |i: usize| denominator(&to_photo, pixel_centre(i, width));
         let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
@@ -63,7 +64,7 @@ impl MagnificationLimit {
         shown.iter_mut().enumerate().for_each(|(i, shown)| *shown &= self.contains(pixel_centre(i, width)));
     }
 
-    /// Whether a point of the unwarped image is within the limit.
+    /// Whether the magnification at a point of the unwarped image is within the limit.
     pub fn contains(&self, at: DVec2) -> bool {
         denominator(&self.to_photo, at) <= self.max_denominator
     }

@@ -1,8 +1,9 @@
-//! Fragments: specks, and pieces of light that broke off a lamp, for example between the blades of a louvre.
+//! Detects fragments: specks, and pieces of light that are only parts of a lamp, for example between the blades of a
+//! louvre.
 //!
-//! A lamp usually has others of its kind. A piece is a fragment, not a lamp, if it covers far fewer photo pixels than a
-//! lamp of the smallest kind would cover in its place, and either lies close to another light or has few of its like. A
-//! fragment tells where light is, but is not shown.
+//! A lamp usually has others of its kind. A piece of light is a fragment if it covers far fewer photo pixels than a
+//! lamp of the smallest kind would cover in its place. In addition, it must lie close to another light, or be one of
+//! few pieces of its kind. Fragments count as light in the pattern, but the texture does not show them.
 
 use super::components::{Component, Components};
 use super::evidence::Evidence;
@@ -11,14 +12,15 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Smallest share of all lamps' photo pixels that makes a group of alike pieces a kind of lamps. [judged on 20 photos]
-const MIN_KIND: f64 = 0.15;
-/// Share of the photo pixels of a lamp below which a piece is a fragment. [judged on 20 photos]
-const MAX_FRAGMENT: f64 = 0.2;
-/// Largest distance from a piece to the light that it broke off, as a multiple of the longer side of a lamp.
+/// A group of similar pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
 /// [judged on 20 photos]
+const MIN_KIND: f64 = 0.15;
+/// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
+const MAX_FRAGMENT: f64 = 0.2;
+/// A fragment is close to the light that it broke off if their distance is at most this multiple of the longer side of
+/// a lamp. [judged on 20 photos]
 const CLOSE: f64 = 0.35;
-/// A group of this many alike pieces or more is a kind of lamps, however small, unless the pieces lie close to other
+/// At least this many similar pieces count as a kind of lamps, however small they are, unless they lie close to other
 /// lights. [judged on 20 photos]
 const MANY: usize = 3;
 
@@ -31,7 +33,8 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Major kinds: those that make up a good part of the light.
+    // Find the major kinds, which have a large share of the lamps' photo pixels, and the major kind with the smallest
+    // lamps.
     let kinds = Evidence::kinds(&lamps);
     let is_major = |kind: &&Vec<Evidence>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {
@@ -52,7 +55,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     }
 }
 
-/// Whether the bounding box of another component lies within `reach`.
+/// Whether another component's bounding box lies within `reach` of the bounding box of component `own`.
 fn has_neighbour(components: &Components, own: usize, reach: f64) -> bool {
     let corners = |c: &Component| {
         let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);

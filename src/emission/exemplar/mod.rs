@@ -1,4 +1,4 @@
-//! The exemplar: the usable part of the unwarped image, its lamps, and its reduced size for the synthesis.
+//! The exemplar: the usable part of the unwarped image, its lamps, and its reduced image for the synthesis.
 
 pub mod area_sums;
 pub mod bars;
@@ -22,26 +22,26 @@ use foreshortening::{LocalMap, MagnificationLimit};
 use roles::Role;
 use working::{Sources, Working};
 
-/// Confidence from which a pixel is light. [convention]
+/// A pixel counts as light if its confidence is at least this. [convention]
 pub const LIT: f32 = 0.5;
 
-/// Fewest photo pixels that a lamp covers, unless no light covers as many: roughly a disc three pixels across.
-/// [judged on 5 photos]
+/// A lamp must cover at least this number of photo pixels, roughly a disc three pixels across. If all lights are
+/// smaller, the largest light sets the minimum. [judged on 5 photos]
 const MIN_LAMP: f64 = 9.0;
 
-/// Lit share of the plane from which it is a luminous ceiling. [bench photos:tune]
+/// The plane counts as a luminous ceiling if at least this share of it is lit. [bench photos:tune]
 pub const LUMINOUS: f64 = 0.3;
 
-/// What the photo shows of the lit plane.
+/// The usable part of the unwarped image with its lights.
 pub struct Exemplar {
     pub width: usize,
     pub height: usize,
-    /// Which pixels are finite and on the plane.
+    /// Whether each pixel is finite and on the plane.
     pub shown: Vec<bool>,
     pub components: Components,
     /// The role of each component.
     pub roles: Vec<Role>,
-    /// Pixels of the photo that show each component.
+    /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,
     /// Share of the shown pixels that is lit.
     pub lit_share: f64,
@@ -51,8 +51,8 @@ pub struct Exemplar {
 }
 
 impl Exemplar {
-    /// Cuts an exemplar out of its input. Parts beyond `max_magnification` are left out, unless that is 0. Errors: no
-    /// valid pixel, no light (`Degenerate`).
+    /// Analyses the input. If `max_magnification` is above 0, parts with a larger magnification are left out. Errors:
+    /// no valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, .. } = *input;
         let (width, height) = (image.width, image.height);
@@ -87,13 +87,14 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
+    /// The statistics of the pattern, with lengths in unwarped pixels. `periods` has the meaning of
+    /// [`Pattern::periods`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
-        // Count as lamps the components that the texture may show as one piece.
+        // Components that the texture may show as one piece count as lamps.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
-        // The pattern of a luminous ceiling continues without the dark ceiling around its panes, so measure within
-        // their box.
+        // The pattern of a luminous ceiling continues without the dark border around its panes, so measure within the
+        // bounding box of the panes.
         let [low, high] = if self.is_luminous_ceiling() { self.box_of_lights() } else { [[0, 0], [*width, *height]] };
         let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
         let colour = |i: usize| {
@@ -103,9 +104,9 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
-    /// How much of an unwarped pixel is light, by `light`, its confidence. Pixels of components count, and so do the
-    /// unlit pixels where confidence fades out beside them; lit pixels without a component give 0. An index beyond the
-    /// last pixel gives 0.
+    /// The share of an unwarped pixel that light covers: the confidence in `light`. Pixels of components count, and
+    /// unlit pixels beside them, where the confidence fades out. Pixels that are lit but belong to no component give
+    /// 0, and so does an index beyond the last pixel.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
@@ -114,12 +115,12 @@ impl Exemplar {
         }
     }
 
-    /// Whether the plane is a luminous ceiling or a skylight: light with bars, rather than lamps on a ceiling.
+    /// Whether the plane is a luminous ceiling or a skylight: panes divided by bars, rather than lamps on a ceiling.
     pub fn is_luminous_ceiling(&self) -> bool {
         self.lit_share >= LUMINOUS
     }
 
-    /// The first and the last column and row with light.
+    /// The bounding box of the lights: first column and row, last column and row, inclusive.
     fn box_of_lights(&self) -> [[usize; 2]; 2] {
         let corners =
             |a: [usize; 2], b: [usize; 2], pick: fn(usize, usize) -> usize| [pick(a[0], b[0]), pick(a[1], b[1])];
@@ -133,7 +134,7 @@ impl Exemplar {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }
 
-    /// The lamps of some roles as evidence, those that the photo shows best first.
+    /// The lamps with certain roles as evidence; lamps with most photo pixels come first.
     pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
         let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
         let mut all: Vec<Evidence> =
@@ -142,19 +143,19 @@ impl Exemplar {
         all
     }
 
-    /// The components that move as one piece, and their indices.
+    /// The components that are copied as one piece, each after its index.
     pub fn pieces(&self) -> impl Iterator<Item = (usize, &Component)> {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }
 
-    /// The part that is magnified at most `max_magnification` times as much as the sharpest pixel; `None` where that is
-    /// the whole exemplar, or without a photo.
+    /// The part of the exemplar with at most `max_magnification` relative to the least magnified pixel; `None` if that
+    /// is the whole exemplar, or without a photo.
     pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
         MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
     }
 }
 
-/// Which pixels are finite and on the plane. Errors: `Degenerate` without any.
+/// Whether each pixel is finite and on the plane. Errors: `Degenerate` if no pixel is.
 fn shown_pixels(input: &Input) -> Result<Vec<bool>> {
     let Input { unwarped: image, light, valid, .. } = *input;
     let mut shown = try_vec(image.width * image.height, false)?;
@@ -170,14 +171,14 @@ fn shown_pixels(input: &Input) -> Result<Vec<bool>> {
     ))
 }
 
-/// The connected lights, and the pixels of the photo that show each. Errors: `Degenerate` without any.
+/// Finds the connected lights, and the number of photo pixels that show each. Errors: `Degenerate` if there is none.
 fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     let Input { unwarped: image, light, photo, .. } = *input;
     let (width, height) = (image.width, image.height);
     let mut components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
     let mut photo_area = photo_areas(&components, photo.map(|p| p.1));
     if photo.is_some() {
-        // Drop lights that cover less of the photo than a lamp must: crumbs of other lights' edges, or noise.
+        // Drop lights with fewer photo pixels than a lamp has: remnants of other lights' edges, or noise.
         let least = photo_area.iter().copied().fold(0.0, f64::max).min(MIN_LAMP);
         components = components::find(width, height, |i| {
             components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= least)
@@ -192,7 +193,7 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     Ok((components, photo_area))
 }
 
-/// The area of each component in the photo, to first order; without a photo, that in the unwarped image.
+/// Area of each component in the photo, to first order; without a photo, its area in the unwarped image.
 fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
     components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
 }

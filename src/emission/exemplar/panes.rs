@@ -1,7 +1,8 @@
-//! Panes of a luminous ceiling: parted along the bars between them, and each made whole.
+//! Separates the panes of a luminous ceiling along the bars between them, and fills gaps within each pane.
 //!
-//! The mask of lights joins panes where the bars between them drown in bloom, and cuts panes to pieces along their
-//! leading where the camera is near. The bars ([`super::bars`]) say what a pane is, near and far.
+//! The light mask joins panes where bloom covers the bars between them. Where the camera is near, it cuts panes to
+//! pieces along their leading, the lead strips inside a pane. The detected bars ([`super::bars`]) define the panes,
+//! near and far.
 
 use super::LUMINOUS;
 use super::bars::{self, Bar, Lines, LitPlane};
@@ -12,17 +13,17 @@ use crate::job::Job;
 use glam::Vec3;
 use std::ops::Range;
 
-/// A cell between bars is a pane if at least this share of the cell is light. [bench photos:real]
+/// A cell between bars counts as a pane if at least this share of it is lit. [bench photos:real]
 const PANE: f64 = 0.35;
-/// A pixel that the mask left out belongs to the pane of its cell if it reaches this share of the pane's median
-/// luminance. [bench photos:real]
-const BRIGHT: f32 = 0.5;
-/// Largest width of a dark line inside a pane that counts as leading, as a share of the cell's side.
+/// A pixel outside the mask is added to its pane if it has at least this luminance, relative to the pane's median.
 /// [bench photos:real]
+const BRIGHT: f32 = 0.5;
+/// A dark line inside a pane counts as leading and is filled if it is at most this wide, as a share of the cell's
+/// side. [bench photos:real]
 const LEADING: f64 = 0.06;
 
-/// The light of the panes without the bars between them; `None` where the plane is no luminous ceiling, or the light
-/// covers no bar.
+/// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
+/// or if the mask covers no bar.
 pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let pixels = plane.light.data.len();
     let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();
@@ -48,7 +49,8 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     Ok(Some(light))
 }
 
-/// Takes the bars across one axis out of the light. Returns the bars, in order, and whether any lit pixel was removed.
+/// Removes the bars of one direction from the light. Returns the bars, in order, and whether any lit pixel was
+/// removed.
 fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut bars = lines.bars();
     let mut is_changed = false;
@@ -59,8 +61,8 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
         bluntest = bluntest.min(own);
         is_changed |= lines.cut(bar, &stretches, own, light);
     }
-    // A bar predicted by the period is not cut where the photo shows no bar although it is at least as sharp there as
-    // the bluntest view of a bar that shows.
+    // The photo may show no bar where the period predicts one. Such a bar is kept as light if the photo is at least as
+    // sharp there as in the least sharp view of a visible bar.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
         is_changed |= lines.cut(bar, &lines.stretches(bar), bluntest, light);
@@ -70,14 +72,14 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     (bars, is_changed)
 }
 
-/// The positions between bars.
+/// The ranges of positions between bars.
 fn between(bars: &[Bar], size: usize) -> Vec<Range<usize>> {
     let starts = std::iter::once(0).chain(bars.iter().map(|bar| bar.last + 1));
     let ends = bars.iter().map(|bar| bar.first).chain(std::iter::once(size));
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end).collect()
 }
 
-/// A cell between bars.
+/// A cell between bars, given by its columns and rows.
 struct Cell<'a> {
     plane: &'a LitPlane<'a>,
     luminances: &'a [f32],
@@ -93,21 +95,20 @@ impl Cell<'_> {
     }
 }
 
-/// Makes one pane of a cell that holds enough light: fills its leading, and adds the bright parts that the mask left
-/// out.
+/// If a cell holds enough light, makes it one pane: fills its leading, and adds bright parts that the mask left out.
 fn fill(cell: &Cell, light: &mut Image) {
     let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
     if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {
         return;
     }
 
-    // Close the leading along rows and columns.
+    // Fill the leading along rows and columns.
     let width = light.width;
     let (columns, rows) = (cell.columns.clone(), cell.rows.clone());
     rows.clone().for_each(|y| close(light, (y * width + columns.start, 1, columns.len())));
     columns.clone().for_each(|x| close(light, (rows.start * width + x, width, rows.len())));
 
-    // Add the bright pixels of the pane's box.
+    // Add the bright pixels in the bounding box of the pane's lit pixels.
     let range = |of: fn(usize, usize) -> usize| {
         let positions = || lit.iter().map(|&i| of(i, width));
         positions().min().unwrap_or(0)..=positions().max().unwrap_or(0)
@@ -121,8 +122,8 @@ fn fill(cell: &Cell, light: &mut Image) {
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Fills the narrow gaps of a line of pixels. The line is given by its first pixel, the step to the next pixel, and the
-/// number of pixels.
+/// Fills narrow gaps between lit pixels of a row or column. The line is given by its first pixel, the step to the next
+/// pixel, and the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * LEADING) as usize;
     let mut last = None;
@@ -147,8 +148,8 @@ mod tests {
         n % 40 < 5 || n % 40 >= 35
     }
 
-    /// Panes of 30 pixels with bars of 10 between them, as bright as given, and a mask that covers all of it but a
-    /// margin.
+    /// A ceiling of panes of 30 pixels, separated by bars of 10 pixels with the given luminance. The mask covers all
+    /// of it except a margin.
     fn ceiling(bar: impl Fn(usize, usize) -> f32) -> [Image; 3] {
         let is_inside = |n: usize| (5..SIDE - 5).contains(&n);
         let colour = |x: usize, y: usize| match is_inside(x) && is_inside(y) {
@@ -180,11 +181,11 @@ mod tests {
 
     #[test]
     fn bars_that_no_longer_show_go_on_by_their_period() {
-        // The bars between rows show in the upper half only. Without a photo all is equally sharp, and the lower half
-        // has none.
+        // The bars between rows are visible in the upper half only. Without a homography, all parts are equally sharp,
+        // so there are no bars in the lower half.
         let fading = |x: usize, y: usize| if y < 150 || is_bar(x) { 0.5 } else { 1.0 };
         assert_eq!(panes(&ceiling(fading)).unwrap().len(), 24);
-        // The photo shows the lower rows ever less sharply.
+        // With a homography that makes the lower rows ever less sharp, the period predicts the bars there.
         let [unwarped, light, valid] = ceiling(fading);
         let towards = glam::DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.01, 0.0, 0.0, 1.0]);
         let plane = LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: Some(Homography(towards)) };
@@ -198,7 +199,7 @@ mod tests {
         let [unwarped, mut light, valid] = ceiling(|_, _| 0.2);
         let mut leaded = unwarped.try_clone().unwrap();
         for y in 47..73 {
-            // A diagonal line of lead, and a corner without light.
+            // A diagonal line of lead, and a corner that the mask left out.
             leaded.pixel_mut(y, y).fill(0.3);
             light.pixel_mut(y, y).fill(0.0);
             (65..73).for_each(|x| light.pixel_mut(x, y.min(55)).fill(0.0));

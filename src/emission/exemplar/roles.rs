@@ -1,41 +1,42 @@
-//! The role of each component: a whole lamp, a part of one, or a light that runs through.
+//! Classifies the components by role: whole lamp, part of a lamp, or a light that runs through the exemplar.
 
 use super::components::{Component, Components};
 
-/// A lamp that the border cuts resembles a whole lamp if its sides are at most this many times those of the whole lamp.
+/// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
 /// [judged on 5 photos]
 const CUT_LAMP_SLACK: f64 = 1.35;
-/// A lamp that touches the border with at most this share of its width still counts as whole, because masks fray. A
-/// border that really cuts a lamp meets all of its width; a border that meets this share of a round lamp's width cuts
-/// off only a twentieth of the lamp. [judged on 5 photos]
+/// A lamp counts as whole if the number of its pixels at the border is at most this share of its width, because masks
+/// fray. Its width is the ratio of its area to the diagonal of its bounding box. A square lamp that the border cuts
+/// exceeds the limit. A disc meets it until the border touches a third of its diameter, which cuts off less than a
+/// hundredth of the disc. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through if it covers this share of the shown pixels on a line through it. [rounding]
+/// A light runs through if it covers this share of the shown pixels in the row or column through its centre.
+/// [rounding]
 const RUNS_THROUGH: f64 = 0.97;
 
 /// The role of a component of the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A lamp that ends inside the shown region.
+    /// A lamp that ends inside the region that the photo shows.
     Whole,
-    /// A whole lamp, though a few of its pixels lie at the border.
+    /// A lamp that counts as whole although a few of its pixels touch the border.
     WholeAtBorder,
-    /// The visible part of a lamp that the border cuts and that resembles a whole lamp. It is not shown: whole lamps
-    /// take its place.
+    /// The visible part of a lamp that the border cuts and that resembles a whole lamp. The texture does not show it:
+    /// whole lamps take its place.
     Cut,
-    /// A light that the border cuts and that no whole lamp resembles. It moves as one piece, as far as the photo shows
-    /// it.
+    /// A light that the border cuts and that resembles no whole lamp. The visible part is copied as one piece.
     Partial,
-    /// A light that runs through the whole shown region. It follows the patches.
+    /// A light that runs through the whole region that the photo shows. It is copied patch by patch, not as one piece.
     Through,
 }
 
 impl Role {
-    /// Whether the component is a lamp that ends inside the shown region.
+    /// Whether the component is a lamp that ends inside the region that the photo shows.
     pub fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::WholeAtBorder)
     }
 
-    /// Whether the component moves as one piece.
+    /// Whether the component is copied as one piece.
     pub fn is_piece(self) -> bool {
         self.is_whole() || self == Self::Partial
     }
@@ -63,7 +64,7 @@ pub fn classify(components: &Components, shown: &[bool], width: usize, height: u
     components.list.iter().zip(&whole).zip(&contacts).map(role).collect()
 }
 
-/// How many pixels of each component lie at the border of the image or of the shown region.
+/// Counts the pixels of each component at the border of the image or of the region that the photo shows.
 fn contacts(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<usize> {
     let mut contacts = vec![0usize; components.list.len()];
     for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {

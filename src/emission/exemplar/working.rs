@@ -1,4 +1,4 @@
-//! The exemplar at its working size: the resolution of the synthesis (Fig. 12d).
+//! The exemplar at working size: the resolution of the synthesis (Fig. 12d).
 
 use super::components::Components;
 use crate::error::Result;
@@ -7,35 +7,36 @@ use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Contrast compares the inside of a lamp, up to `INNER` times its half box, with its surroundings, up to `OUTER` times
-/// its half box. A pixel belongs to the surroundings if less than `UNLIT` of it is light. [judged on 20 photos]
+/// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`; the surroundings
+/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if less than `UNLIT` of
+/// it is light. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;
 
-/// The exemplar at the size the synthesis works at.
+/// The exemplar, reduced to the working size of the synthesis.
 pub struct Working {
     pub width: usize,
     pub height: usize,
     /// Unwarped pixels per working pixel, along x and y.
     pub pitch: DVec2,
-    /// Linear RGB in lights, 0 elsewhere (Fig. 12c), relative to the brightest light.
+    /// Linear RGB of lights relative to the brightest light; 0 elsewhere (Fig. 12c).
     pub colour: Image,
-    /// Confidence that a pixel is light.
+    /// Confidence of each pixel that it is light; 0 for cut lamps ([`super::roles::Role::Cut`]).
     pub confidence: Vec<f32>,
-    /// Share of a pixel that is light.
+    /// Share of each pixel that is light, without cut lamps.
     pub coverage: Vec<f32>,
-    /// Pixels that patches may show: shown, and not part of a cut lamp ([`super::roles::Role::Cut`]).
+    /// Whether patches may show a pixel: it is shown and not part of a cut lamp ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// The pattern is read from these two: which pixels are shown, cut lamps included, and the share of each pixel that
-    /// is light.
+    /// The lattice is found from `shown` and `shown_coverage`, which include cut lamps: whether a pixel is shown, and
+    /// the share of it that is light.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    /// Mean luminance of the shown part of each pixel, lights included.
+    /// Mean luminance of the shown part of each pixel, including lights.
     pub luminance: Vec<f32>,
 }
 
-/// The full-size images that the working size is made from.
+/// The full-size images that are reduced to the working size.
 pub struct Sources<'a> {
     pub image: &'a Image,
     pub light: &'a Image,
@@ -52,8 +53,8 @@ impl Working {
         let (width, height) = (reduce(image.width), reduce(image.height));
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
-        // Average colour, confidence, light and validity together. In the channels for usable pixels, other pixels
-        // count as 0.
+        // Reduce colour, confidence, light and validity together. Pixels that are not usable count as 0 in channels 0
+        // to 5.
         const CHANNELS: usize = 9;
         let mut full = Image::new(image.width, image.height, CHANNELS)?;
         let mut brightest = 0f32;
@@ -83,7 +84,7 @@ impl Working {
         let confidence = try_collect(channel(3).copied())?;
         let coverage = try_collect(channel(4).copied())?;
 
-        // A working pixel is usable if all of it is. If that leaves no usable pixel, work at full size.
+        // A working pixel is usable if all of its full-size pixels are. If none is usable, work at full size.
         let all = |c: usize| try_collect(channel(c).map(|&v| v > 1.0 - 1e-4));
         let usable = all(5)?;
         if !usable.contains(&true) && side < longest {
@@ -94,13 +95,13 @@ impl Working {
         Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage, luminance })
     }
 
-    /// Whether half of a pixel is light.
+    /// Whether lamps cover at least half of a pixel.
     pub fn is_lit(&self, pixel: usize) -> bool {
         self.coverage[pixel] >= 0.5
     }
 
-    /// By how much a box, given by its centre and half its sides in unwarped pixels, is brighter than its unlit
-    /// surroundings; `None` where the box or the surroundings are not shown.
+    /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
+    /// half-extents in unwarped pixels. `None` if the box or the surroundings are not shown.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];
@@ -122,13 +123,13 @@ impl Working {
         (n > 0 && m > 0).then(|| inside / n as f64 - around / m as f64)
     }
 
-    /// The index of a pixel, if there is one.
+    /// The index of a pixel; `None` outside the image.
     pub fn index(&self, x: i32, y: i32) -> Option<usize> {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.width && y < self.height).then(|| y * self.width + x)
     }
 
-    /// The smallest box `[x0, y0, x1, y1)` that holds every usable pixel.
+    /// The bounding box `[x0, y0, x1, y1)` of all usable pixels.
     pub fn usable_box(&self) -> [usize; 4] {
         let mut bounds = [self.width, self.height, 0, 0];
         for (i, _) in self.usable.iter().enumerate().filter(|(_, u)| **u) {

@@ -1,4 +1,4 @@
-//! How much of a texel is light.
+//! Computes the share of each texel that light covers, from which areas and outlines of lamps follow.
 
 use crate::emission::exemplar::components::Components;
 use crate::error::Result;
@@ -7,18 +7,19 @@ use crate::image::try_vec;
 /// Steps from a texel to the eight texels around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// How much of each texel is light: at least 0.5 for a texel of a lamp, less for any other.
+/// Function from a texel index to its coverage, the share that is light: at least 0.5 for texels of a lamp, less for
+/// others.
 pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 
-/// Which texels are light, and how much of each.
+/// The lamps of a texture, with the coverage of each texel.
 pub struct Lights<'a> {
     width: usize,
     height: usize,
-    /// 0 or the number of the lamp.
+    /// For each texel 0, or the number of its lamp.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number the lamp's largest coverage, which stands for a texel that is all light: confidence need
-    /// not reach 1.
+    /// For each lamp number, the lamp's largest coverage. It stands for a texel that is entirely light, because the
+    /// confidence need not reach 1.
     full: Vec<f32>,
 }
 
@@ -36,12 +37,13 @@ impl<'a> Lights<'a> {
         inside.then(|| y as usize * self.width + x as usize)
     }
 
-    /// The number of a texel's lamp, or 0; `None` beyond the texture.
+    /// The number of a texel's lamp, or 0; `None` outside the texture.
     pub fn label(&self, at: [isize; 2]) -> Option<u32> {
         self.index(at).map(|i| self.labels[i])
     }
 
-    /// How much of a texel is light; `None` beyond the texture.
+    /// Coverage of a texel, relative to the largest coverage of its lamp or of the lamps around it; `None` outside the
+    /// texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));
@@ -53,9 +55,9 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// Calls `add` with each lit area that a texel adds to its lamp, and with the step from the texel to that area. A
-    /// texel deep in the lamp adds itself as a whole. A texel at the edge adds its own lit part, and its share of the
-    /// light in adjacent texels that are less than half light.
+    /// Calls `add` for each lit area that a texel contributes to its lamp: first the step from the texel to the texel
+    /// that holds the area, then the area. A texel deep in the lamp contributes itself as a whole. A texel at the edge
+    /// contributes its own lit part, and its share of the light in adjacent texels that are less than half light.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -73,8 +75,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// How much of a texel at the edge is light. Where coverage takes more than two texels to rise from 0 to 1, the
-    /// edge is blurred: there the coverage tells the distance from the edge, from which the share is computed.
+    /// The share of a texel at the edge that is light. If coverage takes more than two texels to rise from 0 to 1, the
+    /// edge is blurred. The distance from the edge then follows from the coverage, and the share from that distance.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

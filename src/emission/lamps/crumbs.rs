@@ -1,16 +1,16 @@
-//! Crumbs: pieces of light so small that resampling broke them off a lamp.
+//! Removes crumbs: small pieces of light that resampling broke off a lamp.
 
 use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
-/// Largest length, in texels, of a crumb whose area is below `crumb` texels.
+/// Maximum length, in texels, of a crumb with an area below `crumb` texels.
 pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Removes every connected piece of light that is smaller than `crumb` texels and compact, that is, no longer than its
-/// [`reach`]. Pieces for whose first and last column and row `is_cut` returns true stay: they are the rest of a larger
-/// light.
+/// Removes every connected piece of light with an area below `crumb` texels and a length of at most [`reach`]. Keeps
+/// pieces for which `is_cut` returns true, given their first and last column and row: they are the visible part of a
+/// larger light.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -30,8 +30,8 @@ pub fn remove(
     }
 }
 
-/// Removes the texels of lamps for which `goes`, called with lamp and texel, returns true. Also removes rims, the
-/// texels less than half light that the mask leaves out, if all lamp texels next to them go.
+/// Removes the texels for which `goes`, called with the lamp and the texel, returns true. Texels at a lamp's rim that
+/// are less than half light belong to no lamp; they are removed if all lamp texels next to them are removed.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

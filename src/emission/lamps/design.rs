@@ -1,13 +1,13 @@
-//! Designs: one size and one outline for all lamps of a kind.
+//! Designs: one size and one outline for all lamps of a kind, estimated from the photo.
 //!
-//! A photo shows lamps ever smaller and more blurred with their distance, and unwarping magnifies the blur: of equal
-//! lamps the far ones come out larger and ragged. Lamps that are alike but for blur are of one kind. The shape
-//! (rectangle or ellipse) and the size of a kind are estimated from all its lamps, each weighted by how finely the
-//! photo shows it; bloom adds equally many photo pixels to every lamp, so it shows as a size that grows with
-//! magnification, and is subtracted as far as the lamps show it. The outline is then exact at any resolution. Lamps of
-//! another shape keep their own outline.
+//! In a photo, distant lamps are small and blurred, and unwarping magnifies their blur. Of equal lamps, the distant
+//! ones therefore come out larger and ragged. Lamps that are equal apart from blur form a kind. Shape (rectangle or
+//! ellipse) and size of a kind are estimated from all its lamps, weighted by the number of photo pixels that show
+//! them. Bloom adds a constant number of photo pixels to every lamp. It therefore appears as a size that grows with
+//! magnification, and is subtracted as far as the lamps show it. The resulting outline is exact at any resolution.
+//! Lamps of another shape keep their own outline.
 //!
-//! Not modelled: rings, and lamps whose shapes are alike but turned.
+//! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
 use super::luminaire::Luminaire;
 use crate::emission::exemplar::Exemplar;
@@ -18,40 +18,44 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Largest length of an ellipse, as a multiple of its width: blur makes discs long, but longer shapes are tubes with
-/// round ends. And by how much better an ellipse must agree with the lamps than a rectangle, because blur rounds the
-/// corners of a rectangle. [judged on 20 photos]
+/// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width: blur elongates discs, but longer
+/// shapes are tubes with round ends. Its agreement with the lamps must also exceed that of a rectangle by `ROUNDER`,
+/// because blur rounds the corners of a rectangle. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const ROUNDER: f64 = 0.03;
-/// Largest area of a lamp, in photo pixels, whose shape blur alone may explain; ratio of axes from which a lamp or its
-/// blur counts as long; and the cosine of the largest angle between the long axes of both. [judged on 20 photos]
+/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area of such a lamp in photo pixels. `SMEAR`:
+/// minimum ratio of the axes of an elongated lamp, and of its blur. `ALONG`: minimum cosine of the angle between the
+/// long axes of lamp and blur. [judged on 20 photos]
 const MAX_SMEARED: f64 = 160.0;
 const SMEAR: f64 = 1.25;
 const ALONG: f64 = 0.9;
-/// Lamps count as long in the same direction if the mean of their doubled directions is longer than this; its length is
-/// 1 where all directions agree. Lamps that are each long along their own blur, in different directions, are discs,
-/// whatever their size. [judged on 20 photos]
+/// Lamps are elongated in a common direction if the mean of their doubled directions is longer than this; its length
+/// is 1 if all directions agree. Lamps that are each elongated along their own blur, in different directions, are
+/// discs of any size. [judged on 20 photos]
 const SAME_WAY: f64 = 0.93;
-/// Smallest area that lamp and shape have in common, as a share of the area that they cover together.
+/// Minimum agreement of a lamp with its shape: the area of their intersection divided by the area of their union.
 /// [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// A side of a rectangle is measured within this share of its other side, about the middle. [judged on 20 photos]
+/// A side of a rectangle is measured within the middle part of the other side, this share of it. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
-/// Largest angle, in radians, at which lamps count as aligned with the axes of the plane. [judged on 20 photos]
+/// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
+/// [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
-/// Standard deviation of a side, and of the bloom at each edge, in pixels of the photo. [judged on 20 photos]
+/// Standard deviation of a measured side, and prior standard deviation of the bloom at each edge, both in photo
+/// pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// Standard deviation of the bloom where the lamps show bloom: where it explains at least the share `EXPLAINED` of the
-/// differences of their sides, and there are at least `MIN_JUDGES` lamps. Lamps of several lengths, or hidden in part,
-/// do not show it: their sides do not grow with magnification. [bench photos:tune, photos:real]
+/// Prior standard deviation of the bloom, in photo pixels, if the lamps show bloom. They do if bloom explains at least
+/// the share `EXPLAINED` of the variation of their sides, and there are at least `MIN_JUDGES` lamps. Lamps of several
+/// lengths, or partly hidden ones, do not show it: their sides do not grow with magnification.
+/// [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
 const MIN_JUDGES: usize = 4;
-/// Corners of an ellipse's outline. [rounding]
+/// Number of corners of an ellipse's outline. [rounding]
 const ELLIPSE_CORNERS: usize = 64;
 
-/// The outline of a kind of lamps.
+/// The shape of the outline of a kind of lamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     Rectangle,
@@ -59,8 +63,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Ratio of a side to the standard deviation of the shape along it: a rectangle of side s has a deviation of s /
-    /// √12, an ellipse of diameter d has a deviation of d / 4.
+    /// Ratio of a side to the standard deviation of the area along that side: a rectangle of side s has a deviation of
+    /// s / √12, an ellipse of diameter d has a deviation of d / 4.
     fn sides_per_deviation(self) -> f64 {
         match self {
             Self::Rectangle => 12f64.sqrt(),
@@ -69,24 +73,24 @@ impl Shape {
     }
 }
 
-/// The shape and size of a kind.
+/// The shape and the size of a kind of lamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Design {
     pub shape: Shape,
     /// Sides in unwarped pixels, along and across `axis`.
     pub size: DVec2,
-    /// Unit vector.
+    /// Direction of the first side, a unit vector.
     pub axis: DVec2,
 }
 
-/// A lamp of the exemplar that has a design.
+/// A lamp of the exemplar, with the index of its design in `Designs::kinds`.
 #[derive(Clone, Copy, Debug)]
 pub struct Fitted {
     pub kind: usize,
     pub centre: DVec2,
-    /// The lamp's sides as the photo shows them, blur included.
+    /// The lamp's sides in the unwarped photo, blur included.
     pub size: DVec2,
-    /// Unwarped pixels along and across the axis that a pixel of the photo covers.
+    /// Length of a photo pixel near the lamp in unwarped pixels, along and across the axis.
     pub photo_pixel: DVec2,
 }
 
@@ -94,12 +98,13 @@ pub struct Fitted {
 #[derive(Default)]
 pub struct Designs {
     pub kinds: Vec<Design>,
-    /// The design of each component, if it has one.
+    /// For each component, its fit to a design; `None` if it has no design.
     pub lamps: Vec<Option<Fitted>>,
 }
 
 impl Designs {
-    /// Finds the kinds of the whole lamps, whose outlines are given, and the design of each.
+    /// Finds the kinds among the whole lamps, and the design of each kind. `outlines` holds the outline of every
+    /// component.
     pub fn find(exemplar: &Exemplar, outlines: &[Luminaire]) -> Self {
         let mut designs = Self { kinds: Vec::new(), lamps: vec![None; outlines.len()] };
         for kind in Evidence::kinds(&exemplar.evidence(Role::is_whole)) {
@@ -112,7 +117,7 @@ impl Designs {
         designs
     }
 
-    /// Total area of the lamps by their designs, over their total area in the unwarped photo.
+    /// Total area of the lamps by their designs, divided by their total area in the unwarped photo.
     pub fn area_ratio(&self, exemplar: &Exemplar) -> f64 {
         let (mut designed, mut shown) = (0.0, 0.0);
         for (k, lamp) in exemplar.components.list.iter().enumerate() {
@@ -124,22 +129,22 @@ impl Designs {
         if shown > 0.0 { designed / shown } else { 1.0 }
     }
 
-    /// The design of a component, and how the component fits it.
+    /// The design of a component, and the component's fit to it; `None` if it has no design.
     pub fn of(&self, component: usize) -> Option<(&Design, &Fitted)> {
         let fitted = self.lamps.get(component)?.as_ref()?;
         Some((&self.kinds[fitted.kind], fitted))
     }
 }
 
-/// A lamp of a kind, and the moments of its outline.
+/// A lamp of a kind, with the moments of its outline.
 struct Member {
     component: usize,
     outline: Vec<DVec2>,
     area: f64,
     centre: DVec2,
-    /// Second moments over the area: variances and covariance.
+    /// Second moments divided by the area: variances and covariance.
     moments: DMat2,
-    /// Angle of the smallest rectangle around the outline, in [0, π/2).
+    /// Angle of the smallest enclosing rectangle of the outline, in [0, π/2).
     angle: f64,
     weight: f64,
     blur: DVec2,
@@ -166,7 +171,7 @@ impl Member {
         })
     }
 
-    /// Whether the lamp and a photo pixel, seen in the unwarped image, are both long, and in the same direction.
+    /// Whether the lamp and the image of a photo pixel are both elongated, in about the same direction.
     fn is_smeared(&self) -> bool {
         let [[short, x], [long, y]] = principal(self.moments);
         let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
@@ -174,14 +179,14 @@ impl Member {
         long > SMEAR * short && most > SMEAR * least && along > ALONG
     }
 
-    /// Standard deviations along and across an axis.
+    /// Standard deviations of the area along and across an axis.
     fn deviations(&self, axis: DVec2) -> DVec2 {
         let along = |a: DVec2| a.dot(self.moments * a).max(0.0).sqrt();
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// Sides along and across an axis, if the lamp has the given shape. A side of a rectangle is measured in the middle
-    /// of its other side, because blur rounds the corners.
+    /// Sides along and across an axis, assuming the given shape. A side of a rectangle is measured in the middle of
+    /// the other side, because blur rounds the corners.
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -195,14 +200,15 @@ impl Member {
         DVec2::new(width(axis.perp(), sides.y), width(axis, sides.x))
     }
 
-    /// Unwarped pixels along and across an axis that a pixel of the photo covers.
+    /// Length of a photo pixel near the lamp in unwarped pixels, along and across an axis.
     fn blur_along(&self, axis: DVec2) -> DVec2 {
         let along = |a: DVec2| (a.abs() * self.blur).length();
         DVec2::new(along(axis), along(axis.perp()))
     }
 }
 
-/// The design of a kind, and how each lamp fits it; `None` where no simple shape agrees with the lamps.
+/// Fits the design of a kind to its lamps. Returns the design and the fit of each lamp; `None` if no simple shape
+/// agrees with the lamps.
 fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)> {
     let mut judges: Vec<&Member> = members.iter().filter(|m| m.is_clear).collect();
     if judges.is_empty() {
@@ -239,9 +245,9 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps that are discs made long by blur: most are long along the long axis of their blur, and they
-/// are small in the photo or long in different directions. The diameter is read from the shorter axis. `None` for other
-/// lamps.
+/// The diameter of lamps if they are discs that blur has elongated; else `None`. Most of such lamps are elongated
+/// along their blur, and they are small in the photo or elongated in different directions. The diameter is measured
+/// along the shorter axis.
 fn smeared_disc(members: &[&Member]) -> Option<f64> {
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
@@ -261,8 +267,8 @@ fn smeared_disc(members: &[&Member]) -> Option<f64> {
     }))
 }
 
-/// Deviations along the short and the long principal axis, and the unit vector of the long one: `[[short, x], [long,
-/// y]]`.
+/// Standard deviations along the short and the long principal axis, and the unit vector of the long axis: `[[short,
+/// x], [long, y]]`.
 fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     let (xx, xy, yy) = (moments.x_axis.x, moments.x_axis.y, moments.y_axis.y);
     let (mean, spread) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
@@ -271,19 +277,19 @@ fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     [[(mean - spread).max(0.0).sqrt(), axis.x], [(mean + spread).sqrt(), axis.y]]
 }
 
-/// The common axis of the rectangles around lamps: the mean of their angles modulo a right angle; the x axis where that
-/// is nearly aligned.
+/// The common axis of the enclosing rectangles of lamps: the mean of their angles modulo a right angle. The x axis if
+/// the mean is nearly aligned with it.
 fn common_axis(members: &[&Member]) -> DVec2 {
     let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
     let angle = sum.to_angle() / 4.0;
     if angle.abs() <= ALIGNED { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The side that lamps have in common. Each lamp gives a pair: its side, and the unwarped pixels that a photo pixel
-/// covers there. Solves side = s + 2 bloom × photo pixel by least squares, with a prior on the bloom given by its
-/// standard deviation.
+/// The common side of lamps without bloom. Each lamp gives a pair: its side, and the length of a photo pixel there,
+/// both in unwarped pixels. Solves side = s + 2 bloom × photo pixel for s by least squares, with a normal prior on the
+/// bloom.
 fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
-    // Normal equations of s and bloom.
+    // Normal equations for s and the bloom.
     let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);
     let (mut least, mut count) = (f64::INFINITY, 0);
     for (side, pixel) in sides {
@@ -297,7 +303,7 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let mean = sums.x / gram.x_axis.x;
     let fit = |deviation: f64| (gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * sums;
     let shown = fit(SHOWN_BLOOM);
-    // Sums of squared residuals of the fit and of the mean.
+    // Sums of squared residuals: of the fit with bloom, and of the mean alone.
     let (left, all) = (square - 2.0 * shown.dot(sums) + shown.dot(gram * shown), square - mean * sums.x);
     let is_shown = count >= MIN_JUDGES && left < (1.0 - EXPLAINED) * all;
     let fitted = if is_shown { shown } else { fit(BLOOM) };
@@ -306,7 +312,7 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
 }
 
 impl Design {
-    /// Corners of the outline around a centre, from x towards y.
+    /// Corners of the outline around a centre, in the order from x towards y.
     pub fn outline(&self, centre: DVec2) -> Vec<DVec2> {
         let half = self.size / 2.0;
         let at = |p: DVec2| centre + self.axis * p.x + self.axis.perp() * p.y;
@@ -324,7 +330,7 @@ impl Design {
         self.size.element_product() * if self.shape == Shape::Rectangle { 1.0 } else { PI / 4.0 }
     }
 
-    /// Gives a luminaire this size and outline, around a centre.
+    /// Sets the centre, size, orientation, area and outline of a luminaire from this design.
     pub fn describe(&self, centre: DVec2, lamp: &mut Luminaire) {
         let along_is_long = self.size.x >= self.size.y;
         let axis = if along_is_long { self.axis } else { self.axis.perp() };
@@ -336,7 +342,7 @@ impl Design {
         lamp.outline = self.outline(centre);
     }
 
-    /// Half of the box around the outline.
+    /// Half-extents of the outline's axis-aligned bounding box.
     pub fn half_box(&self) -> DVec2 {
         let half = self.size / 2.0;
         let (a, b) = (self.axis * half.x, self.axis.perp() * half.y);
@@ -346,12 +352,12 @@ impl Design {
         }
     }
 
-    /// Share of a square that lies within the design. The square's middle lies at `p` from the design's centre.
+    /// Share of a square that lies within the design. `p` is the square's centre relative to the design's centre.
     pub fn coverage(&self, p: DVec2, side: f64) -> f64 {
         let q = DVec2::new(p.dot(self.axis), p.dot(self.axis.perp()));
         let half = self.size / 2.0;
         match self.shape {
-            // Exact where the square is aligned with the rectangle.
+            // Exact if the square is aligned with the rectangle.
             Shape::Rectangle => {
                 let along = |q: f64, half: f64| {
                     let (low, high) = ((q - side / 2.0).max(-half), (q + side / 2.0).min(half));
@@ -359,7 +365,7 @@ impl Design {
                 };
                 along(q.x, half.x) * along(q.y, half.y)
             }
-            // From the signed distance to the ellipse, to first order.
+            // Computed from the signed distance to the ellipse, to first order.
             Shape::Ellipse => {
                 let u = q / half;
                 let r = u.length();
@@ -370,7 +376,8 @@ impl Design {
         }
     }
 
-    /// Area that a polygon and the design around `centre` have in common, over the area that they cover together.
+    /// Agreement of a polygon with the design around `centre`: the area of their intersection divided by the area of
+    /// their union.
     fn agreement(&self, polygon: &[DVec2], area: f64, centre: DVec2) -> f64 {
         let own = self.outline(centre);
         let common = own.iter().zip(own.iter().cycle().skip(1)).fold(polygon.to_vec(), |clipped, (p, q)| {
@@ -382,8 +389,7 @@ impl Design {
     }
 }
 
-/// Area, centroid and central second moments over the area of a polygon (Steger 1996); `None` where it encloses
-/// nothing.
+/// Area, centroid, and central second moments divided by the area of a polygon (Steger 1996); `None` if its area is 0.
 fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     let origin = *corners.first()?;
     let (mut area, mut first, mut xx, mut xy, mut yy) = (0.0, DVec2::ZERO, 0.0, 0.0, 0.0);
@@ -404,7 +410,7 @@ fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     (area.abs() > 0.0 && moments.is_finite()).then(|| (area.abs(), origin + mean, moments))
 }
 
-/// The angle in [0, π/2) of the smallest rectangle around corners (Freeman and Shapira 1975).
+/// The angle in [0, π/2) of the smallest enclosing rectangle of the corners (Freeman and Shapira 1975).
 fn rectangle_angle(corners: &[DVec2]) -> f64 {
     let hull = polygon::convex_hull(corners.to_vec());
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
@@ -428,11 +434,12 @@ mod tests {
 
     #[test]
     fn bloom_that_grows_with_magnification_is_taken_off() {
-        // Sides of 40 unwarped pixels, each edge blurred outwards by 0.8 photo pixels that cover ever more.
+        // Sides of 40 unwarped pixels. Bloom moves each edge outwards by 0.8 photo pixels, whose length grows from
+        // lamp to lamp.
         let pixels = [1.0f64, 1.5, 2.5, 4.0, 6.0];
         let side = common_side(pixels.into_iter().map(|p| (40.0 + 1.6 * p, p))).unwrap();
         assert!((side - 40.0).abs() < 1.0, "{side}");
-        // A lone lamp is what it is.
+        // A single lamp keeps its measured side.
         assert!((common_side([(41.6, 1.0)].into_iter()).unwrap() - 41.6).abs() < 1e-9);
     }
 

@@ -1,9 +1,9 @@
-//! From patches to lamps: which lamps of the exemplar the texture shows, each as one piece.
+//! Finds the lamps of the exemplar that a quilted texture shows, and places each as a whole.
 //!
-//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must cross
-//! a lamp, because the lamp is wider than the overlap, would leave only part of the lamp. Instead a lamp is shown whole
-//! where patches of its own shift show enough of it, and not at all where they show less or where another lamp has
-//! taken the place.
+//! The texture is black outside the lights (Fig. 12c), so a patch contributes nothing but its lamps. If a lamp is
+//! wider than the overlap of patches, a seam must cross it and leaves only a part of it. Therefore a lamp is placed as
+//! a whole if patches with one shift show enough of it. It is left out if they show less, or if another lamp occupies
+//! its place.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -16,23 +16,23 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// Smallest share of a lamp that patches of its shift must show.
+/// A lamp is placed only if patches with one shift copy at least this share of it.
 const MIN_SHARE: f64 = 0.3;
-/// Largest share of a lamp's pixels that other lamps may have taken on a lattice, where only rounding makes lamps
-/// overlap.
+/// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
+/// through rounding.
 const LATTICE_SLACK: f64 = 0.2;
 
 /// Rules for placing lamps.
 #[derive(Clone, Copy)]
 pub struct Rules {
-    /// Lamps lie on a lattice: only rounding can make them overlap.
+    /// Whether the lamps lie on a lattice, where only rounding can make them overlap.
     pub is_lattice: bool,
-    /// A lamp that leaves the texture on one side comes in on the opposite side.
+    /// Whether the texture is tileable: a lamp that leaves it on one side re-enters on the opposite side.
     pub wraps: bool,
 }
 
-/// The lamps shown by a patch map. Lamps of which the patches show the largest share are placed first. A lamp that the
-/// photo shows poorly is replaced by one like it that the photo shows well.
+/// Finds the lamps of which a patch map copies enough. Lamps with the largest copied share are placed first. A lamp
+/// with few photo pixels is replaced by a similar lamp with many.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = Canvas { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
@@ -41,7 +41,7 @@ pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u6
     Ok(instances)
 }
 
-/// A patch map, and the working pixels of each lamp.
+/// A patch map, and the working pixels that each lamp covers.
 struct Canvas<'a> {
     patch_map: &'a PatchMap,
     footprints: Vec<Vec<[i32; 2]>>,
@@ -49,7 +49,7 @@ struct Canvas<'a> {
 }
 
 impl Canvas<'_> {
-    /// The pixel of the texture at a place, if there is one.
+    /// The pixel of the texture at a position; `None` outside a texture that is not tileable.
     fn texel(&self, x: i32, y: i32) -> Option<(usize, usize)> {
         let side = |at: i32, side: usize| match self.wraps {
             true => Some(at.rem_euclid(side as i32) as usize),
@@ -58,13 +58,14 @@ impl Canvas<'_> {
         side(x, self.patch_map.width).zip(side(y, self.patch_map.height))
     }
 
-    /// The pixels of the texture that a lamp covers at a shift.
+    /// The pixels of the texture that lamp `k` covers if moved by the shift with the given label.
     fn place(&self, k: u32, label: u32) -> impl Iterator<Item = (usize, usize)> {
         let [dx, dy] = self.patch_map.shifts[label as usize].working;
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Which lamps the patches show, and at which shift: the shown share of the lamp, the lamp, and the label of the
+    /// Finds the exemplar's lamps of which the patch map copies at least the share `MIN_SHARE`, each with the shift by
+    /// which it is copied. Each entry holds the copied share of the lamp, the index of the lamp, and the label of the
     /// shift; largest share first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
@@ -91,8 +92,8 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of their claims, where their place is still free. Lamps that lie on no lattice
-    /// keep a pixel between them.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free.
+    /// Lamps without a lattice keep a gap of one pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;
@@ -114,19 +115,19 @@ impl Canvas<'_> {
     }
 }
 
-/// The lamps of an exemplar that repeats as a whole. Each lamp appears once for each cell in which the texture shows a
-/// part of it; in a texture that itself repeats, once for each cell that begins in the texture.
+/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each cell in which the
+/// texture shows a part of it; in a tileable texture, once for each cell that begins in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // The shifts that bring some of the lamp into the texture, and the cells around those shifts.
+        // Find the shifts that move a part of the lamp into the texture, and the cells around these shifts.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
-            // A cell that begins on the far side of the texture is the cell that begins on the near side, so count it
-            // once.
+            // In a tileable texture, a cell that begins exactly on the far border equals the cell that begins on the
+            // near border: count it once.
             let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
             if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
                 instances.push(Instance { component, shift });
@@ -136,15 +137,15 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     instances
 }
 
-/// Working pixels of a row from `start` to before `end` that a lamp covers.
+/// A run of pixels of a working row that a lamp covers, from `start` up to, but not including, `end`.
 struct Piece {
     start: i32,
     end: i32,
     lamp: u32,
 }
 
-/// The lamps in each working row, from left to right. A pixel shared by several lamps, each smaller than the pixel,
-/// goes to the last of them.
+/// Lists the runs of lamp pixels in each working row, from left to right. A pixel that several lamps share, each
+/// smaller than the pixel, belongs to the last one.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {
@@ -182,8 +183,8 @@ impl Bits {
     }
 }
 
-/// The working pixels of each lamp that moves as one piece: the pixels whose centre the lamp covers or, if there are
-/// none, the pixel that holds the lamp's centre.
+/// The working pixels of each lamp that is copied as one piece: the pixels whose centre the lamp covers or, if there
+/// are none, the pixel that contains the lamp's centre.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];

@@ -1,28 +1,29 @@
-//! Kinds of lamps: those of about the same size and shape, whatever their colour and however they are turned.
+//! Groups lamps into kinds: lamps of about equal size and shape, regardless of colour and orientation.
 //!
-//! Lamps are compared by their area and by the smallest rectangle around their outline: a square fills all of that
-//! rectangle, a disc π/4, a triangle half. The lamp with the most lamps like it forms a kind with them; then the same
-//! is done with the rest. Below about twenty texels the outline does not tell a square from a disc of the same width.
+//! Lamps are compared by their area and by the smallest enclosing rectangle of their outline. A square fills all of
+//! that rectangle, a disc π/4 of it, a triangle half. The lamp that resembles most other lamps forms a kind with them;
+//! this is repeated for the remaining lamps. For lamps smaller than about twenty texels, the outline cannot
+//! distinguish a square from a disc of equal width.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
 use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
-/// By how much, relatively, lamps of a kind may differ in area and in both sides.
+/// Maximum relative difference in area, and in each side, between two lamps of one kind.
 const LIKE: f64 = 0.25;
-/// By how much they may differ in the share of their rectangle that they fill.
+/// Maximum difference between two lamps of one kind in the share of their enclosing rectangle that they fill.
 const FILL: f64 = 0.1;
-/// By how much rounding and simplification may make outlines differ, in texels, both sides together.
+/// Difference in each side between equal lamps, in texels, that rounding and simplification of both ends may cause.
 const ROUNDING: f64 = 2.0;
-/// Lamps are grouped into steps of nearly equal shape: this many steps to a factor of e.
+/// Before comparison, lamps are binned by the logarithms of area and sides: number of bins per factor of e.
 const STEPS: f64 = 20.0;
 
-/// The measures by which lamps are compared, in texels.
+/// The measures by which lamps are compared; lengths are in texels.
 #[derive(Clone, Copy)]
 struct Shape {
     area: f64,
-    /// Sides of the smallest rectangle, the long one first.
+    /// Sides of the smallest enclosing rectangle, the long one first.
     sides: DVec2,
 }
 
@@ -44,21 +45,21 @@ impl Shape {
             && (self.fill() - other.fill()).abs() <= FILL + ROUNDING / short
     }
 
-    /// The step of a shape. Lamps of the same step are treated as one.
+    /// The bin of a shape. Lamps in one bin are treated as equal.
     fn step(self) -> [i64; 3] {
         [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * STEPS).round() as i64)
     }
 }
 
-/// Lamps of nearly the same shape.
+/// A bin of lamps of nearly equal shape.
 struct Step<'a> {
     shape: Shape,
     lamps: Vec<&'a mut Luminaire>,
     count: usize,
 }
 
-/// Numbers the kinds of lamps from 1, kinds with most lamps first. Each lamp comes with the number of lamps that it
-/// stands for. A lamp that stands for none, such as one that the border cuts, gets 0: no kind.
+/// Numbers the kinds of lamps from 1; the kind with most lamps comes first. Each lamp comes with the number of lamps
+/// that it represents. A lamp with count 0, such as one that the border cuts, gets kind 0, which means no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
     for (lamp, count) in lamps {
@@ -72,7 +73,7 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
     let mut left: Vec<Step> = steps.into_values().collect();
 
-    // The shape with the most lamps like it forms a kind with them; then the same with the rest.
+    // The shape that resembles most lamps forms a kind with them. Repeat this for the remaining lamps.
     let count = |steps: &[Step]| steps.iter().map(|s| s.count).sum::<usize>();
     let mut kinds: Vec<Vec<Step>> = Vec::new();
     loop {
@@ -88,8 +89,8 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
 }
 
-/// Sides of the smallest rectangle around some corners, the long side first. One side of that rectangle lies along an
-/// edge of the convex hull (Freeman and Shapira 1975), so every edge of the hull is tried.
+/// Sides of the smallest enclosing rectangle of the corners, the long side first. One side of that rectangle lies
+/// along an edge of the convex hull (Freeman and Shapira 1975), so every edge of the hull is tried.
 fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
     let extent = |axis: DVec2| polygon::extent(corners, axis);
     let hull = polygon::convex_hull(corners.to_vec());
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn discs_squares_however_turned_and_bars_are_kinds() {
-        // Squares, every other turned by 45°; discs as wide as those; a bar.
+        // Squares, every other one rotated by 45°; discs with the width of the squares; a bar.
         let size = DVec2::new(640.0, 200.0);
         let what = |cell: i64| match cell {
             0 | 2 | 4 | 6 => 1,
@@ -153,7 +154,7 @@ mod tests {
         for lamp in &found {
             assert_eq!(i64::from(lamp.kind), what((lamp.centre.x / 80.0) as i64), "at {}", lamp.centre);
         }
-        // Those that count for none have none.
+        // Lamps with count 0 get no kind.
         number(found.iter_mut().map(|l| (usize::from(l.centre.x < 300.0), l)).map(|(count, l)| (l, count)));
         assert_eq!(found.iter().filter(|l| l.kind == 0).count(), found.len() - 4);
         assert!(found.iter().filter(|l| l.centre.x < 300.0).all(|l| l.kind > 0));
@@ -161,7 +162,7 @@ mod tests {
 
     #[test]
     fn lamps_of_a_few_texels_are_one_kind_where_rounding_alone_tells_them_apart() {
-        // Discs 5 texels across, each with its centre elsewhere within a texel.
+        // Discs with a diameter of 5 texels, whose centres lie at different positions within a texel.
         let is_lit = |p: DVec2| {
             let cell = (p / 20.0).floor();
             let aside = DVec2::new((cell.x * 0.37).fract(), (cell.y * 0.61 + cell.x * 0.17).fract());

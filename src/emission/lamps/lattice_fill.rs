@@ -1,8 +1,9 @@
-//! Lamps at the sites of a lattice: each at its exact place, shown as the photo shows it best.
+//! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo.
 //!
-//! Patches keep the disorder of the photo: far lamps that the mask missed, and places that perspective moved. The sites
-//! of the lattice, weighted by photo pixels, tell where lamps belong. A site that nearly always has a lamp gets one in
-//! every cell. At other sites the patches decide whether there is a lamp, and the lamp moves to the exact site.
+//! Patches reproduce the disorder of the photo: distant lamps that the mask missed, and positions displaced by
+//! perspective. The sites of the lattice, weighted by photo pixels, give the true positions. A site that nearly always
+//! has a lamp gets one in every cell. At other sites the patches decide whether there is a lamp, and the lamp moves to
+//! the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -14,23 +15,23 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site gets a lamp in every cell if at least this share of its places in view, by photo pixels, shine.
-/// [bench emission:perspective]
+/// A site of the lattice cell gets a lamp in every cell if lamps shine in at least this share of its visible copies,
+/// weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// The same share for a site with at most `FEW_DARK` dark places: something may stand in front of these.
-/// [judged on 20 photos]
+/// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
+/// the lamps at the dark copies. [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
-/// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its site does. [judged on 5
-/// photos]
+/// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
+/// [judged on 5 photos]
 const SHARP: f64 = 0.4;
-/// Two places count as the same site if, along both axes, they are no farther apart than this share of a lamp's side.
+/// Two positions count as one site if their distance along each axis is at most this share of a lamp's side.
 /// [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
 
-/// Places lamps at the sites of a law, in a texture of `size` unwarped pixels whose lattice begins at `offset`. Lamps
-/// in `shown`, which the patches show, are dropped at sites that get a lamp in every cell, moved to the exact place at
-/// other sites, and kept unmoved away from all sites.
+/// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
+/// `offset`. `shown` holds the lamps that the patches show. They are dropped at sites that get a lamp in every cell,
+/// moved to the exact position at other sites, and kept unmoved away from all sites.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -61,7 +62,7 @@ pub fn place(
             }
         }
     }
-    // Then the lamps that patches show at other sites, moved to the exact site, and away from all sites, unmoved.
+    // Add the lamps that patches show: at other sites, moved to the exact site; away from all sites, unmoved.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
@@ -75,7 +76,7 @@ pub fn place(
     instances
 }
 
-/// Whether a site has a lamp in every cell: panes go on over all of a luminous ceiling.
+/// Whether a site gets a lamp in every cell. The panes of a luminous ceiling always do.
 fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     if exemplar.is_luminous_ceiling() {
         return true;
@@ -83,7 +84,7 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites, best first, without those that overlap a better site.
+/// The sites in the order of their photo pixels, without sites that overlap an earlier one.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));
@@ -100,7 +101,7 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// The lamps of a site that the photo shows sharply and as a whole.
+/// The whole lamps of a site that are sharp in the photo.
 fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
     let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);

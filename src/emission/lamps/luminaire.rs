@@ -1,34 +1,35 @@
-//! One lamp of a texture.
+//! One lamp of a texture, as listed for lighting software.
 
 use glam::{DVec2, Vec3};
 
-/// One lamp of the texture.
+/// One lamp of a texture, measured in texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Luminaire {
     /// Centre in texels.
     pub centre: DVec2,
-    /// Lengths of the principal axes in texels, long one first.
+    /// Lengths along and across the long principal axis, in texels, the long one first.
     pub size: DVec2,
     /// Angle of the long axis from x towards y, in radians, in (-π/2, π/2].
     pub orientation: f64,
-    /// Area in texels; of texels at the edge only the lit part counts.
+    /// Area in texels; texels at the edge count with their lit part.
     pub area: f64,
     /// Mean linear colour.
     pub colour: Vec3,
-    /// Share of the luminous flux of all lamps of the texture, in `[0, 1]`.
+    /// Share of the luminous flux of all lamps in the texture, in `[0, 1]`.
     pub flux_share: f64,
-    /// Corners of the outline in texels, from x towards y. The outline runs where half of a texel would be light. Where
-    /// the confidence of the lights takes values between 0 and 1, and the lamp is wider than two texels, sides are
-    /// exact to 0.25 of a texel or of an unwarped pixel, whichever is larger, and corners that are no sharper than a
-    /// right angle to 0.71 of it. Otherwise the outline follows the sides of texels.
+    /// Corners of the outline in texels, in the order from x towards y. The outline runs where light would cover half
+    /// of a texel centred there. Let u be the larger of a texel and an unwarped pixel. If the lamp is wider than two
+    /// texels, and the confidence of the lights takes values between 0 and 1, the sides of the outline are exact to
+    /// 0.25 u, and corners of at least 90 degrees are exact to 0.71 u. Otherwise the outline follows the sides of
+    /// texels.
     pub outline: Vec<DVec2>,
-    /// Number of the lamp's kind ([`super::kinds`]), from 1, kinds with most lamps first; 0 for a lamp that the border
-    /// cuts.
+    /// Number of the lamp's kind ([`super::kinds`]), counted from 1, kinds with most lamps first; 0 for a lamp that
+    /// the border cuts.
     pub kind: u32,
 }
 
 impl Luminaire {
-    /// The same lamp, first shifted, then scaled by a factor.
+    /// Returns the lamp after a shift, followed by scaling with a factor.
     pub fn moved(&self, shift: DVec2, factor: f64) -> Self {
         Self {
             centre: (self.centre + shift) * factor,
@@ -39,7 +40,7 @@ impl Luminaire {
         }
     }
 
-    /// Whether the outline lies strictly inside a texture of the given size, so that the border cuts nothing off.
+    /// Whether the outline lies strictly inside a texture of the given size, so that the border does not cut the lamp.
     pub fn is_within(&self, size: DVec2) -> bool {
         self.outline.iter().all(|p| p.cmpgt(DVec2::ZERO).all() && p.cmplt(size).all())
     }

@@ -1,4 +1,4 @@
-//! The lamps of the texture as a list: what lighting software wants besides pixels.
+//! Lists the lamps of a texture for lighting software: centre, size, colour, flux share, outline and kind.
 
 use super::coverage::{Coverage, Lights};
 use super::kinds;
@@ -11,12 +11,12 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, DVec3};
 
-/// The connected components of a mask, or of the texels of a coverage that are at least half light.
+/// The connected components of a mask, or of the texels with a coverage of at least 0.5.
 pub fn components(mask: &Image) -> Result<Components> {
     components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
 }
 
-/// One luminaire for each connected component of the lights, in the order of their first texel.
+/// Measures each connected component of the lights as a luminaire, in the order of their first texel.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
     let lights = Lights::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)
@@ -33,7 +33,7 @@ pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -
     Ok(lamps)
 }
 
-/// Numbers the kinds of the lamps of a texture.
+/// Groups the lamps of a texture into kinds. Lamps that the border cuts get kind 0.
 pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     let size = DVec2::new(texture.width as f64, texture.height as f64);
     kinds::number(lamps.iter_mut().map(|lamp| {
@@ -42,13 +42,13 @@ pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     }));
 }
 
-/// A lamp with its flux, in luminance times texels, for the share.
+/// Measures a lamp. Its `flux_share` holds luminance times texels for now, and is divided by the total later.
 fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Luminaire {
     let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
     let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
 
-    // Area and moments of the light, its edge included, relative to the lamp's own corner, so that equal lamps get
-    // equal bits anywhere in the texture.
+    // Sum up area and moments of the light, its edge included. Positions are relative to the lamp's own corner, so
+    // that equal lamps get equal bits anywhere in the texture.
     let (mut area, mut sum, mut squares, mut colour) = (0.0, DVec2::ZERO, DVec3::ZERO, DVec3::ZERO);
     for y in low[1]..=high[1] {
         for x in (low[0]..=high[0]).filter(|&x| is_in([x, y])) {
@@ -81,12 +81,12 @@ fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Lu
     }
 }
 
-/// The direction of largest variance, in (-π/2, π/2], of second moments; a lamp that has none lies along x.
+/// The direction of largest variance, from second moments, in (-π/2, π/2]; 0 if all directions have equal variance.
 pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     let (difference, cross) = (xx - yy, 2.0 * xy);
     let anisotropy = difference.hypot(cross);
     let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
-    // -π/2 and π/2 are the same direction; rounding must not choose between them.
+    // -π/2 and π/2 are the same direction, so always return π/2, whatever the rounding.
     if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }
 

@@ -1,4 +1,4 @@
-//! Lamps: which ones a texture shows where, each as one piece; their outlines, kinds and colours.
+//! Lamps of a texture: chooses and places them as whole pieces, and measures their outlines, kinds and colours.
 
 pub mod coverage;
 pub mod crumbs;

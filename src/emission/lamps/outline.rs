@@ -1,37 +1,38 @@
-//! The outline of a lamp, finer than its texels: it runs where half of a texel, centred there, would be light.
+//! The outline of a lamp at sub-texel precision: it runs where light would cover half of a texel centred there.
 //!
-//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between a texel that is
-//! light and an adjacent texel that is not. Where two texels of the lamp meet at a corner only, the outline keeps them
-//! connected, as the lamp's labels do. The coverages of both texels tell where between their centres the outline
-//! crosses: for a straight edge that crosses only these two texels the sum of both coverages is its exact place, while
-//! a level set of interpolated values is off by up to 0.09 texels. A lamp's corners are sharper than texels can show:
-//! two sides that are a few texels long are extended until they meet.
+//! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
+//! a lit texel and an adjacent unlit one. If two texels of the lamp touch at a corner only, the outline keeps them
+//! connected, as the lamp's labels do. The coverages of both texels determine where the outline crosses the line
+//! between their centres. For a straight edge that crosses only these two texels, the sum of both coverages gives the
+//! exact position, whereas a level set of interpolated values is off by up to 0.09 texels. A lamp's corners are
+//! sharper than texels can show, so two sides that are a few texels long are extended until they meet.
 
 use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
 use glam::DVec2;
 
-/// Largest distance in texels between the outline and a crossing.
+/// Maximum distance in texels between the simplified outline and a crossing.
 const TOLERANCE: f64 = 0.1;
-/// The same distance for an outline along the corners of texels, where each texel is either light or not: it turns a
-/// staircase into a line.
+/// Maximum distance in texels for an outline along the corners of texels, used if each texel is either fully lit or
+/// unlit. It turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// A lamp up to this wide, in texels, is outlined by the corners of its texels: crossings would enclose only half of a
-/// single texel.
+/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through the
+/// crossings between texel centres would enclose only half of a single texel.
 const NARROW: f64 = 2.0;
-/// In texels: the length from which a side tells its direction, the greatest length of a blunt corner between two
-/// sides, and the greatest length by which a side is extended. Then the cosine of the smallest turn from one side to
-/// the next, 60°: no disc with sides this long turns as much.
+/// Limits for sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`: maximum
+/// length of a blunt corner between two sides. `MAX_EXTENDED`: maximum length by which a side is extended. `CORNER`:
+/// cosine of the minimum turn from one side to the next, 60°; no disc with sides of length `SIDE` turns that much.
 const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
 const CORNER: f64 = 0.5;
-/// How far from the border of the texture, in texels, a corner on it may be by rounding.
+/// A corner lies on the border of the texture, up to rounding, if its distance from the border is at most this, in
+/// texels.
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge gives a crossing and the texel
-/// corner before it. Points are relative to the lamp's first column and row, so that they have the same bits wherever
-/// the lamp lies.
+/// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge along the walk gives a crossing,
+/// and the texel corner before it. Points are relative to the lamp's first column and row, so that they have the same
+/// bits wherever the lamp lies.
 pub struct Ring {
     crossings: Vec<DVec2>,
     corners: Vec<DVec2>,
@@ -41,9 +42,9 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` says how much of a
-    /// texel is light: at least 0.5 for a texel of the lamp, less for others, and `None` beyond the texture, where the
-    /// outline follows the border.
+    /// Walks around a lamp. `is_in` tells whether a texel, given by column and row, belongs to the lamp. `coverage`
+    /// gives the share of a texel that is light: at least 0.5 for texels of the lamp, less for others, and `None`
+    /// outside the texture, where the outline follows the border.
     pub fn walk(
         lamp: &Component,
         is_in: &dyn Fn([isize; 2]) -> bool,
@@ -55,8 +56,9 @@ impl Ring {
         let start = first.unwrap_or(origin);
         let local = |at: [isize; 2]| DVec2::new((at[0] - origin[0]) as f64, (at[1] - origin[1]) as f64);
 
-        // Walk eastwards from there with the lamp at the right hand. Only one texel of the lamp meets the first
-        // corner, so the walk is over when it is back. Where texels touch by a corner, turn left: the lamp holds both.
+        // Walk eastwards from the start with the lamp on the right. Only one texel of the lamp touches the start, so
+        // the walk ends when it returns there. Where two lamp texels touch at a corner only, turn left: both belong to
+        // the lamp.
         let (mut crossings, mut corners, mut is_soft) = (Vec::new(), Vec::new(), false);
         let (mut at, mut heading) = (start, [1isize, 0isize]);
         loop {
@@ -79,11 +81,13 @@ impl Ring {
         Self { crossings, corners, is_soft, narrow, origin: DVec2::new(origin[0] as f64, origin[1] as f64) }
     }
 
-    /// The corners of the outline within a texture of a size, and how far it reaches along and across a direction.
+    /// Returns the corners of the outline within a texture of the given size, and the lamp's extents along and across
+    /// `axis`.
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > NARROW {
-            // Begin at the point farthest from the middle, so that the result does not depend on how the lamp lies.
+            // Begin at the point farthest from the centre, so that the result does not depend on the lamp's
+            // orientation.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);
@@ -99,12 +103,12 @@ impl Ring {
     }
 }
 
-/// By how much the outline of a lamp of width `narrow` may differ from the corners of its texels.
+/// Maximum distance between the outline and the corners of texels, for a lamp of width `narrow`.
 pub fn staircase(narrow: f64) -> f64 {
     STAIRCASE.min(0.3 * narrow)
 }
 
-/// The texel ahead of a corner, on the right for a `side` of 1, on the left for -1.
+/// The texel ahead of a corner: on the right for `side` = 1, on the left for -1.
 fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     [
         at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2),
@@ -112,28 +116,29 @@ fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     ]
 }
 
-/// Where the outline crosses, as a share of the way from the centre of a lit texel to the centre of an adjacent texel
-/// that is less than half light. Beyond the border nothing is known: there the outline runs along the border.
+/// The position where the outline crosses, as a share of the way from the centre of a lit texel to the centre of an
+/// adjacent unlit one. If `beyond` is NaN, the adjacent texel lies outside the texture, and the outline follows the
+/// border.
 fn crossing(light: f64, beyond: f64) -> f64 {
     let step = light - beyond;
     match () {
         () if beyond.is_nan() => 0.5,
-        // The place of a straight edge follows from the coverages: from their slope where the edge is blurred over more
-        // than these two texels, from their sum where it is not. At a step of one half both formulas agree.
+        // The position of a straight edge follows from the two coverages: from their sum if the edge crosses only
+        // these two texels, from their slope if it is blurred over more. At a step of one half both formulas agree.
         () if step > 0.5 => light + beyond - 0.5,
         () => ((light - 0.5) / step.max(f64::MIN_POSITIVE)).min(1.0),
     }
 }
 
-/// The index of the point farthest from another.
+/// The index of the point farthest from a given point.
 fn farthest(points: &[DVec2], from: DVec2) -> usize {
     let distance = |i: &usize| points[*i].distance_squared(from);
     (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// A ring of points without the points that lie near a line between other points (Douglas and Peucker 1973).
+/// Simplifies a closed outline: drops points that lie close to a line between other points (Douglas and Peucker 1973).
 pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
-    // Split the ring at the point farthest from the first, then simplify both halves.
+    // Split the outline at the point farthest from the first, then simplify both halves.
     let far = points.first().map_or(0, |first| farthest(&points, *first));
     let mut kept = vec![false; points.len() + 1];
     (kept[0], kept[far]) = (true, true);
@@ -143,7 +148,7 @@ pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     points.iter().zip(&kept).take(points.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()
 }
 
-/// Marks the points between two kept ones that lie too far from the line between them.
+/// Marks the points between two kept points that are too far from the line between them.
 fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &mut [bool]) {
     let mut open = vec![(first, last)];
     while let Some((a, b)) = open.pop() {
@@ -160,8 +165,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// The ring with its blunt corners replaced by sharp ones, except where the sharp corner would lie outside the texture,
-/// which reaches from `first` to `last`.
+/// Replaces the blunt corners of a closed outline by sharp ones, unless the sharp corner would lie outside the
+/// texture, which reaches from `first` to `last`.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];
@@ -169,7 +174,7 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let Some(begin) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
     let is_within = |corner: &DVec2| corner.distance(corner.clamp(first, last)) < ROUNDING;
 
-    // From the end of each side to the beginning of the next, once around.
+    // Go around once, from the end of each side to the beginning of the next.
     let mut out = Vec::new();
     let mut side = begin;
     while side < begin + n {
@@ -188,14 +193,14 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     out
 }
 
-/// The point where two sides would meet, if the part between them is short enough to be a corner blunted by texels.
+/// The point where two sides would meet; `None` if the part between them is too long for a corner blunted by texels.
 fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Option<DVec2> {
     let length: f64 = between.windows(2).map(|w| w[0].distance(w[1])).sum();
     let (u, v) = ((end - a).normalize(), (b - start).normalize());
     if length == 0.0 || length > BLUNT || u.dot(v) > CORNER {
         return None;
     }
-    // end + s u = start - t v.
+    // Solve end + s u = start - t v for s and t.
     let (gap, cross) = (start - end, u.perp_dot(v));
     let (s, t) = (gap.perp_dot(v) / cross, u.perp_dot(gap) / cross);
     let is_near = |d: f64| (0.0..=MAX_EXTENDED).contains(&d);

@@ -1,9 +1,9 @@
-//! Light that the photo shows clipped.
+//! Restores the colour of lamps that the photo shows clipped.
 //!
-//! A lamp is brighter than a photo's white, so its core is white in the photo whatever its colour. At its rim, where
-//! the lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. The core is given
-//! the rim's colour, at the least brightness that its clipped channels allow. The photo does not tell how much brighter
-//! the core is; relighting solves for that.
+//! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At its rim, where
+//! the lens blurs the lamp into the dark surroundings, all channels are below white, so the rim shows the lamp's
+//! colour. The core gets the rim's colour, at the minimum brightness that its clipped channels allow. How much
+//! brighter the core is cannot be read from the photo; relighting solves for it.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -11,27 +11,28 @@ use crate::emission::exemplar::components::Components;
 use crate::image::Image;
 use glam::{DVec3, Vec3};
 
-/// A photo with values above this counts as not clipped.
+/// An image with lit values above this is not clipped, but has a high dynamic range.
 const MAX_CLIPPED: f32 = 1.05;
-/// Share of the clip level from which a pixel near a lamp shows the lamp's light rather than its surroundings.
+/// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
 const BRIGHT: f32 = 0.5;
-/// Largest distance from a lamp, in pixels, of a pixel that may belong to its rim.
+/// A pixel may belong to a lamp's rim if its distance from the lamp is at most this, in pixels.
 const REACH: usize = 2;
-/// Fewest pixels of a rim that tell a colour.
+/// A colour is read from a rim only if the rim has at least this number of pixels.
 const MIN_RIM: f64 = 8.0;
-/// Smallest ratio of a channel to the strongest channel; a weaker channel is raised to it.
+/// Minimum ratio of a channel to the strongest channel; a weaker channel is raised to this value.
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
-/// The colours of lamps, read from their rims, for pixels that show the lamps clipped.
+/// The colours of lamps, read from their rims, which replace clipped pixels.
 pub struct RimColours {
     level: f32,
-    /// The colour of each component, scaled so that its strongest channel is 1; `None` where no rim tells it.
+    /// The colour of each component, scaled so that its strongest channel is 1; `None` if no rim has enough pixels.
     colours: Vec<Option<Vec3>>,
 }
 
 impl RimColours {
-    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped. `None` if `level` is 0,
-    /// if no lit pixel is clipped, or if lit pixels exceed `MAX_CLIPPED`, since such an image is not clipped.
+    /// Reads the rims of the lamps of an image in which channel values of at least `level` are clipped. `None` if
+    /// `level` is 0, if no lit pixel is clipped, or if lit pixels exceed `MAX_CLIPPED`, because such an image is not
+    /// clipped.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
@@ -40,7 +41,7 @@ impl RimColours {
             return None;
         }
 
-        // The summed colour of each rim, and of all rims together, for lamps without a rim of their own.
+        // Sum up the colours of each rim; entry 0 is the sum over all rims, for lamps without a rim of their own.
         let mut sums = vec![(DVec3::ZERO, 0.0); components.list.len() + 1];
         for (i, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
             let value = colour(i);
@@ -60,12 +61,13 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// The colour of a component where the photo shows `value`: clipped channels are replaced by the rim's colour.
+    /// Replaces the clipped channels of `value`, the photo's colour of a component, by the rim's colour.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {
             Some(colour) if clipped.any() => {
-                // The strength of the rim's colour: unclipped channels tell it, clipped channels set its least value.
+                // Find the scale of the rim's colour: clipped channels are lower bounds, unclipped channels give it
+                // directly.
                 let strength = value / colour;
                 let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
@@ -76,7 +78,7 @@ impl RimColours {
     }
 }
 
-/// The label of a pixel, or of one near it.
+/// The label of a pixel or, if it has none, of a pixel within [`REACH`].
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
@@ -94,7 +96,7 @@ mod tests {
     use super::*;
     use crate::emission::exemplar::components;
 
-    /// Round lamps far brighter than white, blurred by a lens, in a photo that clips.
+    /// A photo with clipped round lamps, far brighter than white and blurred by a lens.
     fn photo(lamps: &[(f32, f32, Vec3)]) -> Image {
         Image::from_fn(160, 60, |x, y| {
             let light: Vec3 = lamps
@@ -118,14 +120,14 @@ mod tests {
         for (component, truth, x) in [(0, warm, 40), (1, cool, 110)] {
             assert_eq!(image.rgb(x, 30), Vec3::ONE);
             let light = rim_colours.undo(component, Vec3::ONE);
-            // The ratio of any two channels, which the photo shows as 1: the dark around adds up to a tenth to the
-            // rim.
+            // The ratio of any two channels must be restored from the clipped value 1. The dark surroundings add up to
+            // a tenth to the rim.
             for (a, b) in [(0, 1), (1, 2), (0, 2)] {
                 let (stated, true_ratio) = (light[a] / light[b], truth[a] / truth[b]);
                 assert!((stated / true_ratio - 1.0).abs() < 0.12, "{light} for {truth}");
             }
             assert!(light.min_element() >= 0.95, "{light}: darker than the photo");
-            // What the photo shows whole is left alone.
+            // Unclipped channels stay unchanged.
             assert_eq!(rim_colours.undo(component, Vec3::splat(0.5)), Vec3::splat(0.5));
             assert_eq!(rim_colours.undo(component, Vec3::new(1.0, 0.5, 0.4)).yz(), glam::Vec2::new(0.5, 0.4));
         }

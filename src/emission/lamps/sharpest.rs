@@ -1,4 +1,4 @@
-//! Replaces lamps that the photo shows small by similar lamps that it shows large.
+//! Replaces lamps that have few photo pixels by similar lamps that have many.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -7,20 +7,20 @@ use crate::emission::exemplar::roles::Role;
 use crate::rng::Rng;
 use std::collections::BTreeMap;
 
-/// By how much, relatively, lamps of a kind may differ in area, in both sides and in their ratio.
+/// Maximum relative difference between similar lamps in area, in each side, and in the ratio of their sides.
 const LIKE: f64 = 0.25;
 
-/// By how many photo pixels they may differ in addition: blur and glow lengthen a lamp that the photo shows small.
-/// `MIN_LIKE` limits the sum of both, as a relative difference.
+/// Number of photo pixels by which similar lamps may differ in addition: blur and bloom lengthen a lamp with few photo
+/// pixels. `MIN_LIKE` is the upper limit of both tolerances together, as a relative difference.
 const BLUR: f64 = 2.0;
 
 const MIN_LIKE: f64 = 0.5;
 
-/// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
+/// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
 const SHARP: f64 = 0.4;
 
-/// Replaces each lamp that the photo shows small by a similar lamp that the photo shows large. Among several such lamps
-/// one is drawn at random, so that the texture keeps their variety.
+/// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several, one is chosen at
+/// random, so that the texture keeps their variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -29,7 +29,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
             let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= like * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
             let ([w, h], [u, v]) = (a.size(), b.size());
-            // Alike in size and proportions, and with nothing cut off.
+            // Require similar size and proportions; the replacement must be a whole lamp.
             let is_alike = close(a.area, b.area) && close(w, u) && close(h, v) && close(w * v, u * h);
             exemplar.roles[*j] == Role::Whole && is_alike
         };
@@ -48,8 +48,8 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Like [`show_sharpest`], for lamps that have a design: each lamp that the photo does not show sharply is replaced by
-/// one of its kind that it does, centred on the lamp it replaces.
+/// Like [`show_sharpest`], but for lamps with a design: a lamp that is not sharp in the photo is replaced by a sharp
+/// one of its kind, centred on the lamp that it replaces.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let area = |k: usize| exemplar.photo_area[k];
     let clear = |kind: usize| {

@@ -1,9 +1,8 @@
-//! A stretched lattice, cell by cell.
+//! Places lamps on a stretched lattice, cell by cell.
 //!
-//! Patches show lamps at the distances that they have in the exemplar. Where a lattice is stretched, so that the
-//! texture can be repeated, lamps would keep those distances within a patch and jump from one patch to the next. So
-//! each cell of the stretched lattice takes its lamps, in its own place, from one cell of the exemplar: the cell that
-//! the patch at its middle shows.
+//! Patches show lamps at the distances of the exemplar. If the lattice is stretched for a tileable texture, lamps
+//! would keep these distances within a patch and jump from one patch to the next. Therefore each cell of the stretched
+//! lattice gets the lamps of one cell of the exemplar: the cell that the patch at its centre shows.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -16,8 +15,8 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's lattice
-/// `own`. The stretched lattice begins at `offset`. `None` where the exemplar shows no lamp, or no whole cell.
+/// Places the lamps in a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's
+/// lattice `own`. The stretched lattice begins at `offset`. `None` if the exemplar shows no lamp or no complete cell.
 pub fn place(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -29,7 +28,7 @@ pub fn place(
     let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
     let (to_own, to_stretched) = (own.inverse(), stretched.inverse());
 
-    // Cells are centred on the lamp nearest to the middle of the exemplar, and on its lattice neighbours.
+    // Cells are centred on the lamp nearest to the exemplar's centre, and on its lattice neighbours.
     let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
     let first = exemplar
         .pieces()
@@ -38,8 +37,8 @@ pub fn place(
     let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
-    // The lamps of each cell; then the whole cells: those without a cut lamp in which the photo shows the place of the
-    // central lamp.
+    // Collect the lamps of each cell, then the complete cells. A complete cell has no cut lamp, and the photo shows
+    // the position of its central lamp.
     let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
     let components = exemplar.components.list.iter().zip(&exemplar.roles);
@@ -53,7 +52,8 @@ pub fn place(
     }
     let known: BTreeSet<Cell> = whole.iter().copied().collect();
 
-    // Use the cells whose middle lies in the texture; the parts of them beyond its border come in on the opposite side.
+    // Fill the cells whose centre lies in the texture; the parts of them beyond the border re-enter on the opposite
+    // side.
     let start = first.centre + offset;
     let mut instances = Vec::new();
     for cell in cells::between(to_stretched, DVec2::ZERO - start, size - start) {
@@ -75,7 +75,7 @@ pub fn place(
     Some(instances)
 }
 
-/// Whether the unwarped photo shows the corners of a lamp moved to a place.
+/// Whether the unwarped photo shows all corners of a lamp that is moved to `centre`.
 fn shows(exemplar: &Exemplar, lamp: &Component, centre: DVec2) -> bool {
     let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) / 2.0;
     let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];

@@ -1,17 +1,18 @@
-//! The vectors of a lattice, fitted to the centres of its lamps.
+//! Fits the basis vectors of a lattice to the centres of its lamps.
 
 use super::continuation::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Most lamps that vote. [bench emission:seconds]
+/// Maximum number of lamps that vote. [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
-/// Distance from a lattice site, in periods, within which a pair of lamps votes. [bench emission:patterns]
+/// A pair of lamps votes if their difference deviates from a lattice vector by less than this, as a share of the first
+/// period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 
-/// Aligns a period that nearly follows an axis with that axis. A row of few lamps cannot tell a slant of a few % from
-/// the disorder of its lamps, but a long row with that slant would drift away from the axis, along which the photo was
-/// unwarped.
+/// Aligns a period that nearly follows an image axis with that axis. A row of few lamps cannot distinguish a slant of
+/// a few percent from disorder of its lamps. In a long row, such a slant would drift away from the axis, along which
+/// the photo was unwarped.
 pub fn straight(period: DVec2) -> DVec2 {
     match () {
         _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
@@ -20,10 +21,10 @@ pub fn straight(period: DVec2) -> DVec2 {
     }
 }
 
-/// Fits the first `count` basis vectors to the centres of like lamps. Every pair of lamps about `i a + j b` apart, with
-/// whole `i` and `j`, votes for both vectors by least squares. Near pairs vote first, so that the steps between far
-/// lamps are counted with an accurate basis. A vote weighs as much as the area of the smaller lamp, because small
-/// crumbs look alike everywhere.
+/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps votes
+/// if its difference is about `i a + j b` with integers `i` and `j`. Close pairs vote first, so that the steps between
+/// distant lamps are counted with an accurate basis. A vote is weighted by the area of the smaller lamp, because small
+/// fragments resemble each other everywhere.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();
@@ -33,7 +34,7 @@ pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2
         if !inverse.is_finite() {
             break;
         }
-        // Normal equations of difference = [a b] (i, j).
+        // Accumulate the normal equations of difference = [a b] (i, j).
         let (mut gram, mut sums) = (DMat2::ZERO, DMat2::ZERO);
         let mut votes = 0;
         for (n, p) in lamps.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Places of a lattice that the border of the exemplar cuts.
+//! Excludes lattice sites that have no lamp (dark sites) and that the border of the exemplar cuts.
 //!
-//! A lamp at such a place is left out, because only a part of it is visible. A place of this kind without a lamp must
-//! be left out too: if patches could show the dark places at the border but not the lit ones, the texture would miss
-//! lamps more often than the exemplar does.
+//! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Sites without a lamp
+//! that the border cuts must be left out too. If patches could show these dark sites but not the lit ones, the texture
+//! would lack lamps more often than the exemplar does.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -10,12 +10,13 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Lamps are at the same place of a cell if, after whole lattice steps, they are closer than this, in periods.
+/// Two lamps lie at one position of the cell if their offset deviates from a lattice vector by less than this, in
+/// periods.
 const SAME: f64 = 0.2;
-/// A place of the cell is meant for a lamp if at least this share of its fully visible copies has one.
+/// A position of the cell counts as a site of lamps if at least this share of its fully visible copies has a lamp.
 const MADE_FOR: f64 = 0.5;
 
-/// Marks dark places that the border cuts as unusable, so that patches do not show them.
+/// Marks dark sites that the border cuts as unusable, so that patches do not show them.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();
@@ -56,7 +57,7 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     Ok(())
 }
 
-/// One lamp of each place in a cell of the lattice; `inverse` maps to steps of the lattice.
+/// Returns one lamp for each position in the lattice cell. `inverse` maps unwarped pixels to lattice steps.
 fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     let mut first: Vec<&Component> = Vec::new();
     for lamp in exemplar.lamps() {
@@ -71,7 +72,7 @@ fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     first
 }
 
-/// Marks boxes of unwarped pixels as unusable for patches, unless that leaves nothing usable.
+/// Marks boxes of unwarped pixels as unusable for patches, unless no usable pixel would remain.
 fn hide(exemplar: &mut Exemplar, boxes: &[[usize; 4]]) {
     let working = &exemplar.working;
     let mut usable = working.usable.clone();

@@ -1,8 +1,9 @@
-//! The cells of a lattice.
+//! Enumerates the cells of a lattice.
 
 use glam::{DMat2, DVec2};
 
-/// The cells whose place, relative to that of cell (0, 0), lies between two corners; and some cells around them.
+/// The cells whose position, relative to cell (0, 0), lies between the corners `low` and `high`; some cells around
+/// them may be included. `to_cells` maps positions to cells.
 pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
     let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| to_cells * c);
     let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();

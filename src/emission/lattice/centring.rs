@@ -1,14 +1,14 @@
-//! Whole lamps, laid out evenly between the sides of the texture.
+//! Centres a lattice in the texture, so that the border cuts as few lamps as possible.
 
 use super::continuation::Continuation;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// Most cells of a lattice in which lamps cut by the texture's border are counted.
+/// Maximum number of cells for which the lamps at the texture's border are counted.
 const MAX_CELLS: f64 = 1e6;
 
-/// A box around lights.
+/// A bounding box of lights.
 #[derive(Clone, Copy)]
 struct Bounds {
     low: DVec2,
@@ -30,9 +30,9 @@ impl Bounds {
     }
 }
 
-/// The shift of a lattice that puts a lamp, or the middle between two lamps, into the middle of a texture of `size`
-/// unwarped pixels. Of these shifts, the one with which the border cuts fewest lamps, and then leaves most room beside
-/// the others. `None` without a lattice.
+/// The shift that centres a lattice in a texture of `size` unwarped pixels: it moves a lamp, or the midpoint between
+/// two lamps, to the texture's centre. Of these shifts, it is the one with the fewest lamps cut by the border, then
+/// with the largest distance of the other lamps from the border. `None` without a lattice.
 pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
     let [a, b] = continuation.lattice()?;
     let motif = motif(exemplar, continuation);
@@ -51,8 +51,8 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
     Some(shifts[best])
 }
 
-/// The boxes that a lattice repeats: the lamps of one cell, the lamp nearest to the middle of the exemplar first. Where
-/// the exemplar's extent serves as a period, all lamps along that axis share one box.
+/// The boxes that a lattice repeats: the lamps of one cell, beginning with the lamp nearest to the exemplar's centre.
+/// If the exemplar's extent serves as a period, all lamps along that axis share one box.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
@@ -78,14 +78,13 @@ fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     }
 }
 
-/// The number of lamps that the border of the texture cuts, and the smallest distance of the other lamps from the
-/// border.
+/// The number of lamps that the texture's border cuts, and the minimum distance of the other lamps from the border.
 fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
     let inverse = DMat2::from_cols(a, b).inverse();
     let (mut cut, mut room) = (0, f64::INFINITY);
     for lamp in motif {
         let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-        // The cells that bring the lamp near the texture.
+        // Find the cells that move the lamp close to the texture.
         let half = (lamp.high - lamp.low) / 2.0;
         let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
         let cells = corners.map(|c| inverse * (c - lamp.centre()));

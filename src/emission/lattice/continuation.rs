@@ -1,28 +1,28 @@
-//! How a texture goes on beyond its exemplar.
+//! How the pattern of a texture continues beyond its exemplar: as a lattice, as a row, by repetition, or freely.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
 
-/// Largest slant at which a row of lamps still follows an axis. [judged on 5 photos]
+/// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
-/// How the texture goes on beyond the exemplar.
+/// The law by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Continuation {
-    /// The texture is a part of the exemplar.
+    /// No continuation: the texture is a part of the exemplar.
     Copy,
-    /// Two periods were found in the lights, in unwarped pixels.
+    /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
-    /// One period was found (the first); the extent of the exemplar serves as the second.
+    /// The lights form a row: its period, then the extent of the exemplar as the second period.
     Row([DVec2; 2]),
-    /// Too few lights to have a law: the exemplar repeats as a whole, its extent serving as both periods.
+    /// Too few lights for a period: the exemplar repeats as a whole, with its extent as both periods.
     Tile([DVec2; 2]),
-    /// Many lights without a period: patches go anywhere.
+    /// Many lights without a period: patches are placed without a lattice.
     Free,
 }
 
 impl Continuation {
-    /// The lattice on which patches must stay, if any.
+    /// The lattice by which patches must be shifted, if there is one.
     pub fn lattice(&self) -> Option<[DVec2; 2]> {
         match *self {
             Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
@@ -30,12 +30,12 @@ impl Continuation {
         }
     }
 
-    /// The same law with its lattice stretched so that a whole number of periods, at least one, fits a size.
+    /// Stretches the lattice so that a whole number of periods, at least one, fits into `size`.
     ///
-    /// Errors: `Degenerate` where that leaves no lattice.
+    /// Errors: `Degenerate` if the stretched lattice has no area.
     pub fn fitted(self, size: DVec2) -> Result<Self> {
         let fit = |[a, b]: [DVec2; 2]| {
-            // Steps along both periods to the far ends of the two sides.
+            // Round the two sides of the texture to whole steps along both periods.
             let inverse = DMat2::from_cols(a, b).inverse();
             let steps = |side: DVec2| (inverse * side).round();
             let whole = DMat2::from_cols(steps(DVec2::X * size.x), steps(DVec2::Y * size.y)).inverse();
@@ -56,7 +56,7 @@ impl Continuation {
         })
     }
 
-    /// The periods along x and along y, in unwarped pixels, where the lattice has a period along that axis. Both
+    /// The periods along x and along y in unwarped pixels; `None` if the lattice has no period along that axis. Both
     /// periods of a copy are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {

@@ -1,4 +1,4 @@
-//! The correlation of a masked image with itself at every shift.
+//! The autocorrelation of a masked image: its correlation with itself at every shift.
 
 use crate::error::Result;
 use crate::exec;
@@ -18,21 +18,21 @@ impl std::ops::Mul for Complex {
     }
 }
 
-/// Pearson's correlation of an image with itself shifted, over the pixels that are valid in both; by three forward and
-/// two inverse Fourier transforms (Padfield 2012).
+/// Pearson's correlation of an image with itself after a shift, over the pixels that are valid in both. It is computed
+/// by three forward and two inverse Fourier transforms (Padfield 2012).
 pub struct Autocorrelation {
     width: usize,
     height: usize,
-    /// Sides of the padded grid, powers of two.
+    /// Sides of the zero-padded grid, powers of two.
     columns: usize,
     rows: usize,
-    /// Correlation and number of overlapping pixels for every shift, wrapped.
+    /// Correlation and number of overlapping pixels for every shift; negative shifts wrap around.
     value: Vec<f32>,
     overlap: Vec<f32>,
 }
 
 impl Autocorrelation {
-    /// Values must be 0 where a pixel is not valid.
+    /// Computes the autocorrelation. `values` must be 0 where `valid` is false.
     pub fn new(values: &[f32], valid: &[bool], width: usize, height: usize, job: Job) -> Result<Self> {
         let (columns, rows) = ((2 * width).next_power_of_two(), (2 * height).next_power_of_two());
         let spectrum = |signal: &dyn Fn(usize) -> (f64, f64)| -> Result<Vec<Complex>> {
@@ -47,15 +47,16 @@ impl Autocorrelation {
         let m = spectrum(&|i| (f64::from(values[i]), 0.0))?;
         let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
 
-        // Cross spectra conj(A) B give the sums of a(p) b(p + shift). Two real results share one transform: v·v + i
-        // m·m, and m·v + i s·v. The latter are sums over the first pixel of each pair; the sums over the second pixel
-        // are found at the opposite shift.
+        // The inverse transform of conj(A) B gives the sums of a(p) b(p + shift). One transform computes two real
+        // results: v·v + i m·m, and m·v + i s·v. The latter are sums over the first pixel of each pair; the sums over
+        // the second pixel stand at the opposite shift.
         let cross = |a: &[Complex], b: &[Complex], c: &[Complex], d: &[Complex]| -> Result<Vec<Complex>> {
             let mut grid = try_vec(columns * rows, Complex::default())?;
             for (i, out) in grid.iter_mut().enumerate() {
                 let ab = Complex { re: a[i].re, im: -a[i].im } * b[i];
                 let cd = Complex { re: c[i].re, im: -c[i].im } * d[i];
-                // The inverse transform is the conjugate of the forward transform of the conjugate.
+                // Conjugate the product: the inverse transform is the conjugate of the forward transform of the
+                // conjugate.
                 *out = Complex { re: ab.re - cd.im, im: -(ab.im + cd.re) };
             }
             transform(grid, columns, rows, job)
@@ -78,7 +79,7 @@ impl Autocorrelation {
             overlap[i] = n as f32;
             let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
             let least = 1e-9 * n;
-            // Where neither side varies, both are alike if their means are equal.
+            // If neither image varies in the overlap, the correlation is 1 if their means are equal, else 0.
             value[i] = if var1 > least && var2 > least {
                 ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
             } else {
@@ -95,20 +96,20 @@ impl Autocorrelation {
         })
     }
 
-    /// The number of pixels that are compared at a shift.
+    /// The number of overlapping pixels at a shift.
     pub fn overlap(&self, x: isize, y: isize) -> f32 {
         self.index(x, y).map_or(0.0, |i| self.overlap[i])
     }
 
-    /// The correlation at a shift, in [-1, 1]; `None` where fewer than `least` pixels overlap.
+    /// The correlation at a shift, in [-1, 1]; `None` if fewer than `least` pixels overlap.
     pub fn at(&self, x: isize, y: isize, least: f32) -> Option<f32> {
         self.index(x, y).filter(|&i| self.overlap[i] >= least).map(|i| self.value[i])
     }
 }
 
-/// Forward transform in two dimensions: rows, transpose, rows, transpose.
+/// Forward transform in two dimensions: transform the rows, transpose, and repeat both steps.
 fn transform(mut grid: Vec<Complex>, columns: usize, rows: usize, job: Job) -> Result<Vec<Complex>> {
-    // No progress is reported: the transforms take milliseconds.
+    // Report no progress, because the transforms take milliseconds.
     let silent = job.part(0.0, 0.0);
     for (width, height) in [(columns, rows), (rows, columns)] {
         let twiddles: Vec<Complex> = (0..width / 2)

@@ -1,4 +1,4 @@
-//! The extent of the exemplar as a period, for lights that show no other law.
+//! The extent of the exemplar as a period, for lights that have no period of their own.
 
 use super::continuation::Continuation;
 use crate::emission::agreement::statistics;
@@ -6,35 +6,35 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Smallest gap between the lamps of one cell and the lamps of the next, in unwarped pixels. [convention]
+/// Minimum gap between the lamps of adjacent cells, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
-/// An exemplar with fewer lamps than this shows no law of its own and repeats as a whole. [judged on 5 photos]
+/// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Lamps form a group by themselves if the room around them, both sides together, is more than this many times the
-/// longest distance from a lamp to its nearest neighbour. [judged on 5 photos]
+/// Lamps count as one group if the free space around them, both sides together, exceeds this many times the longest
+/// distance from a lamp to its nearest neighbour. [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
-/// Width and height of the usable part of the exemplar, in unwarped pixels.
+/// Width and height of the usable box of the exemplar, in unwarped pixels.
 pub fn of(exemplar: &Exemplar) -> DVec2 {
     let [x0, y0, x1, y1] = exemplar.working.usable_box();
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The law by which the exemplar repeats as a whole.
+/// The continuation by which the exemplar repeats as a whole.
 pub fn as_period(exemplar: &Exemplar) -> Continuation {
     let cell = whole_exemplar(exemplar, of(exemplar));
     Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
 }
 
-/// Whether there are too few lamps for a law of their own, or all lamps form one group.
+/// Whether there are too few lamps to find a period, or all lamps form one isolated group.
 pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The sides of the cell with which an exemplar repeats as a whole. They are chosen so that the texture has the same
-/// lit share as the shown part of the plane. So the cell is smaller than the exemplar's extent where the extent
+/// The sides of the cell by which an exemplar repeats as a whole. They are chosen so that the texture has the lit
+/// share of the shown part of the plane. The cell is therefore smaller than the exemplar's extent if the extent
 /// includes corners that the photo does not show, or cut lamps that are left out.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
@@ -44,7 +44,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     if share > 1.0 - 1e-6 {
         return extent;
     }
-    // Lamps of one cell keep clear of the lamps of the next cell.
+    // Keep a gap between the lamps of adjacent cells.
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
         (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
@@ -54,7 +54,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
-/// Whether the lamps lie close together, far from the sides of the exemplar along both axes, and so are one object,
+/// Whether the lamps lie close together, far from the sides of the exemplar along both axes. They are then one object,
 /// such as a chandelier.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
@@ -66,9 +66,9 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period at which a row that ends within the exemplar is repeated along itself: the length of the exemplar along
-/// the row, with the room at both ends, in whole periods of the row. `None` where the row may go on beyond the
-/// exemplar, because one of its ends has no room for another lamp.
+/// Returns the period along a row with which the whole row repeats, if it ends within the exemplar: the length of the
+/// exemplar along the row, including the free space at both ends, rounded to whole periods of the row. `None` if the
+/// row may continue beyond the exemplar, because there is no space for another lamp at one of its ends.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;
@@ -94,8 +94,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether the photo shows the places of the next lamp beyond both ends of a row; the shown part of the plane is no
-/// rectangle, so it may not. Without a photo all places count as shown.
+/// Whether the photo shows the positions of the next lamp beyond both ends of a row. The shown part of the plane need
+/// not be a rectangle. Without a photo, all positions count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

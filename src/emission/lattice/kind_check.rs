@@ -1,18 +1,18 @@
-//! Whether a period leads from lamps to lamps of their kind.
+//! Tests whether a period moves lamps onto lamps of their kind.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
-/// Largest relative difference, in each of both sides, of two lamps of one kind. [judged on 5 photos]
+/// Maximum relative difference between two lamps of one kind, in each side. [judged on 5 photos]
 const KIND: f64 = 0.33;
-/// Largest share of the lamps that a period may lead to lamps of another kind. [judged on 5 photos]
+/// Maximum share of the lamps that a period may move onto lamps of another kind. [judged on 5 photos]
 const MAX_UNLIKE: f64 = 0.4;
-/// Most lamps that are looked at. [bench emission:seconds]
+/// Maximum number of lamps that are tested. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;
 
-/// Whether a shift leads from lamps to lamps of their kind; shifts that lead to no lamp do not count. Light also
-/// correlates with itself where a row of narrow panes falls onto a row of wide panes, but such a shift is no period.
+/// Whether a shift moves lamps onto lamps of their kind; lamps that it moves onto no lamp are ignored. Lights also
+/// correlate at a shift that moves a row of narrow panes onto a row of wide panes, but such a shift is not a period.
 pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     let all: Vec<_> = exemplar.lamps().collect();
     let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);

@@ -1,10 +1,10 @@
-//! Regularity: the lattice the lamps lie on, from the autocorrelation of their mask.
+//! Finds the lattice that the lamps lie on, from the autocorrelation of their mask.
 //!
-//! Where a shift lays the mask onto itself nearly perfectly, the lamps repeat by that shift. The two shortest such
-//! shifts make the lattice, which may be rectangular, hexagonal or skewed; missing lamps lower the correlation only by
-//! their share. Every patch is held to the phase of the lattice. If there is only one such shift, or only a handful of
-//! lamps, the extent of the exemplar serves as the missing period, because the exemplar does not show how its design
-//! goes on beside itself. Many lamps without any such shift are left free.
+//! If a shift maps the mask nearly exactly onto itself, the lamps repeat with that shift. The two shortest such shifts
+//! form the lattice, which may be rectangular, hexagonal or skewed. Missing lamps lower the correlation only by their
+//! share. Every patch keeps the phase of the lattice. If there is only one such shift, or only a handful of lamps, the
+//! extent of the exemplar serves as the missing period, because the exemplar does not show how its design continues
+//! beside itself. Many lamps without any such shift are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -25,24 +25,25 @@ use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Smallest correlation of a period, as a share of the best: lower ones match lamps of unequal kind.
+/// Minimum correlation of a period, relative to the highest correlation: lower ones match lamps of different kinds.
 /// [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
-/// Share of the valid pixels that must overlap for a correlation to count. [bench emission:patterns]
+/// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
-/// Longest side of the image that is correlated. [bench emission:seconds]
+/// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
 const SIDE: usize = 160;
-/// Sine of the angle between two shifts below which they are parallel: about 17°. [bench emission:patterns]
+/// Two shifts count as parallel if the sine of the angle between them is below this: about 17°.
+/// [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
-/// How the lights of the exemplar repeat, read from their correlation; and how well: the lower correlation of both
-/// periods, 0 without a period. A shift may be a period if its correlation is at least `least_regularity`; at 1 nothing
-/// repeats.
-pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> (Continuation, f64) {
-    if least_regularity >= 1.0 {
+/// Finds how the exemplar's lights continue (the law: lattice, row, repetition or none) from their autocorrelation.
+/// Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be a period
+/// if its correlation is at least `min_regularity`; at 1 there are no periods.
+pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
+    if min_regularity >= 1.0 {
         return (Continuation::Free, 0.0);
     }
-    let periods = periods(exemplar, correlated, least_regularity);
+    let periods = periods(exemplar, correlated, min_regularity);
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let extent = extent::of(exemplar);
     match periods[..] {
@@ -52,14 +53,14 @@ pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) 
     }
 }
 
-/// A row with a given period; the extent of the exemplar serves as the other period.
+/// A row with the given period; the extent of the exemplar serves as its second period.
 pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
     Continuation::Row([basis::straight(period), across])
 }
 
-/// How lights without a period go on: few repeat as a whole, many are free.
+/// The continuation of lights without a period: few lamps repeat as a whole, many are placed without a lattice.
 pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
     if !extent::has_few_lamps(exemplar, extent) {
         return Continuation::Free;
@@ -67,19 +68,19 @@ pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
     extent::as_period(exemplar)
 }
 
-/// The autocorrelation of the lights at a reduced size.
+/// The autocorrelation of the exemplar's lights, computed at a reduced size.
 pub struct Correlated {
     correlation: Autocorrelation,
     width: usize,
     height: usize,
     /// Number of valid pixels.
     valid: usize,
-    /// Unwarped pixels per pixel.
+    /// Unwarped pixels per pixel of the reduced image.
     to_unwarped: DVec2,
 }
 
 impl Correlated {
-    /// Correlates the lights in the working pixels for which `is_within` returns true.
+    /// Correlates the lights in those working pixels for which `is_within` returns true.
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);
@@ -99,11 +100,11 @@ impl Correlated {
     }
 }
 
-/// At most two shifts, not parallel, that map the pattern of the lights onto itself, shortest first, and their
-/// correlations.
-fn periods(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> Vec<(DVec2, f64)> {
+/// At most two shifts that map the pattern of lights onto itself, with their correlations: the shortest one, and the
+/// next that is not parallel to it.
+fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
-    for (shift, value) in shifts(exemplar, correlated, least_regularity, RELATIVE_CORRELATION, usize::MAX) {
+    for (shift, value) in shifts(exemplar, correlated, min_regularity, RELATIVE_CORRELATION, usize::MAX) {
         if periods.len() < 2 && !periods.iter().any(|p| is_parallel(p.0, shift)) {
             periods.push((shift, value));
         }
@@ -116,9 +117,9 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
 }
 
-/// The shortest shifts at which the lights fall onto themselves, and their correlations: first the axes along which
-/// nothing changes, as shifts of one pixel; then the shifts that lead from lamps to lamps of their kind, with a
-/// correlation of at least `least`, and of at least `relative` times the best.
+/// The shortest shifts that map the lights onto themselves, with their correlations. Axes along which the lights do
+/// not change come first, as shifts of one pixel. Then follow shifts between lamps of one kind. Their correlation is
+/// at least `least`, and at least `relative` times the highest.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

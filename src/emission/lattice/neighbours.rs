@@ -1,17 +1,17 @@
-//! Periods along the axes, from the distances between lamps and their neighbours.
+//! Finds periods along the axes from the distances between neighbouring lamps.
 //!
-//! Correlation needs lamps of equal shape at equal distances. Lamps in rows and columns tell their periods by the
-//! distances between neighbours, even where the far lamps are blurred. Where wide and narrow bars alternate, these
-//! distances alternate too, and the second neighbour tells the period.
+//! Autocorrelation needs lamps of equal shape at equal distances. The distances between neighbours give the periods of
+//! lamps in rows and columns even if the distant lamps are blurred. If wide and narrow bars alternate, these distances
+//! alternate too, and the distance to the second neighbour gives the period.
 
 use crate::emission::exemplar::evidence::Evidence;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// Number of neighbours that may tell a period: the next lamp, and the lamp after it. [convention]
+/// Number of neighbours whose distances are proposed as periods: the next lamp, and the lamp after it. [convention]
 const ORDERS: usize = 2;
 
-/// The lattices along the axes that the neighbours propose.
+/// Proposes lattices along the axes: every pair of a period along x and a period along y.
 pub fn lattices(lamps: &[Evidence]) -> Vec<[DVec2; 2]> {
     let [across, down] = periods(lamps);
     across.iter().flat_map(|x| down.iter().map(|y| [DVec2::X * *x, DVec2::Y * *y])).collect()
@@ -28,8 +28,8 @@ fn periods(lamps: &[Evidence]) -> [Vec<f64>; 2] {
     })
 }
 
-/// Distance along an axis from a lamp to its neighbour of a given order, in the axis's positive direction, among the
-/// lamps in the same row or column.
+/// Distance along an axis from a lamp to its `order`-th neighbour in the axis's positive direction, among the lamps in
+/// its row or column. `None` if there are fewer neighbours.
 fn distance(lamps: &[Evidence], lamp: &Evidence, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &Evidence| other.centre - lamp.centre;
     let is_beside = |other: &&Evidence| {

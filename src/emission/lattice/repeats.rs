@@ -1,43 +1,44 @@
-//! Repeats: the shifts at which the lights fall onto lights, as peaks of the autocorrelation.
+//! Finds repeats: shifts that move lights onto lights, which are peaks of the autocorrelation.
 
 use super::correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Number of standard errors by which chance may raise the best correlation: it is the best of many shifts, some of
-/// which compare few lamps.
+/// Number of standard errors that are subtracted from the highest correlation. As the maximum over many shifts, some
+/// of which compare few lamps, it is too high by chance.
 const CHANCE: f32 = 2.0;
 
-/// The pattern counts as unchanging along an axis if the correlation at all shifts along the axis is at least this.
+/// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
 const UNCHANGING: f32 = 0.95;
 
-/// Pixels beside a period over which the correlation must fall, and the fall. Where the correlation stays higher, the
-/// lights do not repeat but only go on along the shift.
+/// Beside a period, the correlation must fall by the second value within the number of pixels given by the first. If
+/// it stays higher, the lights do not repeat but only continue along the shift.
 const FLAT: (isize, f32) = (8, 0.02);
 
-/// A shift at which lights fall onto lights.
+/// A shift that moves lights onto lights.
 pub struct Repeat {
     pub shift: DVec2,
-    /// The correlation there, and the number of pixels that are compared.
+    /// The correlation at this shift, and the number of pixels that are compared.
     pub value: f32,
     pub overlap: f32,
 }
 
 impl Repeat {
-    /// The correlation minus the part that chance may have added, when `lights` lights are compared.
+    /// A lower bound of the correlation that allows for chance, if `lights` lights are compared.
     pub fn lower_bound(&self, lights: f32) -> f32 {
         self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 
-/// Whether the lights stay the same under any shift along an axis that leaves at least half of the pixels overlapping.
+/// Whether the lights do not change under any shift along an axis, as long as enough pixels overlap (2.5 times
+/// `least`).
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
     !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
 }
 
-/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which
-/// nothing changes the maxima are ridges: then only shifts across that direction are looked at.
+/// Finds the local maxima of the correlation in one half-plane of shifts, at sub-pixel precision. Along a direction in
+/// which the lights do not change, the maxima are ridges; only shifts perpendicular to that direction are then tested.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
@@ -58,7 +59,7 @@ pub fn peaks(
                 _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),
             };
             let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-            // Of equal neighbours the first in reading order is the peak.
+            // Of equal neighbours, the first one in reading order is the peak.
             let is_peak = ring.iter().enumerate().all(|(i, &(dx, dy))| {
                 let other = at(dx, dy);
                 if i < 4 { value > other } else { value >= other }
@@ -70,8 +71,8 @@ pub fn peaks(
                 })
             });
             if is_peak && !is_flat {
-                // The vertex of the parabola through three values: where it is, and how far it rises above the middle
-                // one.
+                // The vertex of the parabola through three values: its position, and its height above the middle
+                // value.
                 let vertex = |low: f32, high: f32| {
                     let (slope, curvature) = (high - low, low + high - 2.0 * value);
                     if curvature > -1e-6 {
@@ -90,8 +91,8 @@ pub fn peaks(
     found
 }
 
-/// Measures every shift again by the farthest peak that is a multiple of it: the error of that peak is divided by the
-/// multiple.
+/// Refines every shift by the farthest peak that is a multiple of it: the position error of that peak is divided by
+/// the multiple.
 pub fn sharpen(peaks: &mut [Repeat]) {
     let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
     for Repeat { shift, .. } in peaks {

@@ -1,28 +1,28 @@
-//! Keeps the amount of light in a texture at its due share.
+//! Keeps the amount of light in a texture at its target share.
 //!
-//! Without balance, the parts of the exemplar that fit most often would decide how much light the texture has and, in a
-//! pattern with missing lamps, how many are missing. So a block passes its excess or lack of light on to the blocks
-//! beside and below it that are still to come, as in error diffusion (Floyd and Steinberg 1976). Then not only the
-//! whole texture has its share of light, but also any part of it.
+//! Without balance, the parts of the exemplar that match most often would determine how much light the texture has
+//! and, in a pattern with missing lamps, how many lamps are missing. So each block passes its excess or lack of light
+//! on to its neighbours that are not filled yet, beside and below it, as in error diffusion (Floyd and Steinberg
+//! 1976). Then not only the whole texture has the right share of light, but also every part of it.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Weight of one lamp too many or too few, as a squared difference for each of its pixels. On a lattice a surplus lamp
-/// counts as much as a lamp in the wrong place differs in colour, confidence and distances. Elsewhere the weight must
-/// stay below a third: with more, patches would be chosen that bring the right light but do not keep the distances
-/// between lamps.
+/// Weight of one surplus or missing lamp, as a squared difference for each of its pixels. On a lattice, the weight
+/// equals the squared difference in colour, confidence and distances that a lamp in the wrong position causes. Without
+/// a lattice, the weight must stay below a third: a larger weight would select patches that bring the right amount of
+/// light but violate the distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 
-/// The excess light of the blocks of a texture, in pixels. Blocks follow one another row by row.
+/// The excess light of the blocks of a texture, in pixels. Blocks are filled row by row.
 pub struct Balance {
-    /// Excess light passed on by earlier blocks, for each block of this row and of the next row to make up for.
+    /// Excess light passed on by earlier blocks, for each block of the current row and of the next row.
     row: Vec<f64>,
     below: Vec<f64>,
-    /// The column of the block at work.
+    /// The column of the current block.
     column: usize,
-    /// Mean area of a lamp, and the weight of one lamp too many or too few.
+    /// Mean area of a lamp, and the weight of one surplus or missing lamp.
     lamp: f64,
     weight: f64,
 }
@@ -33,25 +33,25 @@ impl Balance {
         Ok(Self { row: try_vec(columns, 0.0)?, below: try_vec(columns, 0.0)?, column: 0, lamp, weight })
     }
 
-    /// Goes on with the first block of the next row.
+    /// Moves on to the first block of the next row.
     pub fn begin_row(&mut self) {
         std::mem::swap(&mut self.row, &mut self.below);
         self.below.fill(0.0);
         self.column = 0;
     }
 
-    /// Notes that the block at work has `excess` more light than its share.
+    /// Records that the current block has `excess` more light than its share.
     pub fn add(&mut self, excess: f64) {
         self.row[self.column] += excess;
     }
 
-    /// The penalty for `excess` more light in the block at work, in squared differences of pixels.
+    /// The penalty if the current block gets `excess` more light, in squared differences of pixels.
     pub fn penalty(&self, excess: f64) -> f64 {
         self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
     }
 
-    /// Passes on the excess of the block at work, and goes on with the next block. At the sides of the texture the
-    /// shares of missing neighbours go to the block below, so nothing is lost.
+    /// Passes the excess of the current block on to its neighbours, and moves on to the next block. At the sides of
+    /// the texture, the shares of missing neighbours go to the block below, so that no light is lost.
     pub fn pass_on(&mut self) {
         let (column, excess) = (self.column, self.row[self.column] / 16.0);
         let (has_left, has_right) = (column > 0, column + 1 < self.row.len());
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn choosing_the_least_penalty_keeps_every_part_at_its_share() {
-        // Each block has a lamp or none, of ten pixels; three of four should.
+        // Each block has one lamp of ten pixels or none. Three of four blocks should have a lamp.
         let (columns, rows, lamp) = (24, 20, 10.0);
         let mut balance = Balance::new(columns, lamp, true).unwrap();
         let mut lamps = vec![0.0; columns * rows];

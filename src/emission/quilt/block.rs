@@ -1,8 +1,8 @@
-//! A block of the texture: its empty pixels, and the pixels that patches have already filled.
+//! A block of the texture: its empty pixels, and the pixels that earlier patches have filled.
 
 use super::patch_map::NONE;
 
-/// A rectangle of working pixels.
+/// A rectangle of working pixels, the pixels at the reduced size of the synthesis.
 #[derive(Clone, Copy)]
 pub struct Rect {
     pub x: usize,
@@ -11,8 +11,8 @@ pub struct Rect {
     pub h: usize,
 }
 
-/// Adjacent pixels in a row of a block, and the pixel of the exemplar that the first of them shows; the others show the
-/// pixels that follow it.
+/// A run of adjacent pixels in a row of a block. `source` is the exemplar pixel that the first of them shows; the
+/// others show the exemplar pixels that follow it.
 #[derive(Clone, Copy)]
 pub struct Run {
     pub x: usize,
@@ -21,16 +21,16 @@ pub struct Run {
     pub source: usize,
 }
 
-/// A block: its empty pixels, and its filled pixels, which show pixels of the exemplar.
+/// A block as runs of empty pixels, and runs of filled pixels, which show pixels of the exemplar.
 pub struct Block {
     pub rect: Rect,
-    /// For each pixel of the block, row by row, the pixel of the exemplar that it shows; or [`NONE`].
+    /// For each pixel of the block, row by row, the index of the exemplar pixel that it shows, or [`NONE`].
     pub known: Vec<u32>,
     pub empty: Vec<Run>,
     pub filled: Vec<Run>,
 }
 
-/// Number of pixels in some runs.
+/// Total number of pixels in the given runs.
 pub fn count(runs: &[Run]) -> usize {
     runs.iter().map(|r| r.length).sum()
 }

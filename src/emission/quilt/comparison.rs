@@ -1,4 +1,5 @@
-//! How well a shift of the exemplar fills a block: coverage, agreement with the known pixels, and balance of light.
+//! Scores how well a shift of the exemplar fills a block: coverage, agreement with the known pixels, and balance of
+//! light.
 
 use super::balance::Balance;
 use super::block::{Block, Rect, Run, count};
@@ -10,27 +11,28 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches whose error is within this factor of the best (within 10 % in the original), or within this difference, are
-/// equally good.
+/// Patches are equally good if their error is within this factor of the least error (the original paper allows 10 %),
+/// or within this difference from it.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
-/// Number of steps in which the lit share of a pixel is counted.
+/// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches compete by their error if they cover at least this share of the pixels that the best-covering patch covers.
+/// Patches compete by their error if they fill at least this share of the pixels that the best-covering patch fills.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
-/// If there are more patches than this, they are first compared in every `ROW_STEP`-th row, and only this many of the
-/// best are compared in all rows.
+/// If there are more patches than this, a first comparison uses every `ROW_STEP`-th row only, and the `FINALISTS` best
+/// patches are then compared in all rows.
 const FINALISTS: usize = 16;
 
 const ROW_STEP: usize = 4;
 
-/// Pixels compared by one thread before another is worth waking.
+/// Minimum number of pixels that a parallel task compares.
 const TASK: usize = 1 << 16;
 
-/// A shift; how many empty pixels of a block it fills; by how many pixels of light these exceed their share; and its
-/// error: the mean squared difference from the known pixels, plus the penalty for that excess.
+/// A shift with its score. `fills`: number of empty pixels of a block that it fills. `excess`: light in these pixels
+/// above their share, in pixels. `error`: mean squared difference from the known pixels, plus the penalty for the
+/// excess.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -44,13 +46,13 @@ pub struct Comparison<'a> {
     pub guide: &'a Guide<'a>,
     pub features: Vec<Feature>,
     pub turns: Vec4,
-    /// Sums of the usable pixels, and of their light.
+    /// Summed-area tables of the usable pixels, and of their light.
     pub usable: AreaSums,
     light: AreaSums,
-    /// Share of the shown part of the exemplar that is light.
+    /// Lit share of the shown part of the exemplar.
     lit_share: f64,
     is_lattice: bool,
-    /// Difference in error that is too small to prefer one shift to another.
+    /// Difference in error below which two shifts are equally good.
     slack: f32,
 }
 
@@ -59,7 +61,8 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels. Rounding alone makes both distances differ by √(1/6) of a pixel.
+        // Lattice shifts are rounded to whole pixels. The rounding alone changes both distances by √(1/6) of a pixel
+        // (root mean square).
         let slack = match is_lattice {
             true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -76,8 +79,8 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The part of a run that a shift takes from within the exemplar: how many pixels of the run come before that part,
-    /// how many pixels it has, and where the first of them lies in the exemplar.
+    /// The part of a run that lies within the exemplar after a shift: the number of pixels of the run before that
+    /// part, its number of pixels, and the position of its first pixel in the exemplar.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
@@ -87,8 +90,8 @@ impl<'a> Comparison<'a> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// For each shift, how many empty pixels of a block it fills, or 0 if the best fills far more; and whether all of
-    /// the block would show usable pixels.
+    /// For each shift, the number of empty pixels of a block that it fills, or 0 if the best shift fills far more; and
+    /// whether the shift would show usable pixels in the whole block.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -98,7 +101,7 @@ impl<'a> Comparison<'a> {
                 .map(|(_, length, [x, y])| self.usable.count(x, y, length, 1))
                 .sum()
         };
-        // Usable pixels in all of the block: an upper bound for the number of pixels that a shift can fill.
+        // Usable pixels in the whole block are an upper bound for the number of pixels that a shift can fill.
         let most_of = |shift: &Shift| {
             let working = self.guide.working;
             let side = |at: usize, by: i32, length: usize, side: usize| {
@@ -126,9 +129,9 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// Scores the shifts that fill at least `least` empty pixels or, without `least`, nearly as many as the best shift
-    /// fills: how well they agree with the known pixels. A shift that is clearly worse than the best so far, or than an
-    /// error of `limit`, gets an infinite error.
+    /// Scores how well shifts agree with the known pixels. Only shifts are scored that fill at least `least` empty
+    /// pixels or, without `least`, nearly as many as the best shift. A shift that is clearly worse than the best one
+    /// so far, or than an error of `limit`, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,
@@ -155,7 +158,7 @@ impl<'a> Comparison<'a> {
                 |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
             let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
             ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            // Without known pixels nothing tells the shifts apart, so all of them stay.
+            // Without known pixels, all shifts score alike, so keep all of them.
             ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
             covering = ranked.into_iter().map(|r| r.1).collect();
         }
@@ -176,8 +179,8 @@ impl<'a> Comparison<'a> {
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference of a shift from the known pixels, of which there are `filled`; infinite as soon as it
-    /// exceeds `limit`. `is_whole` says that the shift shows usable pixels in all of the block.
+    /// Mean squared difference of a shift from the `filled` known pixels; infinite as soon as it exceeds `limit`.
+    /// `is_whole` states that the shift shows usable pixels in the whole block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
@@ -201,7 +204,7 @@ impl<'a> Comparison<'a> {
                     at += part.len();
                 }
             }
-            // A mean over fewer than `filled` pixels would only be larger.
+            // If fewer than `filled` pixels are compared, the mean is even larger.
             if sum > most {
                 return f32::INFINITY;
             }
@@ -209,9 +212,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, by how many pixels of light it exceeds the due share when it fills the empty pixels of a block.
-    /// On a lattice the due share is the average of all given shifts, because lamps always lie at the same places of a
-    /// block; elsewhere it is the lit share of the exemplar.
+    /// For each shift, the light that it adds to the empty pixels of a block above their share, in pixels. On a
+    /// lattice, the share is the mean over all given shifts, because lamps always lie at the same positions of a
+    /// block; otherwise it is the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));
@@ -229,7 +232,7 @@ impl<'a> Comparison<'a> {
         lights.into_iter().map(|[light, all]| light - share * all).collect()
     }
 
-    /// The largest error that counts as equally good as `error`.
+    /// The largest error that counts as equally good as the error `error`.
     pub fn equally_good(&self, error: f32) -> f32 {
         error * TOLERANCE.0 + self.slack
     }

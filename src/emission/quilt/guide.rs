@@ -1,23 +1,24 @@
-//! The pixel features by which patches are compared: colour and metadata, each with its weight ("Lighting Style
-//! Transfer", §6).
+//! The pixel features by which patches are compared: weighted colour and metadata ("Lighting Style Transfer", §6).
 
 use crate::emission::exemplar::working::Working;
 use crate::image::Image;
 use glam::{Vec3, Vec4};
 
-/// The features of a pixel: colour and metadata, scaled by the square roots of their weights, so that plain squared
-/// differences add up to the weighted error.
+/// The features of a pixel: colour and metadata (confidence, distances), scaled by the square roots of their weights,
+/// so that the squared differences of features add up to the weighted error.
 pub type Feature = [Vec4; 2];
 
-/// Colour and metadata of the exemplar, their weights, and how many patches are compared by them.
+/// Colour and metadata (confidence, x and y distance to the nearest light) of the exemplar, and the settings of the
+/// comparison.
 pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
     pub metadata_weight: f32,
-    /// Distance to a lamp that the metadata give as 1, and the mean area of a lamp, in working pixels.
+    /// Distance to a light at which the distances in the metadata saturate at 1, and mean area of a lamp; both in
+    /// working pixels.
     pub cap: f64,
     pub lamp: f64,
-    /// Number of candidates per patch where any shift is allowed.
+    /// Number of candidate shifts per patch if there is no lattice.
     pub candidates: usize,
 }
 
@@ -30,27 +31,28 @@ impl Guide<'_> {
             .collect()
     }
 
-    /// The factors of colours and of metadata in a feature.
+    /// The factors of the colour channels and of the metadata channels in a feature.
     fn scales(&self) -> (f32, f32) {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// The period of each metadata channel: values that differ by it mean the same. Distances wrap around: one cap to
-    /// the left of a lamp means the same as one cap to its right.
+    /// The period of each metadata channel; values that differ by a period are equivalent. Distances wrap around: one
+    /// cap to the left of a light is equivalent to one cap to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-/// Sum of the squared differences of the channels of two rows of pixels; metadata wrap around with the periods `turns`.
+/// Sum of squared differences between two rows of pixels over all channels; metadata wrap around with the periods
+/// `turns`.
 pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
         let apart = apart.min(turns - apart);
         [colour + off * off, metadata + apart * apart]
     };
-    // Add two pixels at once, so that two chains of additions run in parallel.
+    // Add two pixels at once, so that two independent chains of additions run in parallel.
     let (mut even, mut odd) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
     let (a, b) = (a.chunks_exact(2), b.chunks_exact(2));
     if let ([a], [b]) = (a.remainder(), b.remainder()) {

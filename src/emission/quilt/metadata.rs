@@ -1,22 +1,22 @@
-//! The three metadata channels that lead the synthesis through empty space: confidence, and the signed x and y
-//! distance to the nearest feature ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
+//! The three metadata channels that guide the synthesis through empty space: confidence, and the signed x and y
+//! distance to the nearest light ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
 //!
-//! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the plane
-//! differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane, so that
-//! both distances always belong to the same lamp, vary continuously except at the bisectors between lamps, and exist in
-//! rows without light.
+//! The paper does not define "horizontal and vertical distance" for pixels whose nearest lamp in the row is not the
+//! nearest lamp in the plane. Here the distances are the components of the offset from a pixel to its *nearest lit
+//! pixel* in the plane. Both distances then always belong to one lamp, vary continuously except at the bisectors
+//! between lamps, and exist in rows without light.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 
-/// The index where there is no lit pixel.
+/// Marks that there is no lit pixel.
 const NONE: u32 = u32::MAX;
 
-/// Confidence in channel 0; the x and y offset to the nearest lit pixel in channels 1 and 2, divided by `cap` and
-/// clamped to [-1, 1]; both are 1 where there is no light at all. The two ends of the range mean the same: nothing
-/// near.
+/// Computes the metadata. Channel 0 is the confidence. Channels 1 and 2 are the x and y offset to the nearest lit
+/// pixel, divided by `cap` and clamped to [-1, 1]; both are 1 if there is no light at all. The values -1 and 1 are
+/// equivalent: no light is near.
 pub fn compute(
     confidence: &[f32],
     is_lit: impl Fn(usize) -> bool,
@@ -41,10 +41,10 @@ pub fn compute(
     Ok(out)
 }
 
-/// Index of the lit pixel nearest to each pixel, exact and in linear time: along columns by two sweeps, then along
-/// rows by the lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012).
+/// Finds the index of the lit pixel nearest to each pixel, exactly and in linear time: two sweeps along columns, then
+/// the lower envelope of parabolas along rows (Felzenszwalb and Huttenlocher 2012).
 fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, job: Job) -> Result<Vec<u32>> {
-    // The nearest lit row within each column.
+    // Find the nearest lit row within each column.
     let mut row_of = try_vec(width * height, NONE)?;
     for y in 0..height {
         for x in 0..width {
@@ -65,8 +65,8 @@ fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, 
         }
     }
 
-    // The nearest of these pixels across all columns: parabolas (x - c)² + d(c)² and the points from which each is
-    // lowest.
+    // Find the nearest of these pixels across all columns: the lower envelope of the parabolas (x - c)² + d(c)², as a
+    // list of parabolas with the positions from which each is lowest.
     let mut nearest = try_vec(width * height, NONE)?;
     exec::for_rows(&mut nearest, width, job, |y, out| {
         let rows = &row_of[y * width..(y + 1) * width];

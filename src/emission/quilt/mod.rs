@@ -1,11 +1,11 @@
-//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style
-//! Transfer", §6).
+//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata, the confidence and the
+//! distances to the nearest light ("Lighting Style Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
-//! those are kept that agree best with the pixels already placed, and one of them is drawn at random. Pixels that a
-//! patch cannot show, because the photo does not show them, are filled by further patches in the same block. On a
-//! lattice only shifts by lattice vectors are tried: whichever is chosen, the lamps stay in phase, and errors do not
-//! add up from patch to patch, because every shift is measured from the origin.
+//! those with the best agreement with the pixels already placed are kept, and one of them is chosen at random. Pixels
+//! that a patch cannot show, because the photo does not show them, are filled by further patches in the same block. On
+//! a lattice, only lattice vectors are tried as shifts. The lamps then stay in phase whichever shift is chosen, and
+//! errors do not accumulate from patch to patch, because every shift is measured from the origin.
 
 pub mod balance;
 pub mod block;
@@ -30,33 +30,34 @@ use guide::{Guide, squares};
 use patch_map::{NONE, PatchMap, Shift};
 use std::collections::BTreeMap;
 
-/// Most candidates per patch where a lattice allows more. [bench emission:seconds]
+/// Maximum number of candidate shifts per patch on a lattice. [bench emission:seconds]
 const LATTICE_CANDIDATES: usize = 128;
 
-/// Added to the cost of a seam on a lamp: more than any path around it. [convention]
+/// Cost added to a seam where it crosses a lamp: more than any path around the lamp costs. [convention]
 const LAMP_COST: f32 = 1e4;
 
 struct Quilt<'a> {
     comparison: Comparison<'a>,
-    /// The finished rows, which no further block reaches, and all shifts.
+    /// The finished rows, which no further block changes, and all shifts used so far.
     patch_map: PatchMap,
-    /// The first row that blocks still reach, and the labels of the rows from there on.
+    /// Index of the first unfinished row, and the labels of the unfinished rows.
     first: usize,
     open: Vec<u32>,
     /// The label of each shift.
     labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
     continuation: Continuation,
-    /// Where the lattice begins, in unwarped pixels.
+    /// Position of the lattice's origin, in unwarped pixels.
     offset: DVec2,
-    /// The box of the usable pixels, and the corners at which a whole block of them can be taken.
+    /// The bounding box of the usable pixels; and, without a lattice, the top left corners of all blocks of usable
+    /// pixels.
     bounds: [usize; 4],
     admissible: Vec<u32>,
     balance: Balance,
     seed: u64,
 }
 
-/// Fills `width` × `height` working pixels with patches of side `block`; a lattice is shifted by `offset` unwarped
-/// pixels.
+/// Fills `width` × `height` working pixels with patches of side `block`. `offset` is the position of the lattice's
+/// origin in unwarped pixels.
 pub fn place(
     guide: &Guide,
     continuation: Continuation,
@@ -80,7 +81,7 @@ pub fn place(
         comparison: Comparison::new(guide, usable, is_lattice)?,
         patch_map: PatchMap::new(width, height),
         first: 0,
-        // Room for a row of blocks, and for the row of pixels above it.
+        // Allocate a row of blocks, and the row of pixels above it.
         open: try_vec(width * (h + 1), NONE)?,
         labels: BTreeMap::new(),
         continuation,
@@ -105,8 +106,8 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// The sides of a block, and the corners at which a whole block of usable pixels can be taken from an exemplar of the
-/// given width. Free patches need at least one such corner, so the block shrinks until there is one.
+/// Returns the sides of a block, and the top left corners in the exemplar at which the whole block consists of usable
+/// pixels. Patches without a lattice need at least one such corner, so the block shrinks until there is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -131,7 +132,7 @@ impl Quilt<'_> {
         self.open[(y - self.first) * self.patch_map.width + x]
     }
 
-    /// Moves the finished rows above `y` into the patch map.
+    /// Moves the finished rows, above row `y`, into the patch map.
     fn close(&mut self, y: usize) {
         let width = self.patch_map.width;
         let done = (y - self.first) * width;
@@ -142,7 +143,7 @@ impl Quilt<'_> {
         self.first = y;
     }
 
-    /// Places patches until no patch can fill any of the empty pixels left in the block.
+    /// Places patches in a block until it is full, or until no patch can fill any of its empty pixels.
     fn fill(&mut self, rect: &Rect, overlap: [usize; 2], job: Job) -> Result<()> {
         let mut first = true;
         loop {
@@ -162,7 +163,7 @@ impl Quilt<'_> {
         }
     }
 
-    /// The block at `rect`, with the pixels of the exemplar that it shows already.
+    /// The block at `rect`, with the exemplar pixels that it shows so far.
     fn block(&self, rect: &Rect) -> Block {
         let mut block =
             Block { rect: *rect, known: Vec::with_capacity(rect.w * rect.h), empty: Vec::new(), filled: Vec::new() };
@@ -170,7 +171,7 @@ impl Quilt<'_> {
             let start = (y - self.first) * self.patch_map.width + rect.x;
             let mut x = rect.x;
             for labels in self.open[start..start + rect.w].chunk_by(|a, b| a == b) {
-                // Adjacent pixels of one shift show adjacent pixels of the exemplar.
+                // Adjacent pixels with one shift show adjacent pixels of the exemplar.
                 let source = self.patch_map.source(x, y, labels[0], self.comparison.guide.working);
                 let run = Run { x, y, length: labels.len(), source: source.unwrap_or(NONE as usize) };
                 match source {
@@ -184,7 +185,7 @@ impl Quilt<'_> {
         block
     }
 
-    /// The shifts of the pixels around a block.
+    /// The distinct shifts of the pixels around a block.
     fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
@@ -202,8 +203,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The shifts worth trying: the shifts of the neighbours, which continue the patches already placed, and shifts
-    /// that the pattern allows.
+    /// The candidate shifts for a block: the shifts of its neighbours, which continue the patches already placed, and
+    /// new shifts: lattice vectors or, without a lattice, random ones.
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;
@@ -222,14 +223,14 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// Lattice vectors that bring some usable pixel into a block.
+    /// The lattice vectors that move some usable pixel into a block; a random subset if there are too many.
     fn lattice_shifts(&self, rect: &Rect, basis: [DVec2; 2]) -> Vec<Shift> {
         let pitch = self.comparison.guide.working.pitch;
         let point = |x: usize, y: usize| DVec2::new(x as f64, y as f64);
         let low = (point(rect.x, rect.y) - point(self.bounds[2], self.bounds[3])) * pitch;
         let high = (point(rect.x + rect.w, rect.y + rect.h) - point(self.bounds[0], self.bounds[1])) * pitch;
 
-        // The cells of the lattice that the box of such shifts touches.
+        // Find the range of lattice cells for the box of such shifts.
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         let corners =
             [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - self.offset));
@@ -253,8 +254,9 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Draws one of the shifts that are as good as the best. A row of lamps begins with the beginning of the exemplar,
-    /// and keeps the shift of a neighbour as long as that is as good as the best.
+    /// Chooses at random among the shifts whose error exceeds the least error by no more than the tolerance. In a row
+    /// of lamps, the first block takes the shift nearest to the start of the exemplar, and later blocks keep the shift
+    /// of a neighbour if its error is within the tolerance.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {
@@ -273,7 +275,7 @@ impl Quilt<'_> {
         equal.get(rng.below(equal.len().max(1))).map(|s| **s)
     }
 
-    /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.
+    /// Moves a patch without a lattice to the best position in its neighbourhood, by steps of decreasing length.
     fn improve(&self, block: &Block, start: Scored, job: Job) -> Result<Scored> {
         let mut best = start;
         for step in [4, 2, 1] {
@@ -291,7 +293,8 @@ impl Quilt<'_> {
         Ok(best)
     }
 
-    /// Shows a shift in the empty pixels of a block and, given an overlap, also in the known pixels beyond the seams.
+    /// Writes a shift to the empty pixels of a block and, if an overlap is given, to the known pixels beyond the
+    /// seams.
     fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
         let (working, rect, known) = (self.comparison.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {
@@ -312,7 +315,7 @@ impl Quilt<'_> {
             }
         };
 
-        // Where the new patch begins: the column in each row, and the row in each column.
+        // Find the seams: the first column of the new patch in each row, and its first row in each column.
         let mut from_column = vec![0; rect.h];
         let mut from_row = vec![0; rect.w];
         if let Some([ow, oh]) = overlap {

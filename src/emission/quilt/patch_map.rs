@@ -1,38 +1,38 @@
-//! Which part of the exemplar each part of the texture shows, stored compactly by patches.
+//! The patch map: for each pixel of the texture, the shift that leads to the pixel of the exemplar it shows.
 
 use crate::emission::exemplar::working::Working;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Steps per unwarped pixel in which shifts are told apart.
+/// Shifts are rounded to this many steps per unwarped pixel before they are compared.
 const SUBPIXELS: f64 = 1e6;
 
-/// The label of a pixel that no patch shows.
+/// The label of a pixel without a patch.
 pub const NONE: u32 = u32::MAX;
 
-/// A shift of the exemplar: place in the texture minus place in the exemplar.
+/// A shift of the exemplar: position in the texture minus position in the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// In working pixels.
+    /// The shift in working pixels (at the reduced size of the synthesis), rounded.
     pub working: [i32; 2],
-    /// The same shift before rounding, in unwarped pixels.
+    /// The shift before rounding, in unwarped pixels.
     pub exact: DVec2,
 }
 
-/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is stored as runs of
-/// one label.
+/// For each working pixel of the texture, the shift by which it shows the exemplar. Patches are wide, so a row is
+/// stored as runs of equal labels.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,
     pub height: usize,
     pub shifts: Vec<Shift>,
-    /// End (exclusive) and label of each run, row after row.
+    /// End (exclusive) and label of each run, row by row.
     runs: Vec<(u32, u32)>,
-    /// Where the runs of each row end.
+    /// For each row, the end of its runs in `runs`.
     ends: Vec<usize>,
 }
 
-/// Shifts, and the label of each.
+/// A list of distinct shifts; the label of a shift is its index.
 #[derive(Default)]
 pub struct Shifts {
     pub list: Vec<Shift>,
@@ -40,7 +40,8 @@ pub struct Shifts {
 }
 
 impl Shifts {
-    /// The label of a shift, given in unwarped pixels; a working pixel is `pitch` unwarped pixels wide and high.
+    /// Returns the label of a shift, and adds the shift if it is new. `exact` is in unwarped pixels; a working pixel
+    /// is `pitch` unwarped pixels wide and high.
     pub fn label(&mut self, exact: DVec2, pitch: DVec2) -> u32 {
         let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
         *self.labels.entry(key).or_insert_with(|| {
@@ -72,7 +73,7 @@ impl PatchMap {
         self.ends.push(self.runs.len());
     }
 
-    /// Repeats the patch map over `width` × `height` pixels, with the period `across`, in unwarped pixels, along one
+    /// Repeats the patch map over `width` × `height` pixels. `across` is the period in unwarped pixels, along one
     /// axis. Equal shifts get one label, even from different repetitions.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
@@ -82,7 +83,7 @@ impl PatchMap {
             None => NONE,
         };
         let period = across.abs() / pitch;
-        // The repetition that a position lies in, and the position within it.
+        // The index of the repetition that contains a position, and the position within the repetition.
         let place = |at: usize, period: f64, side: usize| {
             let times = if period > 0.0 { (at as f64 / period + 1e-9) as usize } else { 0 };
             (times, (at - (times as f64 * period).round().min(at as f64) as usize).min(side - 1))
@@ -120,14 +121,15 @@ impl PatchMap {
         })
     }
 
-    /// The shift that a pixel shows.
+    /// The shift of a pixel; `None` if it has no patch.
     pub fn shift(&self, x: usize, y: usize) -> Option<&Shift> {
         let row = self.row(y);
         let run = row.partition_point(|&(end, _)| end as usize <= x);
         self.shifts.get(row.get(run)?.1 as usize)
     }
 
-    /// The exemplar's working pixel that a label shows at a pixel of the result, if any.
+    /// The exemplar's working pixel that the texture shows at a pixel with the given label; `None` outside the
+    /// exemplar.
     pub fn source(&self, x: usize, y: usize, label: u32, working: &Working) -> Option<usize> {
         let [dx, dy] = self.shifts.get(label as usize)?.working;
         working.index(x as i32 - dx, y as i32 - dy)
@@ -155,7 +157,7 @@ mod tests {
                 assert_eq!(patch_map.shift(x, y), patch_map.shifts.get(label as usize));
             }
         }
-        // Every 7 pixels to the right, each of two unwarped ones: the shift grows by as much.
+        // Repeat every 7 working pixels, which are 14 unwarped pixels: the shift grows by 7 with each repetition.
         let part = PatchMap { width: 7, ..patch_map.clone() };
         let again = part.repeated((30, height), DVec2::X * 14.0, DVec2::splat(2.0));
         for (x, y) in [(0, 0), (6, 3), (7, 3), (29, 11)] {

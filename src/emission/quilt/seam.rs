@@ -1,12 +1,12 @@
-//! The minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
+//! Computes the minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
 
-/// The path from the top row to the bottom row of a `width` × `height` grid of costs, moving at most one column per
-/// row, with the least sum of costs: returns its column in each row. Of equal paths, takes the leftmost.
+/// Finds the cheapest path from the top row to the bottom row of a `width` × `height` grid of costs, which moves by at
+/// most one column per row. Returns its column in each row; of equal paths, the leftmost.
 pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     if width == 0 || height == 0 {
         return vec![0; height];
     }
-    // Least cost of any path that ends at each cell, from the top.
+    // Compute the least cost of any path from the top that ends at each cell.
     let mut total: Vec<f64> = cost.iter().map(|&c| f64::from(c)).collect();
     let best_above = |total: &[f64], x: usize, y: usize| {
         let row = &total[(y - 1) * width..y * width];
@@ -22,7 +22,7 @@ pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
             }
         }
     }
-    // Trace the path back up from its cheapest end.
+    // Trace the path back from its cheapest end.
     let last = &total[(height - 1) * width..];
     let mut x = (1..width).fold(0, |best, c| if last[c] < last[best] { c } else { best });
     let mut path = vec![x; height];
@@ -33,7 +33,7 @@ pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     path
 }
 
-/// The path with the least sum from left to right: returns its row in each column.
+/// Finds the cheapest path from left to right, and returns its row in each column.
 pub fn horizontal_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     let transposed: Vec<f32> = (0..width * height).map(|i| cost[(i % height) * width + i / height]).collect();
     vertical_cut(&transposed, height, width)
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// Cost of the best path that starts at `(x, y)`, by trying them all.
+    /// Cost of the cheapest path that starts at `(x, y)`, found by trying all paths.
     fn brute_force(cost: &[f32], width: usize, height: usize, x: usize, y: usize) -> f64 {
         let here = f64::from(cost[y * width + x]);
         if y + 1 == height {
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn a_lamp_in_the_way_is_passed() {
-        // A wall of high cost with one gap at the left.
+        // A barrier of high cost with one gap at the left, where the path must pass.
         let cost: Vec<f32> =
             (0..25).map(|i| if i / 5 == 2 && i % 5 > 0 { 1e3 } else { (i % 5 == 0) as u8 as f32 * 2.0 }).collect();
         assert_eq!(vertical_cut(&cost, 5, 5)[2], 0);

@@ -1,4 +1,4 @@
-//! Lights that follow the patches, on a stretched lattice.
+//! Adapts the patch map to a stretched lattice, for the lights that are copied patch by patch.
 
 use super::patch_map::{NONE, PatchMap, Shift, Shifts};
 use crate::emission::exemplar::Exemplar;
@@ -7,10 +7,10 @@ use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
 
-/// Stretches the patch map to another lattice. Each cell of the stretched lattice shows, in its own place, the patch at
-/// its middle; pixels where that patch shows nothing usable keep their own patch. Along an axis on which nothing
-/// changes there are no cells. A texture of `size` unwarped pixels holds a whole number of cells, so the patch map
-/// continues seamlessly from each side to the opposite side.
+/// Adapts the patch map to the lattice `stretched` instead of the exemplar's lattice `own`. Each cell of the stretched
+/// lattice shows the patch at its centre; pixels where that patch shows nothing usable keep their own patch. Along an
+/// axis in which the lights do not change, there are no cells. A texture of `size` unwarped pixels holds a whole
+/// number of cells, so the patch map continues seamlessly from each side to the opposite side.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -34,14 +34,14 @@ pub fn stretch(
     for y in 0..patch_map.height {
         for (x, label) in row.iter_mut().enumerate() {
             let place = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
-            // The middle of the cell, and the same point wrapped into the texture.
+            // Find the centre of the pixel's cell, and wrap it into the texture.
             let cells = to_cells * (place - start);
             let at = start + stretched * (cells.round() * has_cells + cells * (DVec2::ONE - has_cells));
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // The cells between this point and the place where the patch begins are wider or narrower than the
-            // exemplar's: correct the shift by the difference.
+            // Stretched cells are wider or narrower than the exemplar's. Correct the shift of a patch by the
+            // difference, for all cells between its origin and `at`.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)
@@ -63,5 +63,5 @@ pub fn stretch(
     Ok(out)
 }
 
-/// A vector of at most this many unwarped pixels is no period: nothing changes along it.
+/// A basis vector of at most this length, in unwarped pixels, is not a period: the lights do not change along it.
 const UNCHANGING: f64 = 1.5;

@@ -1,9 +1,10 @@
-//! How the exemplar is read: its region, and the law by which its lamps go on.
+//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a row,
+//! repetition of the whole exemplar, or none.
 //!
-//! One reading is brittle: far lamps, magnified with their blur, spoil the correlation of near ones. So laws are
-//! proposed from the whole exemplar and from its sharper parts, with strict and with loose thresholds; each is scored
-//! by how well it predicts the lamps of the whole photo ([`sites`]), and the best is kept. The reading that the
-//! settings ask for stays unless another one scores clearly higher.
+//! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
+//! near ones. So laws are proposed from the whole exemplar and from its sharper parts, with strict and with loose
+//! thresholds. Each law is scored by how well it predicts the lamps of the whole photo ([`sites`]). The law that the
+//! settings ask for is kept unless another one scores clearly higher.
 
 pub mod sites;
 
@@ -18,64 +19,67 @@ use crate::job::Job;
 use glam::DVec2;
 use sites::Sites;
 
-/// Largest magnifications, relative to the sharpest pixel, of the parts of the exemplar that are read on their own.
-/// [judged on 20 photos]
+/// Laws are also proposed from parts of the exemplar with at most these magnifications, relative to the least
+/// magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Smallest correlation of a shift that is proposed as a period, absolute and as a share of the best; and the largest
-/// number of such shifts. [judged on 20 photos]
+/// Limits for shifts that are proposed as periods: their minimum correlation, their minimum correlation relative to
+/// the best shift, and their maximum number. [judged on 20 photos]
 const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
-/// Score of lights without a law: a lattice must predict more than this. [judged on 20 photos]
+/// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Score below which the law that the settings ask for is dropped, and the lights count as having no law.
-/// [judged on 20 photos]
+/// Minimum score of the law (lattice or row) that the settings ask for. Below it, the pattern counts as having no
+/// period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// By how much a score must exceed the score of the reading that the settings ask for. [judged on 20 photos]
+/// Another law (lattice or row) replaces the one that the settings ask for only if its score is higher by more than
+/// this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
-/// Laws are compared only if lamps make up at least this share of the light, by photo pixels; the rest are lights that
-/// run through the photo. [judged on 20 photos]
+/// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
+/// through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
-/// Largest relative difference between the periods of two laws that count as the same law. [judged on 20 photos]
+/// Two lattices or rows count as equal if the relative difference between their periods is at most this.
+/// [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// The score by which a law was chosen, and the best other law.
+/// The score of the chosen law of continuation (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN where too few of the lights are lamps to
-    /// tell.
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps for a
+    /// comparison.
     pub score: f64,
-    /// The best other law, and its score; 0 without one.
+    /// The best alternative law, and its score; the score is 0 if there is no alternative.
     pub runner_up: Continuation,
     pub runner_up_score: f64,
 }
 
 impl Choice {
-    /// By how much the score exceeds the runner-up's.
+    /// The score minus the score of the runner-up.
     pub fn margin(&self) -> f64 {
         self.score - self.runner_up_score
     }
 
-    /// The choice when a law was compared with no other: no score, and the law itself as the runner-up, with score 0.
+    /// The choice if no laws were compared: the score is NaN, and the runner-up is the chosen law itself with score 0.
     pub fn only(continuation: Continuation) -> Self {
         Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
     }
 }
 
-/// An exemplar that has been read: its lamps, and how they go on.
+/// The analysis of an exemplar: its lamps, and the law by which their pattern continues (lattice, row, repetition or
+/// none).
 pub struct Reading {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
     pub regularity: f64,
     pub choice: Choice,
-    /// The settings that the exemplar was read with.
+    /// The settings with which the exemplar was analysed.
     working_side: f64,
-    least_regularity: f32,
+    min_regularity: f32,
     law: Law,
     max_magnification: f64,
 }
 
-/// A law that was proposed.
+/// A proposed law of continuation (lattice, row, …), with its regularity and its score.
 #[derive(Clone, Copy)]
 struct Proposal {
     continuation: Continuation,
@@ -84,38 +88,38 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// A law that predicts no lamp from another.
+    /// A pattern without a period: no lamp is predicted from another.
     fn lawless(continuation: Continuation) -> Self {
         Self { continuation, regularity: 0.0, score: LAWLESS }
     }
 }
 
 impl Reading {
-    /// Reads an exemplar. Errors: no valid pixel, no light (`Degenerate`).
+    /// Analyses the exemplar of an input. Errors: no valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
         let exemplar = Exemplar::new(input, working_side(input, params), params.max_magnification, job.part(0.0, 0.4))?;
         Self::of(exemplar, input, params, job)
     }
 
-    /// Reads an exemplar that has been cut out of its input.
+    /// Finds the law of continuation for an exemplar that has been built already.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
-        let least_regularity = params.least_regularity;
+        let min_regularity = params.min_regularity;
         let whole = Correlated::new(&exemplar, |_| true, job.part(0.4, 0.6))?;
-        let (continuation, regularity) = lattice::law(&exemplar, &whole, least_regularity);
+        let (continuation, regularity) = lattice::law(&exemplar, &whole, min_regularity);
         let mut reading = Self {
             choice: Choice::only(continuation),
             exemplar,
             continuation,
             regularity,
             working_side,
-            least_regularity,
+            min_regularity,
             law: params.law,
             max_magnification: params.max_magnification,
         };
         match params.law {
             Law::Correlation => {}
-            Law::Best if least_regularity >= 1.0 => {}
+            Law::Best if min_regularity >= 1.0 => {}
             Law::Best => reading.compare(&whole, job.part(0.6, 1.0))?,
             Law::Whole => reading.set(Proposal::lawless(extent::as_period(&reading.exemplar))),
             Law::Free => reading.set(Proposal::lawless(Continuation::Free)),
@@ -124,17 +128,17 @@ impl Reading {
         Ok(reading)
     }
 
-    /// Whether a texture of such settings would read the exemplar in the same way.
+    /// Whether these settings would lead to the same analysis, so that it can be used again.
     pub fn serves(&self, input: &Input, params: &Params) -> bool {
         let Exemplar { width, height, .. } = self.exemplar;
         [width, height] == [input.unwarped.width, input.unwarped.height]
             && self.working_side == working_side(input, params)
-            && self.least_regularity == params.least_regularity
+            && self.min_regularity == params.min_regularity
             && self.law == params.law
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the law that the settings ask for with others, and keeps the best.
+    /// Compares the law of continuation that the settings ask for with other laws, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = exemplar.evidence(Role::is_whole);
@@ -143,7 +147,7 @@ impl Reading {
         let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
         let endless: f64 = through.map(|(_, area)| area).sum();
         if evidence.len() == 1 && parts.is_empty() && endless == 0.0 {
-            // One lamp repeats nothing, whatever its few pixels correlate with.
+            // A single lamp shows no repetition, even if its few pixels correlate.
             self.set(Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar))));
             return Ok(());
         }
@@ -161,12 +165,13 @@ impl Reading {
         proposals.retain(|p| p.score.is_finite());
         let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
 
-        // Find the best law, the first among equals. It replaces the law that the settings ask for only if it is
-        // clearly better.
+        // Find the law with the highest score, the first one among equals. It replaces the law that the settings ask
+        // for only if its score is clearly higher.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // The panes of a luminous ceiling go on along both axes, unless their lattice predicts clearly less.
+        // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the law
+        // that the settings ask for.
         let panes = lattice
             .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
         let chosen = match panes {
@@ -187,8 +192,9 @@ impl Reading {
         Ok(())
     }
 
-    /// Proposes laws from the whole exemplar and from its sharper parts: the law by `least_regularity`, and rows and
-    /// lattices by looser thresholds. A luminous ceiling also gets lattices from the distances of neighbours.
+    /// Proposes laws from the whole exemplar and from its sharper parts: the law at threshold `min_regularity`, and
+    /// rows and lattices at looser thresholds. A luminous ceiling also gets lattices from the distances between
+    /// neighbouring panes.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -202,7 +208,7 @@ impl Reading {
         let mut proposals = Vec::new();
         let extent = extent::of(exemplar);
         for correlated in std::iter::once(whole).chain(&parts) {
-            let (continuation, regularity) = lattice::law(exemplar, correlated, self.least_regularity);
+            let (continuation, regularity) = lattice::law(exemplar, correlated, self.min_regularity);
             proposals.push(Proposal { continuation, regularity, score: 0.0 });
             let shifts = lattice::shifts(exemplar, correlated, PROPOSED, PROPOSED_RELATIVE, MAX_SHIFTS);
             for (n, &(a, goodness)) in shifts.iter().enumerate() {
@@ -223,7 +229,7 @@ impl Reading {
         Ok(proposals)
     }
 
-    /// Keeps the best law of the kind that the settings ask for. Errors: there is none (`Degenerate`).
+    /// Chooses the best law of the kind that the settings ask for. Errors: there is none (`Degenerate`).
     fn fix(&mut self, law: Law, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Continuation| match law {
             Law::Row => matches!(c, Continuation::Row(_)),
@@ -251,8 +257,8 @@ impl Reading {
     }
 }
 
-/// How well a law predicts the lamps, whole lamps and parts. NaN where nothing changes along a period: only the
-/// correlation can judge such a law.
+/// Score of a law of continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern
+/// does not change along one of the periods: only the autocorrelation can judge a law with such a period.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
@@ -263,7 +269,7 @@ fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: C
     }
 }
 
-/// Whether two laws are the same except for a small difference of their periods.
+/// Whether two laws are equal except for a small difference between their periods.
 fn is_same(a: Continuation, b: Continuation) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());

@@ -1,9 +1,10 @@
-//! The sites of a lattice: at which places of a cell lamps lie, and how well they predict each other.
+//! The sites of a lattice: the positions within a cell at which lamps lie, and how well the lattice predicts the
+//! lamps.
 //!
-//! A law is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice lead to it from
-//! another lamp of similar size. A place in full view to which the lattice leads, but which has no lamp, is a false
-//! prediction. Both are weighted by the photo pixels of the lamp, so that the blurred far part of a photo counts no
-//! more than it shows. A lattice that predicts no lamp from another scores 0.
+//! A law is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice lead to it
+//! from another lamp of similar size. A false prediction is a position in full view to which the lattice leads, but
+//! which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant part of a
+//! photo has little weight. A lattice that predicts no lamp from another scores 0.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::evidence::Evidence;
@@ -12,55 +13,57 @@ use crate::emission::lattice::cells;
 use crate::emission::lattice::continuation::Continuation;
 use glam::{DMat2, DVec2};
 
-/// Lamps of a site lie no farther apart, after whole steps of the lattice, than this share of the shorter period, blur
-/// aside. [judged on 20 photos]
+/// Maximum distance between lamps of one site after whole steps of the lattice, as a share of the shorter period. The
+/// lamps' blur is added to it. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
-/// A place without marked light still shines if its contrast with the surroundings is at least this share of the
-/// contrast of the site's lamps; and the largest number of lamps compared. [judged on 20 photos]
+/// A position without marked light shines nevertheless if its contrast with the surroundings is at least the share
+/// `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured.
+/// [judged on 20 photos]
 const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
-/// Most places of a site that are looked at. [bench emission:seconds]
+/// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// Maximum length of a basis vector, in pixels of the unwarped photo, that is no period: the search for a lattice gives
-/// a shift of one pixel for an axis along which the pattern does not change. [rounding]
+/// A basis vector of at most this length, in unwarped pixels, is not a period: along an axis where the pattern does
+/// not change, the lattice search returns a shift of one pixel. [rounding]
 const UNCHANGING: f64 = 1.5;
 
-/// A place in the lattice cell at which lamps lie.
+/// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Where it lies in the cell of its first lamp, in unwarped pixels.
+    /// Position of the site in the cell of its first lamp, in unwarped pixels.
     pub at: DVec2,
-    /// Its lamps, those that the photo shows best first.
+    /// The lamps at this site; lamps with most photo pixels come first.
     pub lamps: Vec<Evidence>,
-    /// Total area of the site's lamps, in photo pixels.
+    /// Total area of the lamps in photo pixels.
     pub shown: f64,
-    /// Photo pixels of the places in full view where no light is marked: `unmarked` of those that shine all the same,
-    /// `missing` of those that do not.
+    /// Area in photo pixels of the positions in full view where no light is marked. `unmarked` counts positions that
+    /// shine nevertheless, `missing` counts the others.
     pub unmarked: f64,
     pub missing: f64,
-    /// Number of the places that do not shine.
+    /// Number of positions counted in `missing`.
     pub dark: usize,
 }
 
 impl Site {
-    /// Share of the places in view that have a lamp or shine, weighted by photo pixels.
+    /// Share of the positions in view that have a lamp or shine, weighted by photo pixels.
     pub fn occupancy(&self) -> f64 {
         let seen = self.shown + self.unmarked;
         seen / (seen + self.missing).max(f64::MIN_POSITIVE)
     }
 }
 
-/// The sites of a lattice.
+/// The sites of a lattice or a row.
 pub struct Sites {
     pub list: Vec<Site>,
-    /// Cells per unwarped pixel; a row has cells along its period only.
+    /// Maps unwarped pixels to lattice cells. A row uses only the first coordinate, along its period.
     pub to_cells: DMat2,
     pub basis: [DVec2; 2],
     is_row: bool,
 }
 
 impl Sites {
-    /// The sites of a lattice or a row; `None` of other laws, and where nothing changes along a period.
+    /// Groups the lamps into sites of a lattice or a row. `None` for other laws, and if the pattern does not change
+    /// along a period.
     pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
         let (basis, is_row) = match law {
             Continuation::Lattice(basis) => (basis, false),
@@ -100,19 +103,19 @@ impl Sites {
         Some(sites)
     }
 
-    /// The part of a step from lamp to lamp that whole steps of the lattice do not explain.
+    /// The remainder of a step between lamps after subtracting the nearest lattice vector.
     pub fn residual(&self, step: DVec2) -> DVec2 {
         step - self.whole_steps(step)
     }
 
-    /// The vector of the lattice nearest to a step.
+    /// The lattice vector nearest to a step.
     pub fn whole_steps(&self, step: DVec2) -> DVec2 {
         let cells = (self.to_cells * step).round();
         self.basis[0] * cells.x + if self.is_row { DVec2::ZERO } else { self.basis[1] * cells.y }
     }
 
-    /// Moves a site to the mean position of its lamps, weighted by their photo pixels, and measures the places in full
-    /// view where the lattice predicts a lamp of this site but none is marked.
+    /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Measures the positions in
+    /// full view where the lattice predicts a lamp of this site but no light is marked.
     fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
         let Site { lamps, .. } = &self.list[k];
         let first = lamps[0];
@@ -124,8 +127,8 @@ impl Sites {
         (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
-    /// Photo pixels of the places in full view without a marked lamp: of places that shine like the lamps of the site,
-    /// and of places that do not; then the number of the latter.
+    /// Tests the predicted positions in full view where no light is marked. Returns three values: photo pixels of the
+    /// positions that shine like the site's lamps, photo pixels of the others, and the number of the others.
     fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
@@ -163,9 +166,10 @@ impl Sites {
         (unmarked, missing, dark)
     }
 
-    /// How well the lattice predicts the lamps, in [0, 1]. The score is a product: of the photo pixels of all lamps,
-    /// seen or predicted, the share that is both; times the share of the lamps beyond the first lamp of each site.
-    /// Lights that the border cuts, `parts`, count as predicted where a site leads to them.
+    /// How well the lattice predicts the lamps, in [0, 1]: a product of two shares. The first share is that of
+    /// correctly predicted lamps among all seen or predicted lamps, by photo pixels. The second is the share of lamps
+    /// that are not the first lamp of their site. Lights that the border cuts, `parts`, count as predicted if a site
+    /// leads to them.
     pub fn score(&self, parts: &[Evidence]) -> f64 {
         let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {

@@ -1,8 +1,10 @@
-//! Two exemplars in one texture: lamps by the weights, light by the weights, and the bits of each alone where it is alone.
+//! Tests of blending two exemplars: lamps and light follow the weights, and a weight of 1 gives the bits of one
+//! exemplar alone.
 
 use super::*;
 
-/// Square lamps of 14 pixels, or round ones, every 40 pixels from `start` on.
+/// An exemplar of square lamps with sides of 14 pixels, or of round lamps with a radius of 11, with period 40 from
+/// `start`.
 fn exemplar(is_round: bool, start: f64) -> Design {
     Design::new(280, 280, move |x, y| {
         let (u, v) = ((x - start).rem_euclid(40.0) - 20.0, (y - start).rem_euclid(40.0) - 20.0);
@@ -37,7 +39,7 @@ fn a_weight_of_one_is_the_exemplar_alone_bit_by_bit() {
 
 #[test]
 fn lamps_and_light_follow_the_weights() {
-    // In step they meet lamp by lamp; out of step some would overlap.
+    // With equal phases the lamps of both exemplars coincide; with other phases some of them would overlap.
     let first = exemplar(false, 0.0);
     let params = Params { width: 1200, height: 1200, working_side: 128, ..Params::default() };
     let (square, round) = (196.0, std::f64::consts::PI * 121.0);
@@ -46,13 +48,13 @@ fn lamps_and_light_follow_the_weights() {
         let result = blended(&first, &second, &even(weight), &params);
         let lamps = inner(&result.luminaires, 1200, 1200);
         let rounds = lamps.iter().filter(|l| l.area > 300.0).count() as f64;
-        // Each lamp is whole, of one kind or the other.
+        // Each lamp must be a complete square or a complete disc.
         let is_whole = |l: &&Luminaire| (l.area - square).abs() < 20.0 || (l.area - round).abs() < 20.0;
         assert!(lamps.iter().all(is_whole), "{start} {weight}");
-        // Both are listed as kinds, that with more lamps first.
+        // The shapes must be listed as two kinds; the kind with more lamps has number 1.
         let of_rounds = if rounds > 0.5 * lamps.len() as f64 { 1 } else { 2 };
         assert!(lamps.iter().all(|l| (l.kind == of_rounds) == (l.area > 300.0) && (1..=2).contains(&l.kind)));
-        // Draws are independent: three standard deviations of their number.
+        // The choices are independent, so allow three standard deviations of the share.
         let weight = f64::from(weight);
         let places = 900.0;
         let deviation = (weight * (1.0 - weight) / places).sqrt();
@@ -71,7 +73,7 @@ fn weights_differ_from_place_to_place() {
     let ramp = Image::from_fn(2, 1, |x, _| [x as f32]).unwrap();
     let params = Params { width: 1600, height: 600, working_side: 128, ..Params::default() };
     let result = blended(&first, &second, &ramp, &params);
-    // From pixel centre to pixel centre, a quarter from each side, the weight rises from 0 to 1.
+    // The weight rises from 0 to 1 between the centres of the map's two pixels, which lie at 1/4 and 3/4 of the width.
     for (strip, expected) in [(0, 0.0f64), (1, 0.25), (2, 0.75), (3, 1.0)] {
         let range = f64::from(strip) * 400.0..f64::from(strip + 1) * 400.0;
         let lamps: Vec<&Luminaire> =
@@ -84,7 +86,8 @@ fn weights_differ_from_place_to_place() {
 
 #[test]
 fn panes_side_by_side_change_from_patch_to_patch() {
-    // Both cover most of the plane, out of step: lamp by lamp none of one kind would find a place.
+    // The panes of both exemplars cover most of the plane, with different periods. If each pane were chosen
+    // separately, no pane of one exemplar would find space.
     let pane = |period: f64, side: f64| {
         Design::new(280, 280, move |x, y| x.rem_euclid(period) > period - side && y.rem_euclid(period) > period - side)
     };

@@ -1,8 +1,8 @@
-//! Lights at the edge of sense: what is right is known of each, texel by texel.
+//! Tests of extreme patterns of lights, for which the correct texture is known texel by texel.
 
 use super::*;
 
-/// Whether a texture shows its exemplar again and again, from its corner on.
+/// Whether a texture repeats its exemplar as a whole, beginning at the texture's corner.
 fn repeats(exemplar: &Design, result: &Emission) -> bool {
     let (width, height) = (exemplar.light.width, exemplar.light.height);
     let is_same = |(i, &mask): (usize, &f32)| {
@@ -14,7 +14,7 @@ fn repeats(exemplar: &Design, result: &Emission) -> bool {
 
 #[test]
 fn one_lamp_that_touches_every_border_goes_on_as_it_meets_itself() {
-    // A diamond, whose corners touch; a frame; and a cross whose arms run through.
+    // A diamond whose corners touch the border, a frame, and a cross whose arms run through the exemplar.
     let from_middle = |x: f64, y: f64| DVec2::new(x - 32.0, y - 32.0).abs();
     let diamond = Design::new(64, 64, |x, y| from_middle(x, y).element_sum() < 32.5);
     let frame = Design::new(64, 64, |x, y| from_middle(x, y).max_element() > 26.0);
@@ -48,7 +48,7 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
         for centred in [false, true] {
             let result = exemplar.run(&Params { width, height, centred, ..Params::default() }).unwrap();
             let lit = result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0;
-            // Through lamps or between them.
+            // The line runs either through lamps or between them.
             assert!(lit == 0.0 || (lit - share).abs() < 0.02, "{width} x {height}: {lit}");
         }
     }
@@ -64,7 +64,8 @@ fn a_period_longer_than_the_exemplar_is_its_extent() {
     assert!(repeats(&exemplar, &result));
 }
 
-/// Rows that fan out, as on a plane that bends away, lie on no lattice: what was found to be regular tells the two apart.
+/// Rows that fan out, as on a curved ceiling, form no lattice: their regularity must be lower and their error larger
+/// than those of straight rows.
 #[test]
 fn a_pattern_that_bends_is_no_lattice() {
     let straight = Design::new(420, 320, |x, y| x.rem_euclid(30.0) < 10.0 && y.rem_euclid(30.0) < 10.0);

@@ -1,13 +1,14 @@
-//! Lights that run through the exemplar: no lamps, yet they meet where a texture repeats, and a plan lists them.
+//! Tests of lights that run through the exemplar: they must join at the borders of a tileable texture, and a lamp list
+//! must contain them.
 
 use super::*;
 
-/// Lines 6 pixels wide every 24, along x or along y.
+/// Lines with a width of 6 pixels and a period of 24, along x or along y.
 fn lines(along_x: bool) -> Design {
     Design::new(200, 190, move |x, y| (if along_x { y } else { x } - 5.0).rem_euclid(24.0) < 6.0)
 }
 
-/// Where lit runs of a ring of texels begin, and how long they are.
+/// The runs of lit texels in a closed ring of texels: start and length of each.
 fn runs(lit: &[bool]) -> Vec<(usize, usize)> {
     let n = lit.len();
     let starts = (0..n).filter(|&i| lit[i] && !lit[(i + n - 1) % n]);
@@ -29,8 +30,9 @@ fn lines_meet_where_the_texture_repeats() {
         let across = if along_x { height } else { width };
         let count = (across as f64 * scale / 24.0).round() as usize;
         let period = across as f64 / count as f64;
-        // Each edge is rounded to the texel, by half of one at most; and between texels larger than a pixel, where the stretch goes
-        // on by a pixel, a line has one more or less.
+        // Widths are compared in exemplar pixels. Rounding both edges to whole texels changes a width by at most one
+        // texel, which is `scale` pixels. If texels are larger than pixels, allow one more pixel, because the pattern
+        // is stretched to a whole number of periods. Otherwise, allow one pixel in all.
         let slack = if scale > 1.0 { scale + 1.0 } else { 1.0 };
         for k in 0..width * height / across {
             let at = |i: usize| if along_x { i * width + k } else { k * width + i };

@@ -1,14 +1,14 @@
-//! Outlines against shapes whose outline is known, finer than a texel.
+//! Tests of outlines against shapes with known outlines, at sub-texel precision.
 
 use super::*;
 use crate::geometry::polygon;
 
-/// A shape by its corners, turned about the origin, made larger and put somewhere.
+/// A shape given by its corners, rotated about the origin by `angle`, scaled by `radius` and moved to `at`.
 fn turned(corners: &[[f64; 2]], angle: f64, radius: f64, at: DVec2) -> Vec<DVec2> {
     corners.iter().map(|&[x, y]| at + DVec2::from_angle(angle).rotate(DVec2::new(x, y)) * radius).collect()
 }
 
-/// A polygon that a disc differs from by less than a thousandth of its radius.
+/// A polygon that approximates a disc to less than a thousandth of its radius.
 fn disc(radius: f64, at: DVec2) -> Vec<DVec2> {
     (0..96).map(|i| at + DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 96.0) * radius * 1.0003).collect()
 }
@@ -17,14 +17,14 @@ const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0
 const ARROW: [[f64; 2]; 5] = [[-1.0, -1.0], [0.2, -1.0], [1.0, 0.1], [0.2, 1.2], [-1.0, 1.2]];
 const ELL: [[f64; 2]; 6] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 0.1], [0.1, 0.1], [0.1, 1.0], [-1.0, 1.0]];
 
-/// Even-odd rule.
+/// Whether a point lies inside a polygon, by the even-odd rule.
 fn is_inside(shape: &[DVec2], p: DVec2) -> bool {
     let sides = shape.iter().zip(shape.iter().cycle().skip(1));
     sides.filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)).count() % 2
         == 1
 }
 
-/// An exemplar of which each pixel is as light as the shapes cover it.
+/// An exemplar in which the light of each pixel is the share of the pixel that the shapes cover.
 fn design(width: usize, height: usize, shapes: &[Vec<DVec2>]) -> Design {
     const N: usize = 8;
     let mut light = Image::new(width, height, 1).unwrap();
@@ -45,7 +45,8 @@ fn design(width: usize, height: usize, shapes: &[Vec<DVec2>]) -> Design {
     Design { unwarped, light, valid }
 }
 
-/// The largest distance of a point on one ring from the other (Hausdorff), those of the first within `spared` of `corners` aside.
+/// The maximum distance of a point on the outline `from` to the outline `to` (one-sided Hausdorff distance). Points
+/// closer than `spared` to one of `corners` are ignored.
 fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64 {
     let sides = || to.iter().copied().zip(to.iter().copied().cycle().skip(1));
     let nearest = |p: DVec2| {
@@ -62,7 +63,8 @@ fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64
     points.filter(|p| corners.iter().all(|c| c.distance(*p) >= spared)).map(nearest).fold(0.0, f64::max)
 }
 
-/// What is stated of a lamp against the truth, in texels: how far sides are off, how far all is, and how far the area, relatively.
+/// Errors of a lamp against the true shape: the distance of the outlines along the sides, in texels; the distance
+/// including corners, in texels; and the relative error of the area.
 fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
     let both = |corners: &[DVec2]| {
         distance(truth, &lamp.outline, corners, 1.5).max(distance(&lamp.outline, truth, corners, 1.5))
@@ -72,12 +74,12 @@ fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
 
 #[test]
 fn outlines_lie_within_a_quarter_of_a_texel() {
-    // Texels finer than pixels tell no more than these do: there it is a quarter of a pixel.
+    // If texels are smaller than pixels, the limit is a quarter of a pixel.
     for scale in [0.5, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
         let side = (112.0 * scale) as usize;
         let mut worst = [0.0f64; 3];
         for k in 0..5 {
-            // Four shapes of 11 to 16 texels, each somewhere within a texel and turned.
+            // Four shapes of 11 to 16 texels, each rotated, and at a different position relative to the texels.
             let aside = |n: f64| DVec2::new((n * 0.618).fract(), (n * 0.755).fract());
             let centre = |n: usize| {
                 (DVec2::new((n % 2) as f64 + 0.5, (n / 2) as f64 + 0.5) * 56.0 + aside((4 * k + n) as f64)) * scale
@@ -102,7 +104,7 @@ fn outlines_lie_within_a_quarter_of_a_texel() {
             }
         }
         let [sides, all, area] = worst;
-        // A corner of 90° or more, its legs cut off by a texel at most, is half a diagonal from the outline.
+        // A sharp corner of at least 90° whose legs are cut by at most one texel is off by at most half the diagonal.
         let quarter = if scale < 1.0 { 0.25 / scale } else { 0.25 };
         assert!(sides < quarter, "{scale}: {sides}");
         assert!(all < 2.0 * quarter * 2f64.sqrt(), "{scale}: {all}");
@@ -126,13 +128,14 @@ fn a_mirrored_exemplar_has_the_mirrored_outline() {
     for p in &one {
         assert!(other.iter().any(|q| q.distance(mirror(p)) < 1e-9), "{p} {other:?}");
     }
-    // Both run from x towards y.
+    // Both outlines must run from x towards y.
     assert!(polygon::area(&one) > 0.0 && polygon::area(&other) > 0.0);
 }
 
 #[test]
 fn a_mask_that_is_nowhere_sure_tells_nearly_the_same() {
-    // A lamp of which nothing is surer than 0.8 is no smaller for that, but for what the mask leaves out.
+    // If no pixel of a lamp has a confidence above 0.8, the lamp must lose no more than the edge pixels that fall
+    // below 0.5.
     let shapes = [turned(&SQUARE, 0.3, 7.2, DVec2::new(16.3, 14.9)), disc(7.7, DVec2::new(42.6, 16.2))];
     let whole = [turned(&SQUARE, 0.0, 6.0, DVec2::new(15.0, 16.0))];
     let params = Params { width: 60, height: 32, ..Params::default() };
@@ -154,7 +157,7 @@ fn a_mask_that_is_nowhere_sure_tells_nearly_the_same() {
 #[test]
 fn a_corner_that_the_border_cuts_stays_cut() {
     for k in 0..8 {
-        // Squares on their corners, of which one reaches over the border by up to a texel.
+        // A square on its corner, which reaches over the border by up to about one texel.
         let beyond = 0.15 * k as f64;
         let shape = turned(&SQUARE, std::f64::consts::FRAC_PI_4, 9.0, DVec2::new(9.0 * 2f64.sqrt() - beyond, 25.3));
         let result = design(40, 50, &[shape]).run(&Params { width: 40, height: 50, ..Params::default() }).unwrap();
@@ -175,7 +178,7 @@ fn what_the_border_cuts_ends_at_the_border() {
     assert!(distance(&lamp.outline, &truth, &[], 0.0) < 0.05, "{:?}", lamp.outline);
     assert!((lamp.area / (13.25 * 20.0) - 1.0).abs() < 0.002 && lamp.kind == 0, "{}", lamp.area);
     assert!((lamp.size - DVec2::new(20.0, 13.25)).abs().max_element() < 0.1, "{}", lamp.size);
-    // The list of a plan says the same.
+    // The lamp list of the composition must give an equal outline.
     let job = Monitor::default();
     let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
     let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();

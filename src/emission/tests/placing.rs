@@ -1,4 +1,4 @@
-//! Where patterns begin and end: offsets, centred lattices, textures that repeat, and lamps without a place.
+//! Tests of the position of patterns: offsets, centred lattices, tileable textures, and places where no lamp may be.
 
 use super::*;
 
@@ -9,7 +9,7 @@ fn an_offset_shifts_the_lattice_and_the_copy() {
         let result = exemplar.run(&params).unwrap();
         inner(&result.luminaires, params.width, params.height).iter().map(|l| l.centre).collect()
     };
-    // Of lamps whose period is (40, 36), a shift by (11, 25) is one by (11, -11).
+    // The period of the lamps is (40, 36), so shifts by (11, 25) and by (11, -11) are equivalent.
     for (width, height) in [(400, 400), (120, 100)] {
         for offset in [DVec2::new(11.0, 25.0), DVec2::new(-29.0, -47.0)] {
             let params = Params { width, height, ..Params::default() };
@@ -54,7 +54,7 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
     {
         let params = Params { width, height, centred: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
-        // The texture turned by half a turn has its lamps at the same places; none is cut.
+        // The texture must be symmetric under a rotation by half a turn, and no lamp may be cut.
         let size = DVec2::new(width as f64, height as f64);
         for lamp in &result.luminaires {
             let opposite = size - lamp.centre;
@@ -78,7 +78,7 @@ fn lamps_without_a_place_are_left_out() {
         let mut emission = result.clone();
         emission.restrict(&ground, Monitor::default().job()).map(|()| emission)
     };
-    // A keep-out that touches one lamp takes it out, whole, and nothing else.
+    // A keep-out zone that touches one lamp must remove all of that lamp, and no other lamp.
     let lamp = &result.luminaires[result.luminaires.len() / 2];
     let corner = lamp.outline[0];
     let touched = restricted(&|x, y| {
@@ -91,7 +91,7 @@ fn lamps_without_a_place_are_left_out() {
     let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
     assert_eq!(lit(&touched), lit(&result) - 196.0);
     assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
-    // Nothing of it is left, of its rim neither: coarser texels have rims.
+    // No rim of the lamp may remain either. Rims exist in textures with coarser texels.
     let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
@@ -106,7 +106,7 @@ fn lamps_without_a_place_are_left_out() {
             .filter(|&i| !near(i))
             .all(|i| without.texture.pixel(i % 150, i / 150) == coarse.texture.pixel(i % 150, i / 150))
     );
-    // What is hidden is cut.
+    // Hidden parts of a lamp are cut off.
     let half =
         restricted(&|x, _| if x < lamp.centre.x as usize { Placement::Hidden } else { Placement::Open }).unwrap();
     assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
@@ -130,8 +130,8 @@ fn tileable_textures_repeat_without_a_seam() {
         let params = Params { width, height, scale, tileable: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
         assert_eq!(matches!(result.continuation, Continuation::Free), name == "free");
-        // Lamps of the texture repeated twice each way. Those whose centre lies in the middle, a period wide and high, are
-        // each of them once, and whole.
+        // Repeat the texture twice along each axis. In the central part of one period, each lamp must appear exactly
+        // once, and complete.
         let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
         let repeated = components::find(2 * width, 2 * height, |i| result.mask.data[again(i)] > 0.5).unwrap();
         let size = DVec2::new(width as f64, height as f64);
@@ -143,12 +143,12 @@ fn tileable_textures_repeat_without_a_seam() {
         let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
         assert_eq!(areas.iter().sum::<f64>(), result.mask.data.iter().sum::<f32>() as f64, "{name}");
         match name {
-            // Of radii from 4 to 7, cut by pixels.
+            // The radii are 4 to 7 pixels, and the exemplar's border may cut lamps.
             "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
             _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
         }
         if let Some([a, b]) = result.continuation.lattice() {
-            // No lamp keeps the distance that the exemplar has: all lie on the stretched lattice, one in each of its cells.
+            // All lamps must lie on the stretched lattice, one in each cell, and not at the distances of the exemplar.
             let lamps = inner(&result.luminaires, width, height);
             let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
             let basis = [a / scale, b / scale];
@@ -169,7 +169,7 @@ fn tileable_textures_repeat_without_a_seam() {
 
 #[test]
 fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
-    // Seven panes in a column, of which the first and the last are short, as in a skylight with its walls.
+    // A column of seven panes of which the first and the last are short, as in a skylight between walls.
     let exemplar = Design::new(100, 480, |x, y| {
         let pane = ((y - 60.0) / 50.0).floor();
         let along = (y - 60.0).rem_euclid(50.0);
@@ -182,7 +182,7 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
     for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
         assert_eq!(m, result.mask.data[i - 100]);
     }
-    // It begins as the exemplar, with all seven, and no pane is cut.
+    // The column must begin like the exemplar, with all seven panes, and no pane may be cut.
     let first: Vec<f64> = (result.luminaires.iter())
         .filter(|l| l.centre.x < 100.0 && l.centre.y < 480.0)
         .map(|l| (l.area / 40.0).round())

@@ -1,11 +1,12 @@
-//! A texture rendered in tiles is the texture rendered at once.
+//! Tests that a texture rendered in tiles equals the texture rendered at once.
 
 use super::*;
 
 #[test]
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
-    // Lights that run out of the exemplar follow the patches; large lamps in fine texels lose crumbs of their edges.
+    // Lights that run out of the exemplar are copied patch by patch. Large lamps in fine texels have crumbs at their
+    // edges.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [
@@ -64,7 +65,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         (lattice(), Params { tileable: true, ..whole_pixels.clone() }),
         (lattice(), Params { scale: 0.37, ..whole_pixels.clone() }),
         (round, Params { scale: 0.7, even_lamps: true, ..whole_pixels.clone() }),
-        // A part of the exemplar, copied.
+        // A copied part of the exemplar.
         (lattice(), Params { width: 110, height: 90, scale: 1.1, ..whole_pixels }),
     ] {
         let job = Monitor::default();
@@ -73,7 +74,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
         assert!(list.get(&plan, list.count()).is_none());
         let shown = exemplar.run(&params).unwrap().luminaires;
-        // Slivers of less than a texel at the border may be in one of the two only.
+        // Slivers of less than a texel at the border may appear in one of the two lists only, so compare larger lamps.
         let large = |list: &[Luminaire]| list.iter().filter(|l| l.area > 8.0).cloned().collect::<Vec<_>>();
         let (listed, shown) = (large(&listed), large(&shown));
         assert_eq!(listed.len(), shown.len(), "{params:?}");
@@ -81,7 +82,8 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         for lamp in &shown {
             let apart = |l: &&Luminaire| l.centre.distance(lamp.centre);
             let same = listed.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-            // To rounding where texels are pixels and lamps are whole, else to the texel.
+            // For lamps inside the texture with one pixel per texel, allow rounding errors only; otherwise allow about
+            // one texel.
             let size = DVec2::new(params.width as f64, params.height as f64);
             let is_inside = lamp.outline.iter().all(|p| p.min_element() > 0.0 && p.cmplt(size).all());
             if params.scale == 1.0 && is_inside {
@@ -92,7 +94,8 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
             }
             let (off, perimeter) = (same.centre.distance(lamp.centre), 2.0 * lamp.size.element_sum());
             assert!(off < 1.0 && (same.area - lamp.area).abs() < 0.6 * perimeter, "{params:?} {same:?} {lamp:?}");
-            // What is left of a lamp at the border is measured along the axes of the whole.
+            // The size of a lamp that the border cuts is measured along the axes of the complete lamp, so do not
+            // compare it.
             let size_off = (same.size - lamp.size).abs().max_element();
             assert!(!is_inside || size_off < 2.5, "{} {}", same.size, lamp.size);
             assert!(!is_inside || (same.kind, lamp.kind) == (1, 1), "{} {}", same.kind, lamp.kind);
@@ -123,7 +126,7 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
     let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
     let shown = areas(&mut shown.iter().map(|l| l.area));
     assert!(listed.len() == shown.len() && listed.iter().zip(&shown).all(|(a, b)| (a - b).abs() < 1e-9));
-    // The mask is unsure by a tenth at the edge.
+    // The confidence of edge pixels is uncertain by a tenth, which changes the areas slightly.
     assert!((listed[0] / 64.0 - 1.0).abs() < 0.02 && (listed[listed.len() - 1] / 324.0 - 1.0).abs() < 0.01);
     assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
 }

@@ -1,8 +1,8 @@
-//! What differs from lamp to lamp in the exemplar differs so in the texture, on a lattice as well.
+//! Variation between lamps of the exemplar must be kept in the texture, even when the lamps lie on a lattice.
 
 use super::*;
 
-/// Lamps of 14 pixels every 40, each as bright as `level` says of its place.
+/// Square lamps of 14 pixels with period 40. `level` gives the brightness of each lamp from its cell.
 fn of_levels(side: usize, level: impl Fn([i64; 2]) -> f32) -> Design {
     let mut exemplar = Design::new(side, side, |x, y| {
         (x.rem_euclid(40.0) - 20.0).abs() < 7.0 && (y.rem_euclid(40.0) - 20.0).abs() < 7.0
@@ -21,7 +21,7 @@ fn deviation(values: &[f64]) -> (f64, f64) {
 
 #[test]
 fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
-    // No two lamps are equally bright.
+    // Every lamp has a different brightness.
     let level = |[i, j]: [i64; 2]| 0.3 + 0.5 * Rng::new(5, &[i as u64, j as u64]).next_f32();
     let exemplar = of_levels(400, level);
     let result = exemplar.run(&Params { width: 1200, height: 1200, ..Params::default() }).unwrap();
@@ -36,15 +36,16 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     };
     let sources: Vec<usize> = lamps.iter().map(|lamp| source(lamp)).collect();
 
-    // Most of them are shown, none far too often.
+    // Most lamps of the exemplar must be used, and none far more often than the others.
     let mut times = [0; 100];
     sources.iter().for_each(|&k| times[k] += 1);
     let shown = times.iter().filter(|&&n| n > 0).count();
     assert!(shown >= 60, "{shown} of 100 are shown");
     assert!(times.iter().max().unwrap() * 15 < sources.len(), "{times:?}");
 
-    // As bright on average and as different. Patches bring groups of lamps, so a texture is a sample of no more lamps than the
-    // exemplar has; three standard deviations of its mean, and of its deviation, which for uniform levels is half of that.
+    // Mean and variation of the brightness must agree. Patches bring groups of lamps, so a texture is a sample of no
+    // more lamps than the exemplar has. Allow three standard errors of the mean, and of the deviation, whose standard
+    // error is half as large for uniform levels.
     let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
     let (expected, exact) = deviation(&known);
     let standard = exact / (known.len() as f64).sqrt();
@@ -73,14 +74,15 @@ fn lamps_off_their_places_stay_as_far_off_and_no_farther() {
     };
     let own = exemplar.run(&Params { width: 480, height: 480, ..Params::default() }).unwrap();
     let (own, made) = (phase(&own, 480, 480), phase(&result, 1200, 1000));
-    // Uniform in a square: the root of two thirds of its half side. Drift would add up to more over thirty periods.
+    // The offsets are uniform in a square: their root mean square is √(2/3) of half its side. Drift would accumulate
+    // to more over thirty periods.
     assert!((own / ((2.0f64 / 3.0).sqrt() * most / period) - 1.0).abs() < 0.15, "{own}");
     assert!((made / own - 1.0).abs() < 0.15, "{made} {own}");
 }
 
 #[test]
 fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
-    // Between square lamps every 48 pixels, round ones anywhere clear of them.
+    // Square lamps with period 48, and round lamps at random positions that keep clear of them.
     let square = |p: DVec2| (p.rem_euclid(DVec2::splat(48.0)) - 24.0).abs().max_element();
     let mut rng = Rng::new(31, &[]);
     let mut discs: Vec<DVec2> = Vec::new();
@@ -100,7 +102,7 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
     let (squares, round): (Vec<&Luminaire>, Vec<&Luminaire>) = lamps.into_iter().partition(|l| l.area > 150.0);
     assert!(squares.iter().all(|l| (l.area - 256.0).abs() < 30.0), "a square lamp is cut or has met another");
     assert!(round.iter().all(|l| (40.0..62.0).contains(&l.area)), "a round lamp is cut or has met another");
-    // Two kinds, and each lamp of one.
+    // There must be two kinds, one for each shape.
     assert!(squares.iter().all(|l| l.kind == squares[0].kind) && round.iter().all(|l| l.kind == round[0].kind));
     let mut kinds = [squares[0].kind, round[0].kind];
     kinds.sort_unstable();
@@ -114,8 +116,8 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
 
 #[test]
 fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
-    // Of the many shifts that compare few lamps, some lead by chance from hardly any lamp to none. Allowing for two standard errors leaves
-    // about one draw in twenty.
+    // Of the many shifts that compare few lamps, some correlate by chance, because hardly any lamp is compared. A
+    // margin of two standard errors leaves about one wrong result in twenty draws.
     let mut wrong = Vec::new();
     for draw in 0..24 {
         let exemplar = Design::new(480, 300, |x, y| {
@@ -134,7 +136,7 @@ fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
 
 #[test]
 fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
-    // A quarter of the places of 9 × 9 has no lamp; the border cuts the outer ones in half.
+    // A quarter of the 9 × 9 sites has no lamp; the border cuts the outer sites in half.
     let has_lamp = |i: i64, j: i64| Rng::new(3, &[i as u64, j as u64]).next_f64() < 0.75;
     let exemplar = Design::new(320, 320, |x, y| {
         let (u, v) = (x + 10.0, y + 10.0);
@@ -148,10 +150,10 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
     for seed in seeds.clone() {
         let result = exemplar.run(&Params { width: 800, height: 800, seed, ..Params::default() }).unwrap();
         assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
-        // Light over the 20 × 20 cells.
+        // Divide the light by the area of a lamp and by the number of cells, 20 × 20.
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }
     let filled = sum / seeds.count() as f64;
-    // Could the dark halves at the border be shown, where their like with a lamp cannot, it would be an eighth less.
+    // If patches could show the dark sites at the border, but not the lit ones, there would be an eighth fewer lamps.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::features::Face;
 
-/// Pixels of a thick line.
+/// Returns the pixels of a thick line.
 fn painted(a: DVec2, b: DVec2, [width, height]: [usize; 2]) -> Vec<u32> {
     let near = |i: &u32| {
         let p = DVec2::new((*i as usize % width) as f64 + 0.5, (*i as usize / width) as f64 + 0.5);
@@ -33,7 +33,7 @@ struct Cluttered {
     strokes: Vec<(Vec<u32>, bool)>,
 }
 
-/// Random numbers between given bounds.
+/// Random numbers within given bounds.
 struct Random(Rng);
 
 impl Random {
@@ -42,10 +42,10 @@ impl Random {
     }
 }
 
-/// An edge in space: its two ends and the axis that it is parallel to.
+/// An edge in space: its two ends and the axis to which it is parallel.
 type Edge = (DVec3, DVec3, usize);
 
-/// Pieces of the seams between the room's faces.
+/// Returns random pieces of the seams between the room's faces.
 fn seams(random: &mut Random, [low, high]: [DVec3; 2]) -> Vec<Edge> {
     let mut lines = Vec::new();
     for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -66,7 +66,7 @@ fn seams(random: &mut Random, [low, high]: [DVec3; 2]) -> Vec<Edge> {
     lines
 }
 
-/// Lines on the faces.
+/// Returns random lines on the room's faces, each parallel to a room axis.
 fn lines_on_faces(random: &mut Random, [low, high]: [DVec3; 2]) -> Vec<Edge> {
     let mut lines = Vec::new();
     for (across, at) in [(0, low.x), (0, high.x), (1, low.y), (1, high.y), (2, high.z)] {
@@ -84,7 +84,7 @@ fn lines_on_faces(random: &mut Random, [low, high]: [DVec3; 2]) -> Vec<Edge> {
     lines
 }
 
-/// Edges of objects that stand on the floor or hang in the room.
+/// Returns edges of objects that stand on the floor or hang in the room.
 fn objects(random: &mut Random, sides: &[f64; 4], [low, high]: [DVec3; 2]) -> Vec<Edge> {
     let mut lines = Vec::new();
     for _ in 0..random.within(2.0, 8.0) as usize {
@@ -109,7 +109,8 @@ fn objects(random: &mut Random, sides: &[f64; 4], [low, high]: [DVec3; 2]) -> Ve
     lines
 }
 
-/// The edges as a photo shows them: broken into pieces, slightly displaced, one in twenty assigned to the wrong axis.
+/// Projects the edges as a photo shows them: broken into pieces, slightly displaced, and one in twenty assigned to the
+/// wrong axis.
 fn projected(random: &mut Random, camera: &Perspective, lines: Vec<Edge>) -> Vec<(Segment, Option<usize>)> {
     let seen = |p: DVec3| {
         let c = camera.axes * p;
@@ -133,7 +134,7 @@ fn projected(random: &mut Random, camera: &Perspective, lines: Vec<Edge>) -> Vec
     segments
 }
 
-/// Two strokes on one plane, one on each other visible face, and sometimes one on an object in front of them.
+/// Returns two strokes on one plane, one on each other visible face, and sometimes one on an object in front of them.
 fn random_strokes(random: &mut Random, camera: &Perspective, sides: &[f64; 4]) -> Vec<(Vec<u32>, bool)> {
     let mut places: [Vec<DVec2>; Face::COUNT] = Default::default();
     for _ in 0..400 {
@@ -175,7 +176,7 @@ impl Cluttered {
         Self { camera, sides, segments, strokes }
     }
 
-    /// The share of the view on the correct face, and the median absolute logarithm of the depth error.
+    /// Returns the share of the view on the correct face, and the median absolute logarithm of the depth error.
     fn judge(&self, layout: &Layout) -> [f64; 2] {
         let pixels = (4..SIZE[1]).step_by(8).flat_map(|y| (4..SIZE[0]).step_by(8).map(move |x| (x, y)));
         let (mut right, mut logs) = (0, Vec::new());
@@ -213,7 +214,7 @@ fn strokes_bring_more_of_cluttered_rooms_onto_the_right_face() {
     assert!(both[1] < 0.9 * lines[1], "{means:?}");
 }
 
-/// A picture rail in front of a hidden ceiling seam: from lines alone, the ceiling begins at the rail.
+/// A picture rail lies below a hidden ceiling seam: from lines alone, the ceiling begins at the rail.
 #[test]
 fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     let camera = camera(0.1, 0.2, 0.0, SIZE[0], SIZE[1]);
@@ -243,7 +244,8 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // The plane is inferred, not assumed: with the two kinds swapped, the strokes on the back wall lie on one face.
+    // The search infers which face is the plane. With the two kinds swapped, the plane is the back wall, and the
+    // ceiling is found at the same height.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }
@@ -259,7 +261,7 @@ fn a_mirrored_room_is_laid_out_as_the_mirrored_box() {
             axes: flip * room.camera.axes * flip,
             ..room.camera
         };
-        // Reverse the order of segments and their end points.
+        // Reverse the order of the segments and of their end points.
         let segments: Vec<_> =
             (room.segments.iter().rev()).map(|(s, axis)| (Segment { a: across(s.b), b: across(s.a) }, *axis)).collect();
         let moved = |&p: &u32| {
@@ -280,7 +282,8 @@ fn a_mirrored_room_is_laid_out_as_the_mirrored_box() {
 fn strokes_alone_shape_the_room() {
     let camera = camera(0.0, 0.0, 0.0, SIZE[0], SIZE[1]);
     let line = |y: f64| painted(DVec2::new(250.0, y), DVec2::new(390.0, y), SIZE);
-    // The ceiling of the prior room begins at 0.4 of the focal length above the centre, row 35; here it begins lower.
+    // In the prior room, the ceiling begins at 0.4 focal lengths above the centre, in row 35; the strokes put it
+    // lower.
     let strokes = [(line(20.0), true), (line(140.0), true), (line(160.0), false), (line(300.0), false)];
     let layout = layout_of(&camera, &[], &strokes);
     let face = |y: usize| truth(&camera, &layout.sides, 320, y).1;
@@ -301,7 +304,7 @@ fn strokes_of_one_kind_outside_the_photo_or_contradictory() {
     for silent in [vec![(beyond.clone(), true)], vec![(vec![], true)], others, vec![(beyond, false)]] {
         assert_eq!(layout_of(&room.camera, &room.segments, &silent), plain);
     }
-    // Both kinds on every pixel: contradictory evidence still yields a valid box.
+    // Strokes of both kinds on every pixel contradict each other, but still yield a valid box.
     let all: Vec<u32> = (0..(SIZE[0] * SIZE[1]) as u32).collect();
     let layout = layout_of(&room.camera, &room.segments, &[(all.clone(), true), (all, false)]);
     assert!(layout.sides.iter().all(|s| s.is_finite() && *s > 0.0) && (0.0..=1.0).contains(&layout.trust));

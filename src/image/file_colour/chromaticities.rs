@@ -1,29 +1,29 @@
-//! Primaries and white of a colour space, and the matrix that converts it to linear Rec.709.
+//! Primaries and white point of a colour space, and the matrix that converts its linear colours to linear Rec.709.
 
 use glam::{DMat3, DVec3};
 
-/// The (x, y) of the primaries and of white (CIE 15:2018).
+/// The chromaticity coordinates (x, y) of the primaries and of white (CIE 15:2018).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chromaticities {
     pub primaries: [[f64; 2]; 3],
     pub white: [f64; 2],
 }
 
-/// Bradford cone responses (Lam 1985; ICC.1:2022, annex E).
+/// Matrix from CIE XYZ to Bradford cone responses (Lam 1985; ICC.1:2022, annex E).
 const BRADFORD: DMat3 = DMat3::from_cols(
     DVec3::new(0.8951, -0.7502, 0.0389),
     DVec3::new(0.2664, 1.7135, -0.0685),
     DVec3::new(-0.1614, 0.0367, 1.0296),
 );
 
-/// White of the connection space of ICC profiles (ICC.1:2022, 7.2.16).
+/// CIE XYZ of the white in the profile connection space of ICC (ICC.1:2022, 7.2.16).
 const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
-/// Maximum deviation of a matrix from the identity that is ignored. [rounding]: files store chromaticities with four
-/// digits, and ICC profiles their columns with 16 bits.
+/// A matrix counts as the identity if every element deviates from the identity by less than this value. [rounding]:
+/// files store chromaticities with four digits, and ICC profiles their matrix columns with 16 bits.
 const SAME: f64 = 1e-3;
 
-/// Matrices with a larger element come from primaries that lie almost on one line. [convention]
+/// A matrix with a larger element is refused: its primaries lie almost on one line. [convention]
 const MAX_ELEMENT: f64 = 1e3;
 
 impl Chromaticities {
@@ -33,7 +33,8 @@ impl Chromaticities {
     /// Adobe RGB (1998), 4.3.1.1.
     pub const ADOBE_RGB: Self = Self { primaries: [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06]], white: [0.3127, 0.3290] };
 
-    /// By the codes of Recommendation ITU-T H.273, table 2.
+    /// Returns the chromaticities of a code point for primaries (Recommendation ITU-T H.273, table 2); `None` if the
+    /// code point is unknown.
     pub fn of_code(code: u8) -> Option<Self> {
         // [convention: Recommendation ITU-T H.273]
         const D65: [f64; 2] = Chromaticities::REC709.white;
@@ -54,19 +55,20 @@ impl Chromaticities {
         Some(Self { primaries, white })
     }
 
-    /// The matrix to linear Rec.709 that maps white to white; `None` if the primaries are collinear.
+    /// Returns the matrix to linear Rec.709 that maps white to white; `None` if the primaries are collinear.
     pub fn to_rec709(self) -> Option<DMat3> {
         self.to_rec709_from_white(self.white)
     }
 
-    /// The matrix to linear Rec.709 for a white whose chromaticity differs from that of the colour (1, 1, 1).
+    /// Returns the matrix to linear Rec.709 that maps the chromaticity `white` to white, even if the colour (1, 1, 1)
+    /// has another chromaticity.
     pub fn to_rec709_from_white(self, white: [f64; 2]) -> Option<DMat3> {
         let target = Self::REC709;
         let matrix = target.to_xyz()?.inverse() * adaptation(xyz(white)?, xyz(target.white)?) * self.to_xyz()?;
         usable(matrix)
     }
 
-    /// The matrix from linear colours to CIE XYZ; the Y of (1, 1, 1) is 1.
+    /// Returns the matrix from linear colours to CIE XYZ. The Y of (1, 1, 1) is 1.
     fn to_xyz(self) -> Option<DMat3> {
         let [r, g, b] = self.primaries.map(|[x, y]| DVec3::new(x, y, 1.0 - x - y));
         let primaries = DMat3::from_cols(r, g, b);
@@ -78,12 +80,12 @@ impl Chromaticities {
     }
 }
 
-/// The matrix to linear Rec.709 of a space whose primaries have these XYZ under D50, as in ICC profiles.
+/// Returns the matrix to linear Rec.709 for primaries given by their CIE XYZ under D50, as in ICC profiles.
 pub fn of_colorants(colorants: DMat3) -> Option<DMat3> {
     let target = Chromaticities::REC709;
     let to_pcs = adaptation(xyz(target.white)?, D50) * target.to_xyz()?;
     let matrix = usable(to_pcs.inverse() * colorants)?;
-    // The white of profiles is rounded; scale it away, so that greys stay grey.
+    // The white of a profile is rounded. Scale the rounding error away, so that greys stay grey.
     let white = matrix * DVec3::ONE;
     let is_white = (white - DVec3::ONE).abs().max_element() < SAME;
     Some(if is_white { DMat3::from_diagonal(white.recip()) * matrix } else { matrix })
@@ -98,12 +100,12 @@ fn usable(matrix: DMat3) -> Option<DMat3> {
     matrix.to_cols_array().iter().all(|v| v.abs() < MAX_ELEMENT).then_some(matrix)
 }
 
-/// CIE XYZ of a chromaticity with Y = 1.
+/// Returns the CIE XYZ of a chromaticity, with Y = 1.
 fn xyz([x, y]: [f64; 2]) -> Option<DVec3> {
     (x.is_finite() && y > 0.0).then(|| DVec3::new(x, y, 1.0 - x - y) / y)
 }
 
-/// The matrix from CIE XYZ under one white to that under another.
+/// Returns the matrix that adapts CIE XYZ from one white to another (Bradford).
 fn adaptation(from: DVec3, to: DVec3) -> DMat3 {
     let gain = (BRADFORD * to) / (BRADFORD * from);
     BRADFORD.inverse() * DMat3::from_diagonal(gain) * BRADFORD
@@ -121,17 +123,17 @@ mod tests {
 
     #[test]
     fn matrices_meet_published_ones() {
-        // CSS Color 4: Display P3 to sRGB.
+        // Display P3 to sRGB, as in CSS Color 4.
         assert_near(
             Chromaticities::of_code(12).unwrap().to_rec709().unwrap(),
             [[1.224940, -0.224940, 0.0], [-0.042057, 1.042057, 0.0], [-0.019638, -0.078636, 1.098274]],
         );
-        // Recommendation ITU-R BT.2087-0: BT.2020 to BT.709.
+        // BT.2020 to BT.709, as in Recommendation ITU-R BT.2087-0.
         assert_near(
             Chromaticities::of_code(9).unwrap().to_rec709().unwrap(),
             [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]],
         );
-        // CIE XYZ: its own white (1, 1, 1) maps to white; for a picture whose white is D65, compare the published
+        // CIE XYZ to Rec.709. Its own white (1, 1, 1) maps to white. With D65 as white, compare with the published
         // matrix.
         let xyz = Chromaticities::of_code(10).unwrap();
         assert!((xyz.to_rec709().unwrap() * DVec3::ONE - DVec3::ONE).abs().max_element() < 1e-9);

@@ -1,4 +1,4 @@
-//! Colour spaces by their code points (Recommendation ITU-T H.273).
+//! Colour spaces given by code points (Recommendation ITU-T H.273), as in the `cICP` chunk of a PNG.
 
 use super::chromaticities::{Chromaticities, is_identity};
 use super::conversion::Conversion;
@@ -10,13 +10,13 @@ use crate::image::colour::srgb_to_linear;
 pub const PQ: u8 = 16;
 pub const HLG: u8 = 18;
 
-/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG
-/// [convention: Recommendation ITU-R BT.2408-7, table 1].
+/// Reference white of high dynamic range, which becomes the linear value 1. For PQ it is a luminance in cd/m², for HLG
+/// a code value in `[0, 1]`. [convention: Recommendation ITU-R BT.2408-7, table 1]
 const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 
-/// The space with these primaries and this transfer function; `full` maps a stored code to `[0, 1]`. `None` if a code
-/// is unknown.
+/// Returns the space with the given code points of primaries and transfer function. `full` maps a stored code to `[0,
+/// 1]`. `None` if a code point is unknown.
 pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
     let function: fn(f64) -> f64 = match transfer {
         1 | 6 | 14 | 15 => bt709,

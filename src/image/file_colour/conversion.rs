@@ -1,4 +1,4 @@
-//! Conversion of the colours of a file to linear Rec.709, in place.
+//! Converts the colours of a picture file to linear Rec.709, in place.
 
 use super::curve::Curve;
 use crate::error::{Error, ErrorKind, Result};
@@ -7,23 +7,23 @@ use glam::{DMat3, Mat3, Vec3};
 use moxcms::{CmsError, TransformF32Executor};
 use std::sync::Arc;
 
-/// The conversion from the samples of a file (integers as `[0, 1]`) to linear Rec.709.
+/// The conversion from the samples of a file (integers scaled to `[0, 1]`) to linear Rec.709.
 ///
-/// Negative components of colours outside Rec.709 become 0, because the stages treat negative values as damage;
-/// components above 1 are kept.
+/// Colours outside Rec.709 have negative components, which become 0 because later stages treat negative values as
+/// damage. Components above 1 are kept.
 #[derive(Clone)]
 pub struct Conversion(Kind);
 
 #[derive(Clone)]
 enum Kind {
-    /// One curve, for any number of channels.
+    /// One transfer curve for grey values.
     Grey(Curve),
     Rgb {
-        /// `None` if samples are linear.
+        /// Transfer curves of the channels; `None` if the samples are linear.
         curves: Option<[Curve; 3]>,
         matrix: Mat3,
     },
-    /// The tables of a profile convert to sRGB, and the curve to linear.
+    /// The tables of a profile convert to sRGB, and the curve then to linear values.
     Tables(Arc<TransformF32Executor>, Curve),
 }
 
@@ -40,7 +40,7 @@ impl Conversion {
         Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
     }
 
-    /// The conversion of sRGB integers.
+    /// Returns the conversion of sRGB integers.
     pub fn srgb() -> Result<Self> {
         let curve = Curve::srgb()?;
         Ok(Self::new([curve.clone(), curve.clone(), curve], DMat3::IDENTITY))
@@ -50,8 +50,8 @@ impl Conversion {
         Ok(Self(Kind::Tables(to_srgb, Curve::srgb()?)))
     }
 
-    /// Whether a picture with this number of channels can be converted: grey profiles do not describe colours, nor
-    /// colour tables greys.
+    /// Whether a picture with this number of channels can be converted: grey profiles cannot convert colours, nor can
+    /// colour tables convert greys.
     pub fn fits(&self, channels: usize) -> bool {
         match self.0 {
             Kind::Grey(_) => channels != 3,
@@ -60,7 +60,7 @@ impl Conversion {
         }
     }
 
-    /// Converts a picture of 1, 3 or 4 channels; the fourth is alpha.
+    /// Converts a picture of 1, 3 or 4 channels. The fourth channel is alpha and stays unchanged.
     pub fn apply(&self, image: &mut Image) -> Result<()> {
         match &self.0 {
             Kind::Rgb { curves, .. } if image.channels < 3 => {
@@ -90,8 +90,8 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Limits a converted colour from below, so that the conversion adds no negative components. The lower bound is 0, or
-/// the lowest component of the file's colour if that is negative. NaN stays NaN.
+/// Limits the components of a converted colour from below, so that the conversion makes none of them negative. The
+/// bound is 0, or the lowest component of the file's colour if that is already negative. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)

@@ -1,23 +1,23 @@
-//! Transfer functions: from the codes of a file to linear light.
+//! Transfer functions, which convert the code values of a file to linear light.
 
 use crate::error::Result;
 use crate::image::colour::{linear_to_srgb, srgb_to_linear};
 use crate::image::try_collect;
 use std::sync::Arc;
 
-/// Number of nodes of a curve: one for each 16-bit code. The 8-bit codes are every 257th node.
+/// Number of nodes of a sampled curve: one for each 16-bit code value. The 8-bit codes fall on every 257th node.
 const NODES: usize = 65_536;
 
-/// Maximum difference of a curve from that of sRGB at which it counts as sRGB. [rounding]: profiles store the curve in
-/// tables of 1024 values of 16 bits, with errors of 1e-4 near black.
+/// A curve counts as sRGB if it differs from the sRGB curve by less than this, in encoded values. [rounding]: profiles
+/// store the curve in tables of 1024 values of 16 bits, with errors of 1e-4 near black.
 const SAME: f32 = 4e-4;
 
-/// A curve on `[0, 1]`, continued linearly above 1 and as an odd function below 0.
+/// A transfer curve sampled on `[0, 1]`. It continues linearly above 1, and negative codes give negated values.
 #[derive(Clone)]
 pub struct Curve(Arc<Vec<f32>>);
 
 impl Curve {
-    /// A curve that follows a function.
+    /// Samples `function` on `[0, 1]`.
     pub fn new(function: impl Fn(f64) -> f64) -> Result<Self> {
         let nodes = (0..NODES).map(|code| function(code as f64 / (NODES - 1) as f64) as f32);
         Ok(Self(Arc::new(try_collect(nodes)?)))
@@ -27,7 +27,7 @@ impl Curve {
         Self::new(|v| f64::from(srgb_to_linear(v as f32)))
     }
 
-    /// The linear value of a code.
+    /// Returns the linear value of a code value.
     #[inline]
     pub fn at(&self, code: f32) -> f32 {
         let position = code.abs() * (NODES - 1) as f32;
@@ -37,7 +37,7 @@ impl Curve {
     }
 }
 
-/// Whether a function is the curve of sRGB within the precision of files.
+/// Whether a function equals the sRGB curve within the precision of files.
 pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
     (0..=255).all(|code| {
         let code = code as f32 / 255.0;
@@ -45,7 +45,8 @@ pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
     })
 }
 
-/// Recommendation ITU-R BT.2100-2, table 4: luminance of the display in cd/m² by the perceptual quantiser.
+/// The perceptual quantiser: luminance of the display in cd/m² for a code value in `[0, 1]` (Recommendation ITU-R
+/// BT.2100-2, table 4).
 pub fn pq(code: f64) -> f64 {
     let (m1, m2) = (2610.0 / 16_384.0, 2523.0 / 4096.0 * 128.0);
     let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
@@ -53,13 +54,15 @@ pub fn pq(code: f64) -> f64 {
     10_000.0 * ((root - c1).max(0.0) / (c2 - c3 * root)).powf(1.0 / m1)
 }
 
-/// Recommendation ITU-R BT.2100-2, table 5: relative light of the scene by hybrid log-gamma, 1 at its peak.
+/// Hybrid log-gamma: relative scene light, with a peak of 1, for a code value in `[0, 1]` (Recommendation ITU-R
+/// BT.2100-2, table 5).
 pub fn hlg(code: f64) -> f64 {
     let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
     if code <= 0.5 { code * code / 3.0 } else { (((code - c) / a).exp() + b) / 12.0 }
 }
 
-/// Recommendation ITU-R BT.709-6, 1.2, inverted: relative light of the scene.
+/// The inverse of the camera curve of Rec.709: relative scene light for a code value in `[0, 1]` (Recommendation ITU-R
+/// BT.709-6, 1.2).
 pub fn bt709(code: f64) -> f64 {
     let (alpha, beta) = (1.099_296_826_809_44, 0.018_053_968_510_807);
     if code < 4.5 * beta { code / 4.5 } else { ((code + alpha - 1.0) / alpha).powf(1.0 / 0.45) }
@@ -71,7 +74,8 @@ mod tests {
 
     #[test]
     fn curves_meet_their_standards() {
-        // Recommendation ITU-R BT.2408-7, table 1: reference white is 58 % of PQ and 75 % of HLG, 203 cd/m².
+        // Reference white is at 58 % of PQ, which is 203 cd/m², and at 75 % of HLG (Recommendation ITU-R BT.2408-7,
+        // table 1).
         assert!((pq(0.580_69) - 203.0).abs() < 0.05 && (pq(1.0) - 10_000.0).abs() < 1e-6 && pq(0.0) == 0.0);
         assert!((hlg(0.75) - 0.264_96).abs() < 1e-5 && (hlg(1.0) - 1.0).abs() < 1e-6);
         assert!((hlg(0.5) - 1.0 / 12.0).abs() < 1e-6 && (hlg(0.500_001) - 1.0 / 12.0).abs() < 1e-5);

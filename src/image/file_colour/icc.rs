@@ -1,5 +1,5 @@
-//! ICC profiles (ICC.1:2022) of picture files, by the crate `moxcms`: three curves and a matrix, one curve for greys,
-//! or tables for RGB and for inks.
+//! Reads the ICC profiles (ICC.1:2022) of picture files with the crate `moxcms`. A profile has three curves and a
+//! matrix, or one curve for greys, or tables for RGB or for inks.
 
 use super::chromaticities::{is_identity, of_colorants};
 use super::cicp;
@@ -18,13 +18,14 @@ use std::borrow::Cow;
 
 pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
-/// Maximum length of all tags together, relative to the length of the profile: tags may share data. [convention]: three
-/// curves, three intents and both directions may share.
+/// Maximum total length of a profile's tags, relative to the length of the profile; tags may share data. [convention]:
+/// three curves, three rendering intents and both directions may share their data.
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;
 
-/// The profile in the segments of a JPEG (ICC.1:2022, annex B.4): pieces with their numbers, counted from 1.
+/// Joins the pieces of the profile in the segments of a JPEG (ICC.1:2022, annex B.4) in the order of their numbers;
+/// `None` if there is no profile.
 pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result<Option<Cow<'a, [u8]>>> {
     let mut pieces = Vec::new();
     for (marker, segment) in segments {
@@ -48,8 +49,8 @@ pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result
     Ok((len > 0).then_some(profile.into()))
 }
 
-/// The profile in the chunk `iCCP` of a PNG: a name, a zero, the method, and deflated data. `None` if it is damaged or
-/// too long.
+/// Unpacks the profile in the `iCCP` chunk of a PNG: a name, a zero, the compression method, and deflated data. `None`
+/// if the chunk is damaged or the profile too long.
 pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
     let name = chunk.iter().take(80).position(|&b| b == 0);
     let Some([_, 0, packed @ ..]) = name.map(|end| &chunk[end..]) else { return Ok(None) };
@@ -61,7 +62,7 @@ pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
             Err(status) => status == HasMoreOutput,
         }
     };
-    // A profile begins with its length; compare it before unpacking the rest.
+    // A profile begins with its length. Check the length before unpacking the rest.
     let mut head = [0; 4];
     let len = if unpack(&mut head) { u32::from_be_bytes(head) as usize } else { 0 };
     if !(HEADER_BYTES..=MAX_BYTES).contains(&len) {
@@ -71,7 +72,7 @@ pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
     Ok(unpack(&mut profile).then_some(profile))
 }
 
-/// The colour space that a profile describes.
+/// Returns the colour space that a profile describes.
 pub fn space(bytes: &[u8]) -> Result<Space> {
     if bytes.len() > MAX_BYTES || !shares_little(bytes) {
         return Ok(Space::Unusable);
@@ -79,7 +80,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     memory::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
-    // Curves of profiles end at 1, so a profile states high dynamic range by code points.
+    // The curves of a profile end at 1, so a profile states a high dynamic range by code points.
     if let Some(codes) = &profile.cicp
         && let Some(space) = hdr(codes)?
     {
@@ -99,7 +100,7 @@ pub fn working_bytes(bytes: &[u8]) -> usize {
     if bytes.len() > MAX_BYTES { 0 } else { memory::profile(bytes.len(), has_tables(bytes)) }
 }
 
-/// The tags of a profile: name, offset and length of each.
+/// Iterates over the entries of the tag table of a profile: the name, offset and length of each tag.
 fn tags(bytes: &[u8]) -> impl Iterator<Item = &[u8; 12]> {
     let parts = bytes.get(HEADER_BYTES..).and_then(|rest| rest.split_first_chunk());
     let (count, tags) = parts.map_or((0, &[][..]), |(count, tags)| (u32::from_be_bytes(*count), tags));
@@ -110,14 +111,14 @@ fn has_tables(bytes: &[u8]) -> bool {
     tags(bytes).any(|tag| tag.starts_with(b"A2B"))
 }
 
-/// Whether the tags together are at most [`MAX_SHARING`] times as long as the profile. Each tag is decoded separately,
-/// so shared data multiplies the memory.
+/// Whether all tags together are at most [`MAX_SHARING`] times as long as the profile. Each tag is decoded on its own,
+/// so shared data need memory several times.
 fn shares_little(bytes: &[u8]) -> bool {
     let total: u64 = tags(bytes).map(|&[.., a, b, c, d]| u64::from(u32::from_be_bytes([a, b, c, d]))).sum();
     bytes.len() > HEADER_BYTES && total <= (MAX_SHARING * bytes.len()) as u64
 }
 
-/// The space of a profile for PQ or HLG.
+/// Returns the space of a profile that states PQ or HLG; `None` for other profiles.
 fn hdr(codes: &CicpProfile) -> Result<Option<Space>> {
     let transfer = codes.transfer_characteristics as u8;
     if !matches!(transfer, cicp::PQ | cicp::HLG) {
@@ -133,7 +134,7 @@ fn curves_and_matrix(profile: &ColorProfile) -> Result<Space> {
     let columns = DMat3::from_cols_array_2d(&profile.rgb_to_xyz_matrix().v).transpose();
     let matrix = if profile.pcs == DataColorSpace::Xyz { of_colorants(columns) } else { None };
     let (Some(matrix), Some(red)) = (matrix, function(r)) else { return Ok(Space::Unusable) };
-    // All three are equal in most profiles.
+    // In most profiles all three curves are equal.
     let is_equal = g == r && b == r;
     if is_equal && is_identity(matrix) && is_srgb(&red) {
         return Ok(Space::Native);
@@ -157,7 +158,8 @@ fn function(trc: &ToneReprCurve) -> Option<impl Fn(f64) -> f64 + use<>> {
     Some(move |code| f64::from(evaluator.evaluate_value(code as f32)))
 }
 
-/// The intent whose tables are used: relative colorimetric, or else the first intent that has tables.
+/// Returns the rendering intent whose tables are used: relative colorimetric if it has tables, else the first intent
+/// that has.
 fn intent(profile: &ColorProfile) -> Option<RenderingIntent> {
     let has = |tables: &Option<_>, intent| tables.is_some().then_some(intent);
     has(&profile.lut_a_to_b_colorimetric, RenderingIntent::RelativeColorimetric)

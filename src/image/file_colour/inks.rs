@@ -1,12 +1,12 @@
-//! Amounts of cyan, magenta, yellow and black to linear Rec.709, by the tables of a profile (ICC.1:2022, 10.10 and
-//! 10.11, `lut16Type` and `lut8Type`): a curve for each ink, a grid of colours, and a curve for each coordinate of CIELAB or
-//! CIE XYZ.
+//! Converts amounts of cyan, magenta, yellow and black to linear Rec.709, by the tables of an ICC profile (ICC.1:2022,
+//! 10.10 and 10.11, `lut16Type` and `lut8Type`): a curve for each ink, a grid of colours, and a curve for each
+//! coordinate of CIELAB or CIE XYZ.
 //!
-//! The crate `moxcms` samples these tables on a grid of its own, which causes errors of up to 12 codes of 255.
-//! Therefore that crate only reads the tables, and this file interpolates them. Between grid points the interpolation
-//! is that of LCMS: tetrahedra in magenta, yellow and black (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
+//! The crate `moxcms` would resample these tables on its own grid, with errors of up to 12 codes of 255. It is
+//! therefore used only to read the tables, and this file interpolates them. As in LCMS, the interpolation is
+//! tetrahedral in magenta, yellow and black (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
 //!
-//! Not modelled: profiles whose tables are `lutAToBType`. They are unusable.
+//! Not modelled: profiles whose tables are `lutAToBType`. They count as unusable.
 
 use super::chromaticities::of_colorants;
 use crate::error::Result;
@@ -16,27 +16,27 @@ use moxcms::{ColorProfile, DataColorSpace, LutDataType, LutStore, LutType, LutWa
 
 const INKS: usize = 4;
 
-/// White of the connection space (ICC.1:2022, 7.2.16).
+/// CIE XYZ of the white in the profile connection space (ICC.1:2022, 7.2.16).
 const D50: Vec3 = Vec3::new(0.9642, 1.0, 0.8249);
 
-/// The conversion of a picture of four inks.
+/// The tables that convert a picture of four inks.
 #[derive(Clone)]
 pub struct Inks {
-    /// Curves of the inks, of equal length, one after the other.
+    /// Curves of the four inks, of equal length, one after another.
     curves: Vec<f32>,
-    /// Grid points along each axis; the index of black runs fastest.
+    /// Number of grid points along each axis of `colours`; the index of black runs fastest.
     size: usize,
     colours: Vec<Vec3>,
-    /// Curves of the coordinates, one after the other.
+    /// Curves of the three output coordinates, of equal length, one after another.
     output: Vec<f32>,
-    /// CIELAB or CIE XYZ of the coordinates 0 and 1.
+    /// The CIELAB or CIE XYZ values for encoded coordinates of 0 and of 1.
     range: [Vec3; 2],
     is_lab: bool,
     to_rec709: Mat3,
 }
 
 impl Inks {
-    /// `None` if the profile has no tables that can be used.
+    /// Reads the tables of a profile for a rendering intent; `None` if it has no tables that can be used.
     pub fn new(profile: &ColorProfile, intent: RenderingIntent) -> Result<Option<Self>> {
         let tables = match intent {
             RenderingIntent::RelativeColorimetric => &profile.lut_a_to_b_colorimetric,
@@ -64,8 +64,8 @@ impl Inks {
             && output.len() >= 2 * 3
             && curves.len() % INKS == 0
             && output.len() % 3 == 0;
-        // The highest code is L = 100 and a = b = 127 with 8 bits; with 16 bits the code 0xff00 is L = 100, and 0x8000
-        // is a = b = 0, or X = Y = Z = 1 (ICC.1:2022, 6.3.4 and 10.10).
+        // With 8 bits, the highest code is L = 100 and a = b = 127. With 16 bits, the code 0xff00 is L = 100, and
+        // 0x8000 is a = b = 0, or X = Y = Z = 1 (ICC.1:2022, 6.3.4 and 10.10).
         let low = Vec3::new(0.0, -128.0, -128.0);
         let range = match tables.lut_type {
             _ if !is_lab => [Vec3::ZERO, Vec3::splat(65_535.0 / 32_768.0)],
@@ -75,7 +75,7 @@ impl Inks {
         Ok(is_whole.then_some(Self { curves, size, colours, output, range, is_lab, to_rec709 }))
     }
 
-    /// Linear Rec.709 of a picture of four inks.
+    /// Converts a picture of four inks to linear Rec.709.
     pub fn apply(&self, inks: &Image) -> Result<Image> {
         let mut image = Image::new(inks.width, inks.height, 3)?;
         for (pixel, amounts) in image.data.as_chunks_mut::<3>().0.iter_mut().zip(inks.data.as_chunks::<INKS>().0) {
@@ -104,8 +104,8 @@ impl Inks {
         self.to_rec709 * if self.is_lab { xyz(colour) } else { colour }
     }
 
-    /// Interpolates between amounts of magenta, yellow and black at one grid point of cyan. The path starts in the low
-    /// corner of the cell and follows the axes in descending order of their fractions `part`.
+    /// Interpolates in magenta, yellow and black at one grid point of cyan. The path through the tetrahedron starts in
+    /// the low corner of `cell` and follows the axes in descending order of their fractions `part`.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));
@@ -126,7 +126,7 @@ impl Inks {
     }
 }
 
-/// The samples of a table, as `[0, 1]`.
+/// Returns the samples of a table, scaled to `[0, 1]`.
 fn numbers(store: &LutStore) -> Result<Vec<f32>> {
     match store {
         LutStore::Store8(codes) => try_collect(codes.iter().map(|&code| f32::from(code) / 255.0)),
@@ -134,7 +134,7 @@ fn numbers(store: &LutStore) -> Result<Vec<f32>> {
     }
 }
 
-/// The value of a sampled curve over `[0, 1]`; numbers outside, and NaN, count as its ends.
+/// Interpolates a curve sampled over `[0, 1]`. A position outside is clamped, and NaN counts as 0.
 fn curve(samples: &[f32], at: f32) -> f32 {
     let within = if at > 0.0 { at.min(1.0) } else { 0.0 };
     let along = within * (samples.len() - 1) as f32;
@@ -142,11 +142,11 @@ fn curve(samples: &[f32], at: f32) -> f32 {
     samples[first] + (along - first as f32) * (samples[first + 1] - samples[first])
 }
 
-/// CIE XYZ under D50 of CIELAB (CIE 15:2018, 8.2.1).
+/// Converts CIELAB to CIE XYZ, both under D50 (CIE 15:2018, 8.2.1).
 fn xyz(lab: Vec3) -> Vec3 {
     let y = (lab.x + 16.0) / 116.0;
     let root = Vec3::new(y + lab.y / 500.0, y, y - lab.z / 200.0);
-    // [convention: CIE 15:2018, 8.2.1]
+    // Below the cube, the curve of CIELAB is a straight line of slope 108 / 841. [convention: CIE 15:2018, 8.2.1]
     let linear = (root - 4.0 / 29.0) * (108.0 / 841.0);
     D50 * Vec3::select(root.cmpgt(Vec3::splat(6.0 / 29.0)), root * root * root, linear)
 }
@@ -155,7 +155,7 @@ fn xyz(lab: Vec3) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// A profile without curves whose lightness falls with the inks: white paper, black at full black.
+    /// A profile whose lightness falls with cyan and black: no ink gives white paper, full black ink gives black.
     fn inks() -> Inks {
         let size: usize = 3;
         let mut colours = Vec::new();
@@ -175,11 +175,11 @@ mod tests {
         let inks = inks();
         assert!((inks.colour([0.0; 4]) - Vec3::ONE).abs().max_element() < 2e-3);
         assert!(inks.colour([0.0, 0.0, 0.0, 1.0]).abs().max_element() < 1e-5);
-        // L = 50: Y = ((50 + 16) / 116)^3.
+        // A lightness of L = 50 means Y = ((50 + 16) / 116)^3.
         for amounts in [[0.0, 0.7, 0.2, 0.5], [1.0, 0.1, 0.9, 0.0]] {
             assert!((inks.colour(amounts) - 0.1842).abs().max_element() < 1e-3, "{amounts:?}");
         }
-        // Between the grid points, and damaged amounts.
+        // Amounts between the grid points, and damaged amounts.
         assert!((inks.colour([0.25, 0.0, 0.0, 0.25]).y - ((65.625f32 + 16.0) / 116.0).powi(3)).abs() < 2e-3);
         assert_eq!(inks.colour([f32::NAN, 2.0, -1.0, 0.0]), inks.colour([0.0, 1.0, 0.0, 0.0]));
     }

@@ -1,19 +1,21 @@
-//! The colour space that a picture file states, and the conversion of its samples to linear Rec.709.
+//! Determines the colour space that a picture file states, and converts its samples to linear Rec.709.
 //!
-//! | file | statement, the first that can be used |
+//! For each file format, the first of these statements that can be used counts:
+//!
+//! | file | statements |
 //! |---|---|
 //! | PNG | `cICP`, `iCCP`, `sRGB`, `gAMA` with `cHRM` (PNG specification, third edition, 4.3) |
-//! | JPEG, WebP, TIFF | ICC profile, then the colour space of the EXIF notes (sRGB, Adobe RGB); of inks the profile alone |
-//! | GIF, BMP | ICC profile; of BMP the mark for sRGB |
+//! | JPEG, WebP, TIFF | ICC profile, then the EXIF colour space (sRGB, Adobe RGB); for inks the profile alone |
+//! | GIF, BMP | ICC profile; for BMP the mark for sRGB |
 //! | OpenEXR | `chromaticities`, `adoptedNeutral` |
 //! | Radiance HDR | `PRIMARIES`, `EXPOSURE`, `COLORCORR`, `FORMAT` (RGB or XYZ) |
 //!
-//! Without a statement, integers are sRGB and floating-point numbers linear Rec.709. White becomes white: whites other
-//! than D65 are adapted with the Bradford matrix, as ICC profiles are.
+//! Without a statement, integers are taken as sRGB and floating-point numbers as linear Rec.709. White stays white:
+//! whites other than D65 are adapted with the Bradford matrix, as in ICC profiles.
 //!
-//! Not modelled: rendering intents other than relative colorimetric, gain maps, endpoints and linked profiles of BMP
-//! files, black point compensation. A file with a statement that cannot be used is read as one without, and
-//! [`FileColour`] says so.
+//! Not modelled: rendering intents other than relative colorimetric (unless a profile lacks it), gain maps, endpoints
+//! and linked profiles of BMP files, black point compensation. If a file's statement cannot be used, the file is read
+//! as if it had none, and [`FileColour`] says so.
 
 mod chromaticities;
 mod cicp;
@@ -42,20 +44,20 @@ use image::ImageFormat;
 use std::borrow::Cow;
 
 impl Space {
-    /// The space of a picture of integers.
+    /// Determines the space of a picture that the crate `image` or the TIFF reader decodes.
     pub fn of(bytes: &[u8], format: Format, exif: &Exif) -> Result<Self> {
         let profile = match format {
             Format::Raster(ImageFormat::Png) => return png::space(bytes),
             Format::Exr | Format::Radiance => return Ok(Self::Unstated),
             _ => profile(bytes, format)?,
         };
-        // Floating-point numbers are encoded only if a profile says so.
+        // Floating-point numbers are linear unless a profile says otherwise.
         let is_float = format == Format::Tiff && tiff::is_float(bytes);
         let has_inks = has_inks(bytes, format);
         match profile.map(|profile| icc::space(&profile)).transpose()? {
             Some(space) if has_inks => Ok(if matches!(space, Self::Inks(_)) { space } else { Self::Unusable }),
             Some(Self::Inks(_)) => Ok(Self::Unusable),
-            // Amounts of inks mean nothing without a profile.
+            // Amounts of inks have no meaning without a profile.
             None if has_inks => Ok(Self::Unusable),
             Some(Self::Native) if is_float => Ok(Self::Other(Conversion::srgb()?)),
             Some(space) => Ok(space),
@@ -75,7 +77,7 @@ pub fn has_inks(bytes: &[u8], format: Format) -> bool {
     }
 }
 
-/// The ICC profile in a file.
+/// Returns the ICC profile in a file; `None` if it has none.
 pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
     Ok(match format {
         Format::Raster(ImageFormat::Png) => png::profile(bytes)?.map(Into::into),
@@ -93,13 +95,13 @@ pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
     })
 }
 
-/// The space of a BMP without an embedded profile that can be read.
+/// Returns the space of a BMP without an embedded profile that can be read.
 fn bmp(bytes: &[u8]) -> Space {
     match bmp_space(bytes).map(|(kind, _)| kind) {
         Some(kind) if kind == *b"sRGB" => Space::Native,
-        // A profile in another file, or one that is cut off.
+        // The profile is in another file, or it is cut off.
         Some(kind) if kind == *b"LINK" || kind == *b"MBED" => Space::Unusable,
-        // The space of the system, or endpoints, which most writers leave at 0.
+        // The header names the system's space, or endpoints, which most writers leave at 0.
         _ => Space::Unstated,
     }
 }

@@ -1,5 +1,5 @@
-//! The colour space of a PNG, by its chunks before the pixels in their order of precedence (PNG specification, third
-//! edition, 4.3).
+//! Determines the colour space of a PNG from the chunks before its pixels, in their order of precedence (PNG
+//! specification, third edition, 4.3).
 
 use super::chromaticities::{Chromaticities, is_identity};
 use super::conversion::Conversion;
@@ -9,19 +9,19 @@ use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 
-/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value [convention: PNG].
+/// Factor by which `gAMA` and `cHRM` multiply the numbers that they store. [convention: PNG]
 const UNIT: f64 = 100_000.0;
 
-/// Plausible exponents of `gAMA`; others are ignored. [convention]
+/// Plausible exponents in `gAMA`; other exponents are ignored. [convention]
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
-/// The content of a chunk before the pixels.
+/// Returns the content of the first chunk with this name before the pixels.
 fn find<'a>(bytes: &'a [u8], wanted: &[u8; 4]) -> Option<&'a [u8]> {
     let mut chunks = png_chunks(bytes).take_while(|c| c.0 != b"IDAT");
     chunks.find(|c| c.0 == wanted).map(|(.., content)| content)
 }
 
-/// The colour profile, unpacked.
+/// Returns the unpacked colour profile; `None` if there is none.
 pub fn profile(bytes: &[u8]) -> Result<Option<Vec<u8>>> {
     find(bytes, b"iCCP").map_or(Ok(None), icc::of_chunk)
 }
@@ -58,8 +58,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// Maps an 8-bit or 16-bit code of video range, from its black to its white, to `[0, 1]` (Recommendation ITU-T H.273,
-/// 8.3).
+/// Maps an 8-bit or 16-bit code of video range to `[0, 1]`: the black of that range to 0 and its white to 1
+/// (Recommendation ITU-T H.273, 8.3).
 fn narrow(code: f64, bits: u8) -> f64 {
     let max = f64::from(if bits == 16 { u16::MAX } else { 255 });
     let unit = (max + 1.0) / 256.0;
@@ -71,13 +71,13 @@ fn number(chunk: &[u8], index: usize) -> Option<f64> {
     numbers.get(index).map(|&bytes| f64::from(u32::from_be_bytes(bytes)) / UNIT)
 }
 
-/// The chromaticities in `cHRM`: white, red, green and blue.
+/// Reads the chromaticities in a `cHRM` chunk: white, red, green and blue, in this order.
 fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
     let point = |index: usize| Some([number(chunk, 2 * index)?, number(chunk, 2 * index + 1)?]);
     Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
 }
 
-/// The space with this exponent and these chromaticities; sRGB supplies a missing value.
+/// Returns the space with this exponent and these chromaticities. A missing value is taken from sRGB.
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {

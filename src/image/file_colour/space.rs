@@ -1,4 +1,4 @@
-//! The colour space that a file states, and how the reader handled it.
+//! The colour space that a picture file states, and how the reader interpreted it.
 
 use super::chromaticities::{Chromaticities, is_identity};
 use super::conversion::Conversion;
@@ -14,22 +14,23 @@ pub enum FileColour {
     /// The picture is not from a file.
     #[default]
     None = 0,
-    /// The file states no colour space: integers are taken as sRGB, floating-point numbers as linear Rec.709.
+    /// The file states no colour space. Integers are taken as sRGB, floating-point numbers as linear Rec.709.
     Assumed = 1,
-    /// The file states this space.
+    /// The file states sRGB for integers, or linear Rec.709 for floating-point numbers.
     Stated = 2,
-    /// The file states another space, and its colours were converted.
+    /// The file states another space, from which its colours were converted.
     Converted = 3,
-    /// The file states a space that cannot be converted, or holds inks without a profile. It was read as if it stated none.
+    /// The file states a space that cannot be converted, or holds inks without a profile. It was read as if it stated
+    /// nothing.
     Unconverted = 4,
-    /// The caller requested the stored numbers without conversion.
+    /// The caller asked for the stored numbers without conversion.
     Data = 5,
 }
 
-/// The colour space that a file states.
+/// The colour space that a picture file states.
 pub(in crate::image) enum Space {
     Unstated,
-    /// sRGB for integers, linear Rec.709 for floating-point numbers.
+    /// sRGB for integers, or linear Rec.709 for floating-point numbers.
     Native,
     Other(Conversion),
     /// Amounts of cyan, magenta, yellow and black.
@@ -39,13 +40,13 @@ pub(in crate::image) enum Space {
 }
 
 impl Space {
-    /// The space whose linear colours a matrix converts to Rec.709.
+    /// Returns the space whose linear colours `matrix` converts to linear Rec.709.
     pub fn linear(matrix: DMat3) -> Self {
         if is_identity(matrix) { Self::Native } else { Self::Other(Conversion::linear(matrix)) }
     }
 }
 
-/// The colour space that the EXIF data state.
+/// The colour space that the EXIF metadata state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExifColour {
     #[default]
@@ -55,7 +56,7 @@ pub enum ExifColour {
 }
 
 impl ExifColour {
-    /// The space that the EXIF data state.
+    /// Converts the statement of the EXIF metadata to a space.
     pub(super) fn space(self) -> Result<Space> {
         match self {
             Self::Unstated => Ok(Space::Unstated),
@@ -70,5 +71,5 @@ impl ExifColour {
     }
 }
 
-/// Exponent of Adobe RGB: 2 + 51/256 [convention: Adobe RGB (1998), 4.3.1.2].
+/// Exponent of the transfer curve of Adobe RGB: 2 + 51/256. [convention: Adobe RGB (1998), 4.3.1.2]
 const ADOBE_GAMMA: f64 = 563.0 / 256.0;

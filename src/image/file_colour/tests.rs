@@ -1,4 +1,5 @@
-//! Whole files with statements of their colour space, made here. tests/python/test_colour.py compares with LCMS.
+//! Tests with whole picture files that state their colour space. The files are made here; tests/python/test_colour.py
+//! compares the results with LCMS.
 
 use super::FileColour;
 use super::curve::{bt709, hlg, pq};
@@ -10,7 +11,7 @@ use crate::image::io::{Encoding, Layer, decode, decode_photo, encode_exr, encode
 use crate::image::tiff::ifd::{Order, tests::structure};
 use moxcms::ColorProfile;
 
-/// A PNG of one row with codes of 8 or 16 bits, and chunks before its pixels.
+/// A PNG of one row with 8-bit or 16-bit codes, and with `chunks` before its pixels.
 fn png(colour_type: u8, codes: &[u16], bits: u8, chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     let channels = if colour_type == 2 { 3 } else { 1 };
     let row: Vec<u8> = match bits {
@@ -31,7 +32,7 @@ fn png(colour_type: u8, codes: &[u16], bits: u8, chunks: &[(&[u8; 4], Vec<u8>)])
     file
 }
 
-/// Bytes packed by deflate.
+/// Compresses bytes with deflate in a zlib stream.
 fn zlib(bytes: &[u8]) -> Vec<u8> {
     miniz_oxide::deflate::compress_to_vec_zlib(bytes, 6)
 }
@@ -64,8 +65,8 @@ fn assert_near(image: &Image, wanted: [f64; 3], tolerance: f64) {
 
 #[test]
 fn display_p3_is_converted_in_every_format() {
-    // CSS Color 4, section 20: color(display-p3 0 1 0) is color(srgb -0.5116 1.0183 -0.3107), and (0.6, 0.4, 0.2) by
-    // its matrix.
+    // CSS Color 4, section 20: color(display-p3 0 1 0) is color(srgb -0.5116 1.0183 -0.3107). The values for (0.6,
+    // 0.4, 0.2) follow from the matrix of that section.
     let linear = [0.6, 0.4, 0.2].map(|v| f64::from(srgb_to_linear((v * 255f32).round() / 255.0)));
     let wanted = [
         1.224_940 * linear[0] - 0.224_940 * linear[1],
@@ -80,7 +81,7 @@ fn display_p3_is_converted_in_every_format() {
     assert_near(&load(&png(2, &wide, 16, &[iccp(&display_p3())])).0, wanted, 3e-4);
     let green = load(&png(2, &[0, 255, 0], 8, &[iccp(&display_p3())])).0;
     assert_near(&green, [0.0, 1.042_057, 0.0], 5e-4);
-    // The other formats: colours are converted in photos, and unchanged in data and textures.
+    // In the other formats too, colours are converted in photos and unchanged in data and textures.
     for (name, file) in [
         ("JPEG", jpeg(&display_p3())),
         ("WebP", webp(&display_p3())),
@@ -100,7 +101,7 @@ fn display_p3_is_converted_in_every_format() {
     }
 }
 
-/// A JPEG of 8 x 8 pixels with a profile in two pieces, the second first.
+/// A JPEG of 8 x 8 pixels with a profile in two pieces, of which the second comes first.
 fn jpeg(profile: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let pixels: Vec<u8> = [200u8, 100, 50].repeat(64);
@@ -127,7 +128,7 @@ fn gif(profile: &[u8]) -> Vec<u8> {
     [&file[..13 + colours], &extension, &file[13 + colours..]].concat()
 }
 
-/// A BMP of one pixel with a header of version 5 that states a space and holds a profile.
+/// A BMP of one pixel, whose header of version 5 states the colour space type `kind` and holds a profile.
 fn bmp(kind: &[u8; 4], profile: &[u8]) -> Vec<u8> {
     let pixels = [50, 100, 200, 0];
     let mut header = [&124u32.to_le_bytes()[..], &1u32.to_le_bytes(), &1u32.to_le_bytes(), &[1, 0, 24, 0]].concat();
@@ -161,7 +162,7 @@ fn webp(profile: &[u8]) -> Vec<u8> {
     file
 }
 
-/// A TIFF of one pixel.
+/// A TIFF of one pixel with a profile.
 fn tiff(profile: &[u8], codes: [u16; 3]) -> Vec<u8> {
     let short = |v: u16| v.to_le_bytes().to_vec();
     let pixel: Vec<u8> = codes.iter().map(|&c| c as u8).collect();
@@ -178,7 +179,7 @@ fn tiff(profile: &[u8], codes: [u16; 3]) -> Vec<u8> {
             (34_675, 7, profile.to_vec()),
         ],
     );
-    // The fifth entry holds the offset of the pixel.
+    // Append the pixel, and store its offset in the fifth entry of the directory.
     let at = u32::from_le_bytes([file[4], file[5], file[6], file[7]]) as usize + 2 + 4 * 12 + 8;
     let end = (file.len() as u32).to_le_bytes();
     file[at..at + 4].copy_from_slice(&end);
@@ -224,7 +225,7 @@ fn primaries_of_a_png_are_converted() {
     assert_eq!(colour, FileColour::Converted);
     let rec709 = [31_270, 32_900, 64_000, 33_000, 30_000, 60_000, 15_000, 6_000];
     assert_eq!(load(&png(2, &[255, 0, 0], 8, &[numbers(rec709)])).1, FileColour::Stated);
-    // Primaries on one line.
+    // Primaries on one line cannot be converted.
     assert_eq!(load(&png(2, &[255, 0, 0], 8, &[numbers([30_000; 8])])).1, FileColour::Unconverted);
 }
 
@@ -244,7 +245,7 @@ fn high_dynamic_range_has_its_reference_white_at_one() {
         assert!((of([1, 1, 0, 1], code) / bt709(share(code)) - 1.0).abs() < 1e-4);
     }
     assert!((of([9, 16, 0, 1], 38_055) - 1.0).abs() < 1e-3 && (of([9, 18, 0, 1], 49_151) - 1.0).abs() < 1e-3);
-    // Video codes from 16 to 235 of 256.
+    // Codes of video range run from 16 to 235 of 256.
     assert!((of([1, 8, 0, 0], 235 << 8) - 1.0).abs() < 1e-4 && (of([1, 8, 0, 0], 16 << 8)).abs() < 1e-4);
 }
 
@@ -258,7 +259,7 @@ fn profiles_for_greys_convert_greys_only() {
     let (rgb, colour) = load(&png(2, &[128; 3], 8, &[iccp(&profile)]));
     assert!((rgb.pixel(0, 0)[0] - srgb_to_linear(128.0 / 255.0)).abs() < 1e-6);
     assert_eq!(colour, FileColour::Unconverted);
-    // The tone curve of an RGB profile also applies to greys.
+    // The tone curve of an RGB profile also converts greys.
     let (grey, colour) = load(&png(0, &[128], 8, &[iccp(&display_p3())]));
     assert!((grey.pixel(0, 0)[0] - srgb_to_linear(128.0 / 255.0)).abs() < 1e-4);
     assert_eq!(colour, FileColour::Converted);
@@ -293,7 +294,7 @@ fn damaged_profiles_are_ignored_and_bombs_are_not_unpacked() {
     bomb[..4].copy_from_slice(&(MAX_BYTES as u32 + 1).to_be_bytes());
     let (_, chunk) = iccp(&bomb);
     assert!(chunk.len() < 5000 && of_chunk(&chunk).unwrap().is_none());
-    // A profile with a thousand tags that share the same data.
+    // A profile with a thousand tags that share their data.
     let mut shared = vec![0; 128];
     shared.extend(1000u32.to_be_bytes());
     shared.extend([b"A2B0", &128u32.to_be_bytes()[..], &12_132u32.to_be_bytes()].concat().repeat(1000));
@@ -303,7 +304,8 @@ fn damaged_profiles_are_ignored_and_bombs_are_not_unpacked() {
 
 #[test]
 fn adobe_rgb_is_known_by_its_exif_notes() {
-    // A TIFF structure with directories at fixed offsets: EXIF at 26, interoperability at 44.
+    // A TIFF structure with directories at fixed offsets: the EXIF directory at 26, the interoperability directory at
+    // 56.
     let entry = |tag: u16, kind: u16, count: u32, value: [u8; 4]| {
         [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &count.to_le_bytes(), &value].concat()
     };
@@ -333,7 +335,7 @@ fn adobe_rgb_is_known_by_its_exif_notes() {
     let (srgb, colour) = load(&jpeg(&notes(1, b"R98\0")));
     assert_eq!(colour, FileColour::Stated);
     assert_eq!(load(&jpeg(&notes(0xffff, b"R98\0"))).1, FileColour::Assumed);
-    // Adobe RGB (1998), 4.3: the red of (200, 100, 50) is stronger.
+    // Red is stronger in Adobe RGB (1998, 4.3) than in sRGB for the codes (200, 100, 50).
     assert!(adobe.pixel(0, 0)[0] > 1.2 * srgb.pixel(0, 0)[0]);
 }
 

@@ -1,11 +1,11 @@
-//! EXIF metadata of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
+//! Reads the EXIF metadata of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
 
 use super::Orientation;
 use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
 use crate::image::file_colour::ExifColour;
 use crate::image::tiff::ifd::{Directory, Ifds};
 
-/// Tags of EXIF; the first two are in the directory of the picture, the others in the EXIF directory.
+/// EXIF tags. The first two are in the directory of the picture, the others in the EXIF directory unless noted.
 mod tag {
     pub const ORIENTATION: u16 = 0x0112;
     pub const EXIF: u16 = 0x8769;
@@ -26,24 +26,25 @@ mod tag {
     pub const PLANE_Y_RESOLUTION: u16 = 0xa20f;
     pub const PLANE_UNIT: u16 = 0xa210;
     pub const FOCAL_LENGTH_35: u16 = 0xa405;
-    /// In the interoperability directory.
+    /// This tag is in the interoperability directory.
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// Value of the 16-bit sensitivity field if the number is too large for it [convention: Exif].
+/// If a 16-bit sensitivity tag has this value, the number is too large for the tag and is stored in another one.
+/// [convention: Exif]
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 
-/// The tags that the library uses. Implausible numbers are absent.
+/// The metadata that the library uses. `None` if the file lacks a value or states an implausible one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Exif {
     pub orientation: Orientation,
-    /// Equivalent focal length for film of 36 x 24 mm, in millimetres.
+    /// Focal length in millimetres that gives the same angle of view on film of 36 x 24 mm.
     pub focal_35: Option<f64>,
     /// Focal length of the lens in millimetres.
     pub focal: Option<f64>,
-    /// Pixels per millimetre of the sensor, at the recorded size.
+    /// Pixels per millimetre of the sensor, at the size in `recorded`.
     pub density: Option<f64>,
-    /// Width and height that the camera recorded.
+    /// Width and height in pixels that the camera recorded.
     pub recorded: Option<[f64; 2]>,
     pub f_number: Option<f64>,
     /// Exposure time in seconds.
@@ -52,20 +53,20 @@ pub struct Exif {
     pub colour: ExifColour,
 }
 
-/// The metadata of a file of any format; all absent in a file without EXIF.
+/// Reads the metadata of a picture file of any format. A file without EXIF has none.
 pub fn read(bytes: &[u8]) -> Exif {
     let picture = notes(bytes).and_then(Ifds::new).and_then(Ifds::first);
     picture.map(|picture| Exif::new(&picture)).unwrap_or_default()
 }
 
-/// The EXIF block of a file, which has the structure of a TIFF file without pixels.
+/// Returns the EXIF block of a file, which has the structure of a TIFF file without pixels.
 fn notes(bytes: &[u8]) -> Option<&[u8]> {
     const NAME: &[u8] = b"Exif\0\0";
     match bytes {
         [0xff, 0xd8, ..] => {
             jpeg_segments(bytes).filter(|s| s.0 == 0xe1).find_map(|(_, segment)| segment.strip_prefix(NAME))
         }
-        // Some programs keep the prefix that only JPEG requires.
+        // Some programs also write the prefix `Exif\0\0`, which only JPEG requires, into PNG and WebP files.
         [0x89, b'P', b'N', b'G', ..] => {
             let chunk = png_chunks(bytes).find(|c| c.0 == b"eXIf")?.2;
             Some(chunk.strip_prefix(NAME).unwrap_or(chunk))
@@ -86,14 +87,14 @@ impl Exif {
         let positive = |tag| notes.number(tag).filter(|v| *v > 0.0);
         let within = |value: Option<f64>, low: f64, high: f64| value.filter(|v| (low..=high).contains(v));
 
-        // Older cameras write logarithms only: 2 log2 N, and -log2 t.
+        // Older cameras write logarithms only: 2 log2 N for the f-number N, and -log2 t for the exposure time t.
         let f_number = positive(tag::F_NUMBER).or_else(|| notes.number(tag::APERTURE).map(|v| (v / 2.0).exp2()));
         let time = positive(tag::EXPOSURE_TIME).or_else(|| notes.number(tag::SHUTTER_SPEED).map(|v| (-v).exp2()));
         let iso = positive(tag::SENSITIVITY).filter(|v| *v != SENSITIVITY_ELSEWHERE).or_else(|| {
             let tags = [tag::STANDARD_OUTPUT_SENSITIVITY, tag::RECOMMENDED_EXPOSURE_INDEX, tag::ISO_SPEED];
             tags.into_iter().find_map(positive)
         });
-        // [convention]: limits that no lens, shutter or sensor of a camera exceeds.
+        // Discard values beyond limits that no lens, shutter or sensor of a camera exceeds. [convention]
         Self {
             orientation,
             focal_35: within(positive(tag::FOCAL_LENGTH_35), 1.0, 1e4),
@@ -108,26 +109,26 @@ impl Exif {
     }
 }
 
-/// The colour space. A file in Adobe RGB states the space "uncalibrated", and the interoperability index of a DCF
-/// optional file, "R03" (CIPA DC-009).
+/// Reads the colour space. A file in Adobe RGB states the space "uncalibrated", together with "R03", the
+/// interoperability index of a DCF optional file (CIPA DC-009).
 fn colour(notes: &Directory) -> ExifColour {
     let offset = notes.integer(tag::INTEROPERABILITY).and_then(|offset| u32::try_from(offset).ok());
     let index = offset.and_then(|offset| notes.ifds().directory(offset)?.bytes(tag::INTEROPERABILITY_INDEX));
     match notes.integer(tag::COLOUR_SPACE) {
         Some(1) => ExifColour::Srgb,
-        // Not in the standard, but in use.
+        // The value 2 is not in the standard, but cameras use it for Adobe RGB.
         Some(2) => ExifColour::AdobeRgb,
         _ if index.is_some_and(|index| index.starts_with(b"R03")) => ExifColour::AdobeRgb,
         _ => ExifColour::Unstated,
     }
 }
 
-/// Pixels per millimetre of the sensor: the geometric mean of both directions.
+/// Pixels per millimetre of the sensor: the geometric mean of the horizontal and the vertical density.
 fn density(notes: &Directory) -> Option<f64> {
     let millimetres = match notes.integer(tag::PLANE_UNIT).unwrap_or(2) {
         2 => 25.4,
         3 => 10.0,
-        // Not in the standard, but in use.
+        // The units 4 (millimetre) and 5 (micrometre) are not in the standard, but some cameras use them.
         4 => 1.0,
         5 => 1e-3,
         _ => return None,

@@ -1,4 +1,4 @@
-//! Metadata of a photo's file: orientation, focal length, exposure, and the interpretation of its colours.
+//! Metadata of a photo's file: orientation, focal length, exposure, and how its colours were interpreted.
 
 mod exif;
 mod orientation;
@@ -10,41 +10,46 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. [convention]: lenses are marked to about 5 %, and the
-/// equivalent for 35 mm film is rounded to a millimetre and refers to the diagonal or the width (4 % apart at 4:3).
+/// Relative standard deviation of a focal length from EXIF. [convention]: the focal length marked on a lens is
+/// accurate to about 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or
+/// to the width (4 % apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
-/// Diagonal of film of 36 x 24 mm, to which equivalent focal lengths refer [convention: CIPA DCG-001].
+/// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]
 const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 
-/// Maximum relative difference of two estimates of the focal length that agree. [convention]: twice [`FOCAL_ERROR`].
+/// Largest difference between the logarithms of two focal lengths that count as equal. [convention]: twice
+/// [`FOCAL_ERROR`].
 const AGREEMENT: f64 = 0.1;
 
-/// Maximum relative difference between the aspect ratio of a photo and the recorded one; beyond it the photo has been
-/// cropped. Sides are whole numbers, and resizing rounds them. [convention]
+/// A photo counts as not cropped if the logarithms of its aspect ratio and of the recorded aspect ratio differ by less
+/// than this value. It allows for the rounding of the sides when a photo is resized. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// The saturation-based speed is 78 lx s divided by the focal-plane exposure that just saturates [convention: ISO
-/// 12232:2019, 6.2].
+/// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates.
+/// [convention: ISO 12232:2019, 6.2]
 const SATURATION: f64 = 78.0;
 
-/// The focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis
-/// [convention: ISO 12232:2019, annex A].
+/// The factor q: the focal-plane exposure is q L t / N² for a luminance L, an exposure time t and an f-number N. The
+/// value holds for a lens of 90 % transmittance, 10° off its axis. [convention: ISO 12232:2019, annex A]
 const LENS: f64 = 0.65;
 
-/// Range of the luminance of white, relative to its value if the speed is saturation-based. Lower limit: the speed may
-/// be a standard output sensitivity (ISO 12232:2019, 6.4), which is 10 lx s divided by the exposure that becomes sRGB
-/// code 118. The linear value of this code is 0.181, so white corresponds to 10 / 0.181 = 55 lx s instead of 78. Upper
-/// limit: with a recommended exposure index, the manufacturer chooses the headroom; one stop of headroom is assumed.
-/// [convention]
+/// Range of the luminance of white, relative to its value if the ISO speed is saturation-based.
+///
+/// Lower limit: the speed may be a standard output sensitivity (ISO 12232:2019, 6.4), which is 10 lx s divided by the
+/// exposure that becomes the sRGB code 118. The linear value of this code is 0.181, so white corresponds to 10 / 0.181
+/// = 55 lx s instead of 78.
+///
+/// Upper limit: with a recommended exposure index, the manufacturer chooses the headroom; one stop of headroom is
+/// assumed. [convention]
 const WHITE_RANGE: [f64; 2] = [10.0 / 0.181 / SATURATION, 2.0];
 
-/// The metadata of a photo, converted to the photo as it was loaded.
+/// The metadata of a photo, referred to the pixels of the photo as it was loaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhotoMetadata {
-    /// The orientation in the file. The photo has been turned upright.
+    /// The orientation that the file states. The loaded photo has been turned upright.
     pub orientation: Orientation,
-    /// Focal length in pixels.
+    /// Focal length in pixels of the loaded photo.
     pub focal: Option<f64>,
     pub f_number: Option<f64>,
     /// Exposure time in seconds.
@@ -54,7 +59,7 @@ pub struct PhotoMetadata {
     pub colour: FileColour,
 }
 
-/// A luminance in cd/m², and its range.
+/// A luminance in cd/m², with the range in which it may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Luminance {
     pub low: f64,
@@ -63,8 +68,8 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// Converts the metadata of a file to the metadata of its photo. Width and height may be given before or after the
-    /// photo is turned upright.
+    /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be given before or after
+    /// the photo is turned upright.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,
@@ -76,12 +81,13 @@ impl PhotoMetadata {
         }
     }
 
-    /// Focal length in pixels and its standard deviation.
+    /// Returns the focal length in pixels and its standard deviation.
     pub fn expected_focal(&self) -> Option<[f64; 2]> {
         self.focal.map(|focal| [focal, FOCAL_ERROR * focal])
     }
 
-    /// The luminance that became the value 1. It follows from the exposure that just saturates: L = 78 N² / (q t S).
+    /// Returns the luminance that became the pixel value 1. It follows from the exposure that just saturates, for the
+    /// ISO speed S: L = 78 N² / (q t S).
     pub fn white_luminance(&self) -> Option<Luminance> {
         let (n, t, s) = (self.f_number?, self.exposure_time?, self.iso?);
         let expected = SATURATION * n * n / (LENS * t * s);
@@ -90,10 +96,11 @@ impl PhotoMetadata {
     }
 }
 
-/// The focal length in pixels, from the 35 mm equivalent, or from the focal length of the lens and the pixel density
-/// of the sensor.
+/// Returns the focal length in pixels, from the 35 mm equivalent, or from the focal length of the lens and the pixel
+/// density of the sensor. `None` for a cropped photo, or without these data.
 fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
-    // Editors that crop keep the recorded size; editors that rotate a photo may exchange its sides.
+    // Detect cropping: editors that crop a photo keep the recorded size. Editors that rotate it may exchange the
+    // recorded sides.
     let shape = |width: f64, height: f64| width.max(height) / width.min(height);
     let is_whole = |[w, h]: [f64; 2]| (shape(w, h) / shape(width, height)).ln().abs() < SAME_SHAPE;
     if !exif.recorded.is_none_or(is_whole) {
@@ -103,8 +110,8 @@ fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
     let by_film = exif.focal_35.map(|focal| focal * diagonal / FILM_DIAGONAL);
     let scale = exif.recorded.map_or(1.0, |[w, h]| diagonal / w.hypot(h));
     let by_sensor = exif.focal.zip(exif.density).map(|(focal, density)| focal * density * scale);
-    // The estimate from the sensor is more precise, but wrong in some cameras: use it unless the estimate from the 35
-    // mm equivalent contradicts it.
+    // The estimate from the sensor is more precise, but wrong in some cameras. Use it unless the 35 mm equivalent
+    // contradicts it.
     match (by_film, by_sensor) {
         (Some(film), Some(sensor)) if (sensor / film).ln().abs() > AGREEMENT => Some(film),
         (_, Some(sensor)) => Some(sensor),

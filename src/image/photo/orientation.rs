@@ -1,9 +1,9 @@
-//! Orientation of a stored photo, and turning it upright while it is read.
+//! The orientation in which a photo is stored, and how it is turned upright while it is read.
 
 use crate::error::Result;
 use crate::image::Image;
 
-/// Orientation of the stored rows and columns: the value of the EXIF tag Orientation, 1 to 8 (JEITA CP-3451, 4.6.4).
+/// The orientation of a stored photo: the value 1 to 8 of the EXIF tag Orientation (JEITA CP-3451, 4.6.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation(u8);
 
@@ -14,7 +14,7 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// Rows run downwards, columns to the right.
+    /// The stored rows run downwards, the stored columns to the right.
     pub const UPRIGHT: Self = Self(1);
 
     pub fn new(code: u64) -> Option<Self> {
@@ -25,32 +25,33 @@ impl Orientation {
         self.0
     }
 
-    /// Whether stored rows are columns of the upright picture.
+    /// Whether the stored rows are columns of the upright picture.
     pub fn is_transposed(self) -> bool {
         self.0 >= 5
     }
 
-    /// Whether the upright picture is mirrored after the transposition: left to right, and top to bottom.
+    /// Whether to mirror the picture left to right, and top to bottom, after the transposition.
     fn mirrors(self) -> [bool; 2] {
         [matches!(self.0, 2 | 3 | 6 | 7), matches!(self.0, 3 | 4 | 7 | 8)]
     }
 }
 
-/// An upright image whose pixels are written in the order of the file.
+/// An upright image whose pixels are written in the order in which the file stores them.
 pub struct Upright {
     pub image: Image,
-    /// Index of the sample of the file's first pixel, and the steps to the next column and row of the file.
+    /// Index of the first sample of the pixel that the file stores first, and the changes of this index from one
+    /// column, and from one row, of the file to the next.
     start: isize,
     steps: [isize; 2],
 }
 
 impl Upright {
-    /// Allocates the upright image of a stored picture with these numbers of columns and rows.
+    /// Allocates the upright image of a stored picture of `width` columns and `height` rows.
     pub fn new(width: usize, height: usize, channels: usize, orientation: Orientation) -> Result<Self> {
         let is_transposed = orientation.is_transposed();
         let image =
             if is_transposed { Image::new(height, width, channels)? } else { Image::new(width, height, channels)? };
-        // Step along each axis of the upright picture, forwards from its first column and row or backwards from its
+        // Along each axis of the upright picture, step forwards from its first column or row, or backwards from its
         // last.
         let ahead = [channels, image.row_len()];
         let ends = [image.width - 1, image.height - 1];
@@ -66,7 +67,7 @@ impl Upright {
         Ok(Self { image, start, steps })
     }
 
-    /// The samples of the pixel at a column and row of the file.
+    /// Returns the samples of the pixel at column `x` and row `y` of the file.
     #[inline(always)]
     pub fn pixel(&mut self, x: usize, y: usize) -> &mut [f32] {
         let at = (self.start + x as isize * self.steps[0] + y as isize * self.steps[1]) as usize;
@@ -80,8 +81,8 @@ mod tests {
 
     #[test]
     fn rows_and_columns_go_where_the_standard_says() {
-        // An upright picture of three columns and two rows, and the stored rows for each orientation: the tag names
-        // the side of the scene where the first row, and then the first column, lies.
+        // An upright picture of three columns and two rows, as stored in each orientation. The tag names the side of
+        // the scene at which the first row lies, and then the side of the first column.
         let stored: [(&[&str], &str); 8] = [
             (&["abc", "def"], "top, left"),
             (&["cba", "fed"], "top, right"),

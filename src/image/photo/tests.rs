@@ -10,13 +10,13 @@ const SHORT: u16 = 3;
 const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 
-/// EXIF data: the tags of the picture, and the tags in the EXIF directory.
+/// An EXIF block with the given tags in the directory of the picture and in the EXIF directory.
 pub fn notes(order: Order, picture: &[Entry], camera: &[Entry]) -> Vec<u8> {
     let (_, _, u32) = writers(order);
     let with = |offset: u32| [picture, &[(0x8769, LONG, u32(offset))]].concat();
     let first = structure(order, &with(0)).len();
     let mut notes = structure(order, &with(first as u32));
-    // The offsets in the second directory are relative to the file: add its position.
+    // The offsets in the second directory are relative to the file, so add the position of this directory.
     let (_, _, u32) = writers(order);
     let own = structure(order, camera);
     let mut own = own[8..].to_vec();
@@ -57,7 +57,7 @@ fn png(image: &Image, notes: &[u8]) -> Vec<u8> {
         (0..8).fold(crc ^ u32::from(*b), |crc, _| if crc & 1 != 0 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
     });
     let chunk = [&(notes.len() as u32).to_be_bytes()[..], &named, &(!crc).to_be_bytes()].concat();
-    // Insert it after the header.
+    // Insert the chunk after the header.
     [&file[..33], &chunk, &file[33..]].concat()
 }
 
@@ -75,12 +75,12 @@ fn webp(image: &image::RgbImage, notes: &[u8]) -> Vec<u8> {
     [b"RIFF", &(chunks.len() as u32 + 4).to_le_bytes()[..], b"WEBP", &chunks].concat()
 }
 
-/// The letter F, with strokes sixteen pixels wide, which no rotation or reflection maps to itself.
+/// The letter F with strokes sixteen pixels wide: no rotation or reflection maps it to itself.
 fn letter(x: u32, y: u32) -> bool {
     [[1, 1, 1], [1, 0, 0], [1, 1, 0], [1, 0, 0]][y as usize / 16][x as usize / 16] == 1
 }
 
-/// The letter as stored in an orientation: the position in the upright picture of each stored pixel, by EXIF's table.
+/// The letter as a file stores it in orientation `code`: EXIF's table gives the upright position of each stored pixel.
 fn stored(code: u16) -> image::RgbImage {
     let (width, height) = if code >= 5 { (64, 48) } else { (48, 64) };
     image::RgbImage::from_fn(width, height, |x, y| {
@@ -124,14 +124,14 @@ fn photos_of_every_orientation_and_format_stand_upright() {
                 let photo = decode_photo(file, Encoding::Srgb).unwrap();
                 assert!(is_upright(&photo.image), "orientation {code}, file {k}");
                 assert_eq!(u16::from(photo.metadata.orientation.code()), code);
-                // Textures stay as they are stored.
+                // Textures stay in the orientation in which they are stored.
                 assert_eq!(is_upright(&decode(file, Encoding::Srgb).unwrap()), code == 1);
             }
         }
     }
 }
 
-/// The metadata of a small version of a photo of 4032 x 3024 pixels with these tags.
+/// The metadata that a photo of 40 x 30 pixels has if its EXIF directory holds the tags `camera`.
 fn metadata(camera: &[Entry]) -> PhotoMetadata {
     let picture = image::RgbImage::new(40, 30);
     let notes = notes(Order::Big, &[(0x10f, ASCII, b"Maker\0".to_vec()), short(Order::Big, 0x112, 6)], camera);
@@ -150,7 +150,7 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let by_film = 26.0 * 50.0 / FILM_DIAGONAL;
     assert!(near(metadata(&[film.clone()]).focal, by_film));
     assert!(near(metadata(&[&recorded[..], &[film.clone()]].concat()).focal, by_film));
-    // A sensor of 7 x 5.25 mm behind a lens of 4.3 mm: 576 pixels per millimetre, 4032 in a row.
+    // A sensor of 7 x 5.25 mm behind a lens of 4.3 mm: 576 pixels per millimetre, 4032 pixels in a row.
     let sensor = [
         rational(big, 0x920a, 43, 10),
         rational(big, 0xa20e, 5760, 1),
@@ -160,14 +160,15 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let all = [&recorded[..], &sensor].concat();
     let by_sensor = 4.3 * 576.0 * 40.0 / 4032.0;
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
-    // If the two estimates agree within 10 %, the one from the sensor is used, otherwise the 35 mm equivalent.
+    // If the two estimates agree within 10 %, the estimate from the sensor is used, otherwise the 35 mm equivalent.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
     assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
-    // No focal length: a photo cropped to another shape; an equivalent of zero; a focal length with denominator 0.
+    // The focal length is unknown if the photo is cropped to another aspect ratio, if the 35 mm equivalent is 0, or if
+    // a denominator is 0.
     assert_eq!(metadata(&[short(big, 0xa002, 4032), short(big, 0xa003, 2268), film]).focal, None);
     assert_eq!(metadata(&[short(big, 0xa405, 0)]).focal, None);
     assert_eq!(metadata(&[rational(big, 0x920a, 43, 0)]).focal, None);
-    // A photo rotated by an editor that exchanged its sides.
+    // A photo that an editor rotated, exchanging the recorded sides.
     let turned = [short(big, 0xa002, 3024), short(big, 0xa003, 4032), short(big, 0xa405, 26)];
     assert!(near(metadata(&turned).focal, by_film));
 }
@@ -178,7 +179,8 @@ fn the_luminance_of_white_follows_from_the_exposure() {
     let exposure = [rational(big, 0x829a, 1, 60), rational(big, 0x829d, 28, 10), short(big, 0x8827, 400)];
     let known = metadata(&exposure);
     assert!(near(known.f_number, 2.8) && near(known.exposure_time, 1.0 / 60.0) && near(known.iso, 400.0));
-    // 1.2 x 2^EV100 (Lagarde and de Rousiers, Moving Frostbite to physically based rendering, 2014, section 5.1.1).
+    // White is at 1.2 x 2^EV100 cd/m² (Lagarde and de Rousiers, Moving Frostbite to physically based rendering, 2014,
+    // section 5.1.1).
     let ev100 = (2.8f64 * 2.8 * 60.0 * 100.0 / 400.0).log2();
     let white = known.white_luminance().unwrap();
     assert!((white.expected - 1.2 * ev100.exp2()).abs() < 1e-9 * white.expected, "{white:?}");

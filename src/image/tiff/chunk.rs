@@ -1,4 +1,4 @@
-//! Unpacks one chunk of a TIFF's pixels and undoes its predictor.
+//! Decompresses one chunk (strip or tile) of a TIFF's pixels, and undoes its predictor.
 
 use super::ifd::Order;
 use super::layout::{Compression, Depth, Layout, Predictor};
@@ -7,7 +7,7 @@ use half::f16;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use weezl::{BitOrder, LzwStatus};
 
-/// Unpacks the stored bytes until `out` is full; returns an error if they end before.
+/// Decompresses the stored bytes until `out` is full; returns an error if they end too early.
 pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result<()> {
     let needed = out.len();
     let written = match compression {
@@ -18,7 +18,7 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
         }
         Compression::PackBits => packbits(stored, out),
         Compression::Lzw => lzw(stored, out),
-        // On an error, use the bytes unpacked so far: if the file stores more than needed, they fill the chunk.
+        // With the status `HasMoreOutput`, the file stores more bytes than needed and the chunk is complete.
         Compression::Deflate => match decompress_slice_iter_to_slice(out, std::iter::once(stored), true, true) {
             Ok(written) => written,
             Err(miniz_oxide::inflate::TINFLStatus::HasMoreOutput) => needed,
@@ -31,7 +31,8 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
     Err(Error::format(format!("the TIFF's pixels are damaged ({compression:?}): {needed} bytes were expected")))
 }
 
-/// Unpacks runs of literal and of equal bytes (TIFF 6.0, section 9); returns the number of bytes written.
+/// Decompresses PackBits, runs of literal or of equal bytes (TIFF 6.0, section 9); returns the number of bytes
+/// written.
 fn packbits(mut stored: &[u8], out: &mut [u8]) -> usize {
     let mut at = 0;
     while let Some((&head, rest)) = stored.split_first().filter(|_| at < out.len()) {
@@ -55,7 +56,7 @@ fn packbits(mut stored: &[u8], out: &mut [u8]) -> usize {
     at
 }
 
-/// Unpacks LZW; returns the number of bytes written.
+/// Decompresses LZW; returns the number of bytes written.
 fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     let mut decoder = weezl::decode::Decoder::with_tiff_size_switch(BitOrder::Msb, 8);
     let (mut from, mut to) = (0, 0);
@@ -71,13 +72,13 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     to
 }
 
-/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order of the samples
-/// afterwards.
+/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order that the samples then
+/// have.
 pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
     let samples = layout.samples;
     match (layout.predictor, layout.depth.bits() / 8) {
         (Predictor::None, _) => order,
-        // Each sample is stored as its difference from the one to the left.
+        // Horizontal: each sample is stored as its difference from the same channel of the pixel to the left.
         (Predictor::Horizontal, 1) => {
             for i in samples..row.len() {
                 row[i] = row[i].wrapping_add(row[i - samples]);
@@ -85,7 +86,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             order
         }
         (Predictor::Horizontal, size) => {
-            // Add numbers of any length from the lowest byte up.
+            // Add numbers of any size byte by byte, from the lowest byte up.
             let byte = |k: usize| if order == Order::Little { k } else { size - 1 - k };
             for start in (samples * size..row.len()).step_by(size) {
                 let mut carry = 0;
@@ -98,7 +99,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             }
             order
         }
-        // All highest bytes of a row come first, then the next lower ones; all of them as differences.
+        // Floating point: the row stores all highest bytes first, then all next lower bytes and so on, as differences.
         (Predictor::Float, size) => {
             for i in samples..row.len() {
                 row[i] = row[i].wrapping_add(row[i - samples]);
@@ -115,7 +116,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
     }
 }
 
-/// A sample of a row by its index; integers as `[0, 1]`.
+/// Returns a sample of a row by its index. Integers are scaled to `[0, 1]`.
 pub fn sample(row: &[u8], index: usize, depth: Depth, order: Order) -> f32 {
     match depth {
         Depth::Bits(bits) => {

@@ -1,16 +1,18 @@
-//! Directories of tagged values, in TIFF files and in the EXIF blocks of other pictures (TIFF 6.0, section 2).
+//! Reads directories of tagged values, as in TIFF files and in the EXIF blocks of other pictures (TIFF 6.0, section
+//! 2).
 //!
-//! The bytes are untrusted. A directory or a value outside of them counts as absent, and chains of directories are not
-//! followed, so reading needs no memory and ends after one pass over each directory that is requested.
+//! The bytes are untrusted. A directory or a value that lies outside these bytes counts as absent. Chains of
+//! directories are not followed. Reading therefore needs no memory, and it ends after one pass over each directory
+//! requested.
 
-/// The bytes of a structure of directories with a valid header.
+/// A block of bytes with directories and a valid header.
 #[derive(Clone, Copy)]
 pub struct Ifds<'a> {
     bytes: &'a [u8],
     order: Order,
 }
 
-/// The byte order of numbers.
+/// The byte order of numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     Little,
@@ -32,7 +34,7 @@ impl Order {
 }
 
 impl<'a> Ifds<'a> {
-    /// The structure at the start of `bytes`; `None` without a valid header.
+    /// Reads the header at the start of `bytes`; `None` if it is not valid.
     pub fn new(bytes: &'a [u8]) -> Option<Self> {
         let order = match bytes.first_chunk()? {
             [b'I', b'I', 42, 0] => Order::Little,
@@ -42,12 +44,12 @@ impl<'a> Ifds<'a> {
         Some(Self { bytes, order })
     }
 
-    /// The directory that the header points to.
+    /// Returns the directory to which the header points.
     pub fn first(self) -> Option<Directory<'a>> {
         self.directory(self.order.u32(*self.bytes.get(4..)?.first_chunk()?))
     }
 
-    /// The directory at an offset, with the entries that lie within the bytes.
+    /// Returns the directory at an offset, with those of its entries that lie within the bytes.
     pub fn directory(self, offset: u32) -> Option<Directory<'a>> {
         let (count, entries) = self.bytes.get(offset as usize..)?.split_first_chunk()?;
         let (entries, _) = entries.as_chunks();
@@ -59,14 +61,14 @@ impl<'a> Ifds<'a> {
         self.order
     }
 
-    /// Some bytes at an offset.
+    /// Returns `len` bytes from an offset on; `None` if they exceed the block.
     pub fn slice(self, offset: u64, len: u64) -> Option<&'a [u8]> {
         let start = usize::try_from(offset).ok()?;
         self.bytes.get(start..start.checked_add(usize::try_from(len).ok()?)?)
     }
 }
 
-/// A list of values by their tags.
+/// A directory: a list of values with their tags.
 #[derive(Clone, Copy)]
 pub struct Directory<'a> {
     ifds: Ifds<'a>,
@@ -78,7 +80,8 @@ impl<'a> Directory<'a> {
         self.ifds
     }
 
-    /// The values of a tag. Values outside the file are counted, but cannot be read.
+    /// Returns the values of a tag; `None` if the directory lacks it. Values outside the file count in [`Field::len`],
+    /// but cannot be read.
     pub fn field(&self, tag: u16) -> Option<Field<'a>> {
         let order = self.ifds.order;
         let entry = self.entries.iter().find(|e| order.u16([e[0], e[1]]) == tag)?;
@@ -92,17 +95,17 @@ impl<'a> Directory<'a> {
         Some(Field { kind, count: count as usize, values: values.unwrap_or_default(), order })
     }
 
-    /// The first value of a tag, if it is a whole number.
+    /// Returns the first value of a tag if it is an unsigned integer.
     pub fn integer(&self, tag: u16) -> Option<u64> {
         self.field(tag)?.integer(0)
     }
 
-    /// The bytes of a tag that lie within the file.
+    /// Returns the bytes of a tag's values if they lie within the file.
     pub fn bytes(&self, tag: u16) -> Option<&'a [u8]> {
         self.field(tag).map(|field| field.values).filter(|values| !values.is_empty())
     }
 
-    /// The first value of a tag, if it is a finite number.
+    /// Returns the first value of a tag if it is a finite number.
     pub fn number(&self, tag: u16) -> Option<f64> {
         self.field(tag)?.number(0)
     }
@@ -126,10 +129,10 @@ enum Kind {
 impl Kind {
     fn new(code: u16) -> Option<Self> {
         Some(match code {
-            // Also for texts and undefined bytes.
+            // Bytes, also as text or of undefined meaning.
             1 | 2 | 7 => Self::U8,
             3 => Self::U16,
-            // Also for offsets of directories.
+            // 32-bit integers, also as offsets of directories.
             4 | 13 => Self::U32,
             5 => Self::URational,
             6 => Self::I8,
@@ -152,7 +155,7 @@ impl Kind {
     }
 }
 
-/// The values of a tag.
+/// The values of one tag.
 #[derive(Clone, Copy)]
 pub struct Field<'a> {
     kind: Kind,
@@ -170,7 +173,7 @@ impl Field<'_> {
         self.values.as_chunks::<N>().0.get(index).copied()
     }
 
-    /// A value, if it is a whole number and not negative.
+    /// Returns the value at an index if it is an unsigned integer.
     pub fn integer(&self, index: usize) -> Option<u64> {
         match self.kind {
             Kind::U8 => self.bytes(index).map(|[v]| v.into()),
@@ -180,7 +183,7 @@ impl Field<'_> {
         }
     }
 
-    /// A value, if it is a finite number.
+    /// Returns the value at an index if it is a finite number.
     pub fn number(&self, index: usize) -> Option<f64> {
         let u32 = |index| self.bytes(index).map(|v| self.order.u32(v));
         let value = match self.kind {
@@ -201,10 +204,10 @@ impl Field<'_> {
 pub mod tests {
     use super::*;
 
-    /// One entry of a directory: tag, kind, values as bytes in the file's order.
+    /// One entry of a directory: its tag, its type code, and its values as bytes in the file's order.
     pub type Entry = (u16, u16, Vec<u8>);
 
-    /// A structure with one directory, in either byte order; values that are too long for an entry follow it.
+    /// A block with one directory in either byte order. Values too long for their entry follow the directory.
     pub fn structure(order: Order, entries: &[Entry]) -> Vec<u8> {
         let (head, u16, u32) = writers(order);
         let mut out = [head.to_vec(), u32(8), u16(entries.len() as u16)].concat();
@@ -229,7 +232,8 @@ pub mod tests {
 
     type Writers = (&'static [u8], fn(u16) -> Vec<u8>, fn(u32) -> Vec<u8>);
 
-    /// The first four bytes, and the functions that write numbers.
+    /// Returns the first four bytes of a file in this byte order, and the functions that write its 16-bit and 32-bit
+    /// numbers.
     pub fn writers(order: Order) -> Writers {
         match order {
             Order::Little => (b"II*\0", |v| v.to_le_bytes().to_vec(), |v| v.to_le_bytes().to_vec()),
@@ -282,7 +286,7 @@ pub mod tests {
             let known = [1, 2].map(|tag| first(&bytes[..cut], tag));
             assert!(known[0].is_none_or(|v| v == 1.0) && known[1].is_none_or(|v| v == 0.5), "cut at {cut}");
         }
-        // Counts and offsets of every size.
+        // Counts and offsets of every size must not cause a panic.
         for at in 4..bytes.len() - 3 {
             for value in [0, 1, 9, 255, 65_535, 0x7fff_ffff, 0xffff_ffff] {
                 let mut bad = bytes.clone();

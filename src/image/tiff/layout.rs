@@ -1,4 +1,4 @@
-//! The layout of the pixels of a TIFF file, from the checked tags of its first directory.
+//! Reads and checks the tags that describe how a TIFF file stores the pixels of its first picture.
 
 use super::ifd::{Directory, Field};
 use crate::error::{Error, ErrorKind, Result};
@@ -29,16 +29,18 @@ mod tag {
     pub const DNG_VERSION: u16 = 50_706;
 }
 
-/// Maximum number of stored samples per pixel, including those that are not colours. [convention]: no photo has more.
+/// Maximum number of stored samples per pixel, including samples that are not colours. [convention]: no photo has
+/// more.
 const MAX_SAMPLES: u64 = 16;
 
-/// Tiles up to this width are accepted in any picture; wider tiles must not be wider than the picture. [convention]
+/// Tiles up to this width in pixels are accepted in any picture. Wider tiles must not be wider than the picture.
+/// [convention]
 const MAX_TILE: usize = 4096;
 
-/// The format of a sample.
+/// The number format of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// 1, 2 or 4 bits; the first sample is in the highest bits of a byte.
+    /// 1, 2 or 4 bits. The first sample of a byte is in its highest bits.
     Bits(u8),
     U8,
     U16,
@@ -71,11 +73,11 @@ pub enum Colour<'a> {
     },
     Rgb,
     Cmyk,
-    /// All reds, then all greens, then all blues, 16 bits each.
+    /// The colours of all codes: first the reds, then the greens, then the blues, with 16 bits each.
     Palette(Field<'a>),
 }
 
-/// Whether colours have been multiplied by alpha.
+/// Whether the colours have been multiplied by alpha (associated) or not (unassociated).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alpha {
     Associated,
@@ -97,17 +99,17 @@ pub enum Predictor {
     Float,
 }
 
-/// A rectangle of pixels that is stored separately.
+/// A rectangle of pixels that the file stores separately: a strip or a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk {
-    /// Its index in the list of chunks.
+    /// Index of this chunk in the list of chunks.
     pub index: usize,
-    /// The index of its sample, if each sample has its own chunks.
+    /// Index of the sample that the chunk holds if each sample has its own chunks; otherwise 0.
     pub plane: usize,
-    /// Its upper left pixel.
+    /// Position of its top-left pixel in the picture.
     pub x: usize,
     pub y: usize,
-    /// Size of its part within the picture.
+    /// Size in pixels of the part of the chunk that lies within the picture.
     pub width: usize,
     pub height: usize,
 }
@@ -121,10 +123,10 @@ pub struct Layout<'a> {
     pub alpha: Option<Alpha>,
     pub compression: Compression,
     pub predictor: Predictor,
-    /// Number of samples per pixel in a chunk: all, or one if each sample has its own chunks.
+    /// Number of samples per pixel in a chunk: all of them, or one if each sample has its own chunks.
     pub samples: usize,
     planes: usize,
-    /// Width and height of a chunk as stored.
+    /// Width and height in pixels of a chunk as stored.
     chunk: [usize; 2],
     offsets: Field<'a>,
     sizes: Field<'a>,
@@ -190,7 +192,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Number of samples of a colour.
+    /// Number of samples that make up a colour.
     pub fn colours(&self) -> usize {
         match self.colour {
             Colour::Grey { .. } | Colour::Palette(_) => 1,
@@ -199,12 +201,12 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Bytes of an unpacked row of a chunk.
+    /// Bytes of one row of a decompressed chunk.
     pub fn row_bytes(&self) -> usize {
         (self.chunk[0] * self.samples * self.depth.bits()).div_ceil(8)
     }
 
-    /// Maximum number of bytes of an unpacked chunk: its rows that lie within the picture.
+    /// Maximum number of bytes of a decompressed chunk. A chunk is at most as high as the picture.
     pub fn chunk_bytes(&self) -> usize {
         self.row_bytes() * self.chunk[1]
     }
@@ -213,7 +215,7 @@ impl<'a> Layout<'a> {
         [self.width.div_ceil(self.chunk[0]), self.height.div_ceil(self.chunk[1])]
     }
 
-    /// The chunks of all planes whose samples are used.
+    /// Iterates over the chunks of all planes whose samples are used.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk> + use<> {
         let ([across, down], [width, height]) = (self.grid(), self.chunk);
         let (picture_width, picture_height) = (self.width, self.height);
@@ -231,7 +233,7 @@ impl<'a> Layout<'a> {
         })
     }
 
-    /// The stored bytes of a chunk.
+    /// Returns the stored bytes of a chunk; an error if they lie outside the file.
     pub fn stored(&self, chunk: &Chunk) -> Result<&'a [u8]> {
         let (offset, size) = (self.offsets.integer(chunk.index), self.sizes.integer(chunk.index));
         offset
@@ -240,7 +242,7 @@ impl<'a> Layout<'a> {
             .ok_or_else(|| Error::format(format!("piece {} of the TIFF's pixels lies outside the file", chunk.index)))
     }
 
-    /// Refuses dimensions that a file of this size cannot contain, before memory is allocated.
+    /// Refuses a size that a file of `file_bytes` bytes cannot contain, before memory is allocated for it.
     fn check_memory(&self, file_bytes: usize) -> Result<()> {
         let [across, down] = self.grid();
         let chunks = across * down * self.planes;
@@ -273,11 +275,11 @@ pub fn unsupported(what: impl std::fmt::Display) -> Error {
     )
 }
 
-/// The tags of the chunks: strips, which are as wide as the picture, or tiles.
+/// How the pixels are divided into chunks: strips, which are as wide as the picture, or tiles.
 struct Chunks {
-    /// Width and height of a chunk as stored.
+    /// Width and height in pixels of a chunk as stored.
     size: [usize; 2],
-    /// The tag of the offsets of the chunks, and the tag of their sizes in bytes.
+    /// The tags whose values are the offsets of the chunks, and their sizes in bytes.
     offsets: u16,
     bytes: u16,
 }
@@ -302,18 +304,18 @@ impl Chunks {
     }
 }
 
-/// The first value of a tag; an error without it.
+/// Returns the first value of a tag; an error if the tag is absent.
 fn required(directory: &Directory, tag: u16, name: &str) -> Result<u64> {
     integer(directory, tag, name)?.ok_or_else(|| missing(name))
 }
 
-/// The first value of a tag; an error if the tag is present but unreadable.
+/// Returns the first value of a tag; `None` if the tag is absent, an error if its value cannot be read.
 fn integer(directory: &Directory, tag: u16, name: &str) -> Result<Option<u64>> {
     let unreadable = || Error::format(format!("the TIFF's {name} is not a whole number within the file"));
     directory.field(tag).map(|f| f.integer(0).ok_or_else(unreadable)).transpose()
 }
 
-/// Raw files of cameras are TIFF files too; their first picture is a thumbnail.
+/// Refuses the raw files of cameras. They are TIFF files too, whose first picture is a thumbnail.
 fn check_is_picture(directory: &Directory) -> Result<()> {
     let is_thumbnail = directory.integer(tag::NEW_SUBFILE_TYPE).unwrap_or(0) & 1 != 0;
     if is_thumbnail || directory.field(tag::DNG_VERSION).is_some() {
@@ -326,14 +328,14 @@ fn check_is_picture(directory: &Directory) -> Result<()> {
 }
 
 fn depth(directory: &Directory, samples: usize) -> Result<Depth> {
-    // A single value may apply to all samples.
+    // Returns the value that all samples share. A single value in the file may apply to all samples.
     let all = |tag, name, default| -> Result<u64> {
         let Some(field) = directory.field(tag) else { return Ok(default) };
         let first = field.integer(0).ok_or_else(|| missing(name))?;
         let is_same = (0..field.len().min(samples)).all(|i| field.integer(i) == Some(first));
         if is_same { Ok(first) } else { Err(unsupported(format_args!("samples of unequal {name}"))) }
     };
-    // 1 = unsigned, 2 = signed, 3 = floating point, 4 = undefined.
+    // Sample formats: 1 = unsigned, 2 = signed, 3 = floating point, 4 = undefined.
     let (bits, format) = (all(tag::BITS, "BitsPerSample", 1)?, all(tag::SAMPLE_FORMAT, "SampleFormat", 1)?);
     match (format, bits) {
         (1 | 4, 1 | 2 | 4) if samples == 1 => Ok(Depth::Bits(bits as u8)),
@@ -372,7 +374,8 @@ fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Resu
     }
 }
 
-/// The meaning of a sample after the colours. The tag states it; without the tag, the fourth of four samples is alpha.
+/// Returns the kind of alpha, if the sample after the colours is alpha. A tag states this; without the tag, the fourth
+/// of four samples is alpha.
 fn alpha(directory: &Directory, colour: Colour, samples: usize) -> Result<Option<Alpha>> {
     let colours = match colour {
         Colour::Grey { .. } | Colour::Palette(_) => 1,

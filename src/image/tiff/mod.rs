@@ -1,12 +1,13 @@
-//! TIFF files: grey, RGB, palette and CMYK, integers of 1 to 32 bits and floating point of 16 to 64, with or without
-//! alpha, in strips or tiles, uncompressed or with LZW, deflate or PackBits, with any predictor. The first picture is
-//! read.
+//! Reads TIFF files: grey, RGB, palette and CMYK; integers of 1 to 32 bits and floating point of 16 to 64; with or
+//! without alpha; in strips or tiles; uncompressed or with LZW, deflate or PackBits; with any predictor. Only the
+//! first picture is read.
 //!
-//! The crate `tiff` allocates as much memory as a file demands, and prints to the console. Therefore this module reads
-//! the tags itself and checks them before it allocates. Not read, with an error that names it: JPEG and fax
-//! compression, YCbCr, CIELAB, and the raw data of cameras.
+//! The crate `tiff` allocates as much memory as a file demands, and prints to the console. This module therefore reads
+//! the tags itself and checks them before it allocates. JPEG and fax compression, YCbCr, CIELAB, and the raw data of
+//! cameras are not read; the error names them.
 //!
-//! TIFF revision 6.0 (Adobe, 1992); floating-point predictor: Adobe Photoshop TIFF technical note 3 (2005).
+//! References: TIFF revision 6.0 (Adobe, 1992); for the floating-point predictor, Adobe Photoshop TIFF technical note
+//! 3 (2005).
 
 mod chunk;
 pub(super) mod ifd;
@@ -29,13 +30,13 @@ fn layout(bytes: &[u8]) -> Result<(Layout<'_>, Order)> {
     Ok((Layout::new(directory, bytes.len())?, directory.ifds().order()))
 }
 
-/// Width, height and number of channels of the first picture.
+/// Returns width, height and number of channels of the first picture.
 pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     let (layout, _) = layout(bytes)?;
     Ok((layout.width, layout.height, layout.channels()))
 }
 
-/// Bytes of memory for reading the first picture, in addition to it.
+/// Bytes of memory for reading the first picture, in addition to the picture itself.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let (layout, _) = layout(bytes)?;
     Ok(memory::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
@@ -46,13 +47,13 @@ pub(super) fn is_float(bytes: &[u8]) -> bool {
     layout(bytes).is_ok_and(|(layout, _)| layout.depth.is_float())
 }
 
-/// The colour profile of the first picture (ICC.1:2022, annex B.3).
+/// Returns the colour profile of the first picture (ICC.1:2022, annex B.3).
 pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
     const PROFILE: u16 = 34_675;
     Ifds::new(bytes)?.first()?.bytes(PROFILE)
 }
 
-/// The first picture, as linear values.
+/// Decodes the first picture to linear values.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
     let mut image = read(&layout, order, layout.channels(), orientation)?;
@@ -65,13 +66,14 @@ pub(super) fn has_inks(bytes: &[u8]) -> bool {
     layout(bytes).is_ok_and(|(layout, _)| matches!(layout.colour, Colour::Cmyk))
 }
 
-/// The amounts of the four inks of the first picture; numbers in `[0, 1]`, unless the file is damaged.
+/// Decodes the amounts of the four inks of the first picture. They lie in `[0, 1]`, unless the file is damaged.
 pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
     read(&layout, order, layout.colours(), orientation)
 }
 
-/// The samples of the first picture, still encoded. Inks are converted to RGB unless there are four channels.
+/// Reads the samples of the first picture, decompressed but still with their transfer function (not linear). Inks are
+/// converted to RGB unless `channels` is 4.
 fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
     memory::check_unpacking()?;
     let mut out = Upright::new(layout.width, layout.height, channels, orientation)?;
@@ -88,7 +90,8 @@ fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation
     Ok(out.image)
 }
 
-/// Writes the samples of a row of a chunk to their positions: colours first, alpha last, still encoded.
+/// Writes the samples of one row of a chunk to their positions in the image, still with their transfer function:
+/// colours first, alpha last.
 fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
     let stored = layout.samples;
     let value = |i: usize| sample(row, i, layout.depth, order);
@@ -97,7 +100,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
         let pixel = out.pixel(at.x + x, at.y);
         let last = pixel.len() - 1;
         match layout.colour {
-            // Each sample has its own chunks.
+            // This chunk holds one sample of each pixel.
             _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
             Colour::Palette(map) => {
                 let size = 1 << layout.depth.bits();
@@ -132,11 +135,12 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
     }
 }
 
-/// Decodes the colours once all samples are in place. Colours that were multiplied by alpha are divided by it first.
+/// Converts the colours to linear values once all samples are in place. Colours that were multiplied by alpha are
+/// first divided by alpha.
 fn decode_colours(image: &mut Image, layout: &Layout, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
     let is_associated = layout.alpha == Some(Alpha::Associated);
-    // An 8-bit colour has 256 values: use a table.
+    // An 8-bit colour has only 256 values, so decode it by a table.
     let table =
         (layout.depth == Depth::U8 && !is_associated && !matches!(layout.colour, Colour::Cmyk | Colour::Palette(_)))
             .then(srgb8_table);

@@ -7,19 +7,19 @@ use crate::image::io::Encoding;
 use crate::image::photo::Orientation;
 use half::f16;
 
-/// The picture to be stored.
+/// A test picture and the settings with which it is stored as a TIFF.
 #[derive(Clone)]
 struct Picture {
     order: Order,
     size: [usize; 2],
     samples: usize,
-    /// Bits, and the sample format: 1 for integers, 3 for floating point.
+    /// Bits per sample, and the sample format: 1 for integers, 3 for floating point.
     depth: (u16, u16),
     photometric: u16,
     compression: u16,
     predictor: u16,
     is_planar: bool,
-    /// Rows per strip, or the size of a tile.
+    /// Rows per strip, unless `tile` gives the size of a tile.
     strip: usize,
     tile: Option<[usize; 2]>,
     more: Vec<Entry>,
@@ -42,12 +42,12 @@ impl Picture {
         }
     }
 
-    /// A value in [0, 1] for every sample.
+    /// Returns the value of a sample, in [0, 1].
     fn value(&self, x: usize, y: usize, s: usize) -> f64 {
         ((x * 37 + y * 11 + s * 71) % 101) as f64 / 100.0
     }
 
-    /// The bytes of a sample in the file.
+    /// Returns the bytes of a sample as the file stores them.
     fn stored(&self, value: f64) -> Vec<u8> {
         let (_, u16, u32) = writers(self.order);
         match self.depth {
@@ -62,7 +62,7 @@ impl Picture {
         }
     }
 
-    /// The value that is read back.
+    /// Returns the value that is read back after the rounding of the file's format.
     fn kept(&self, value: f64) -> f32 {
         let steps = match self.depth {
             (_, 3) => return if self.depth.0 == 16 { f16::from_f64(value).to_f32() } else { value as f32 },
@@ -72,7 +72,7 @@ impl Picture {
         ((value * steps).round() / steps) as f32
     }
 
-    /// A chunk before compression: rows of samples, with 0 outside of the picture.
+    /// Returns a chunk before compression, as rows of bytes. Samples outside the picture are 0.
     fn rows(&self, [x0, y0]: [usize; 2], [width, height]: [usize; 2], samples: std::ops::Range<usize>) -> Vec<Vec<u8>> {
         let row = |y: usize| {
             let mut out: Vec<Vec<u8>> = vec![];
@@ -83,7 +83,7 @@ impl Picture {
             if self.depth.0 >= 8 {
                 return self.predict(&out, samples.len());
             }
-            // Several samples per byte, the first in the highest bits.
+            // Pack several samples into each byte, the first in the highest bits.
             let bits = usize::from(self.depth.0);
             let per = 8 / bits;
             out.chunks(per).map(|c| (0..c.len()).fold(0, |b, k| b | c[k][0] << (8 - bits * (k + 1)))).collect()
@@ -125,7 +125,8 @@ impl Picture {
             1 => bytes.to_vec(),
             5 => weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8).encode(bytes).unwrap(),
             8 => miniz_oxide::deflate::compress_to_vec_zlib(bytes, 6),
-            // Equal pairs as runs, everything else literally, with an empty instruction between.
+            // PackBits: write equal pairs as runs. Write other bytes literally, followed by the code 128, which does
+            // nothing.
             _ => bytes
                 .chunks(2)
                 .flat_map(|c| {
@@ -189,7 +190,7 @@ impl Picture {
         [structure(self.order, &entries(&offsets)), chunks.concat()].concat()
     }
 
-    /// Checks that reading returns the samples of each channel as `expected` computes them.
+    /// Checks that reading returns the samples that `expected` computes for each pixel and channel.
     fn check(&self, channels: usize, expected: impl Fn(&Self, usize, usize, usize) -> f32) {
         let file = self.file();
         assert_eq!(probe(&file).unwrap(), (self.size[0], self.size[1], channels));
@@ -236,7 +237,7 @@ fn grey_bits_palettes_and_cmyk_are_converted() {
     }
     for bits in [1, 2, 4, 8] {
         let size = 1usize << bits;
-        // Brighter codes are redder and less blue.
+        // In this palette, higher codes are redder and less blue.
         let map = |c: usize, i: usize| [i, 7, size - 1 - i][c] * 65_535 / (size - 1);
         let values = (0..3).flat_map(|c| (0..size).flat_map(move |i| (map(c, i) as u16).to_le_bytes())).collect();
         let picture = Picture { more: vec![(320, 3, values)], ..Picture::new(1, bits, 1, 3) };
@@ -248,7 +249,7 @@ fn grey_bits_palettes_and_cmyk_are_converted() {
     }
     let inks = Picture::new(4, 8, 1, 5);
     inks.check(3, |p, x, y, c| (1.0 - sample(p, x, y, c)) * (1.0 - sample(p, x, y, 3)));
-    // The amounts themselves.
+    // Without conversion to RGB, the amounts of the inks themselves are read.
     let file = inks.file();
     let amounts = decode_inks(&file, Orientation::UPRIGHT).unwrap();
     assert!(has_inks(&file) && !has_inks(&Picture::new(4, 8, 1, 2).file()));
@@ -286,7 +287,7 @@ fn integers_are_decoded_as_srgb_and_floating_point_is_linear() {
             assert!((v - wanted).abs() < 1e-6);
         }
     }
-    // Rotated while it is read: the last row becomes the first column.
+    // In orientation 6, the last stored row becomes the first column.
     let picture = Picture::new(3, 8, 1, 2);
     let image = decode(&picture.file(), Encoding::Linear, Orientation::new(6).unwrap()).unwrap();
     assert_eq!((image.width, image.height), (5, 7));
@@ -299,10 +300,10 @@ fn truncated_and_inconsistent_files_are_errors() {
         let file = Picture { compression, ..Picture::new(3, 16, 1, 2) }.file();
         for cut in 0..file.len() {
             let error = decode(&file[..cut], Encoding::Srgb, Orientation::UPRIGHT);
-            // The last bytes of a compressed strip may contain only the end mark.
+            // The last bytes of a compressed strip may contain only the end mark, which is not needed.
             assert!(error.is_err() || cut + 6 > file.len() && compression != 1, "{compression} cut at {cut}");
         }
-        // Change every byte of the header: the result is an error, or a picture that the file can contain.
+        // Change every byte: the result is an error, or a picture that the file can contain.
         let plain = Picture { compression, size: [7, 5], ..Picture::new(3, 16, 1, 2) }.file();
         for at in 0..plain.len() {
             for value in [0, 1, 2, 5, 8, 32, 127, 255] {
@@ -314,7 +315,7 @@ fn truncated_and_inconsistent_files_are_errors() {
             }
         }
     }
-    // Absurd sizes, counts and samples, none of which may cause an allocation.
+    // Absurd sizes, counts and samples must not cause an allocation.
     for (tag, value) in [(256, 60_000), (257, 1 << 20), (257, 60_000), (277, 60_000), (322, 1 << 20), (323, 0)] {
         let tiled = Picture { tile: Some([16, 16]), compression: 8, ..Picture::new(3, 8, 1, 2) };
         let mut file = tiled.file();
@@ -344,7 +345,7 @@ fn unsupported_features_are_named() {
         let error = probe(&picture.file()).unwrap_err();
         assert!(error.kind == ErrorKind::Unsupported && error.message.contains(name), "{error}");
     }
-    // The tag of the compression; the writer supports no other.
+    // Change the value of the compression tag, since the writer of this test supports no other compression.
     let mut file = plain.file();
     assert_eq!(file[46..48], bytes(259));
     for (code, name) in [(7, "JPEG"), (4, "fax"), (50_000, "Zstandard")] {

@@ -1,4 +1,4 @@
-//! The arguments and the attributes of a node.
+//! What an operator needs to run: the inputs of its node, and the node's attributes.
 
 use super::super::read::{Attribute, unsupported};
 use super::super::tensor::{MemoryBudget, Tensor};
@@ -6,17 +6,17 @@ use crate::error::{Error, Result};
 use crate::job::Job;
 use std::collections::HashMap;
 
-/// The arguments of a node's execution.
+/// The arguments with which a node is executed.
 pub struct Call<'a> {
     pub inputs: Vec<Option<&'a Tensor>>,
     pub budget: MemoryBudget,
-    /// Number of the node's outputs.
+    /// Number of outputs of the node.
     pub outputs: usize,
     pub job: Job<'a>,
 }
 
 impl<'a> Call<'a> {
-    /// A required input.
+    /// Returns input `k`; an error if it is missing.
     pub fn input(&self, k: usize) -> Result<&'a Tensor> {
         self.optional(k).ok_or_else(|| Error::format(format!("input {k} is missing")))
     }
@@ -25,7 +25,7 @@ impl<'a> Call<'a> {
         self.inputs.get(k).copied().flatten()
     }
 
-    /// Integers from an attribute, or else from an optional input.
+    /// Returns integers from the attribute `setting` or, as in newer files, from the optional input `k`.
     pub fn integers(&self, setting: &Option<Vec<i64>>, k: usize) -> Result<Option<Vec<i64>>> {
         match (setting, self.optional(k)) {
             (Some(values), _) => Ok(Some(values.clone())),
@@ -35,7 +35,7 @@ impl<'a> Call<'a> {
     }
 }
 
-/// The attributes of a node.
+/// The attributes of a node by name.
 pub struct Settings<'a, 'b>(pub &'b HashMap<&'a str, Attribute<'a>>);
 
 impl<'a> Settings<'a, '_> {
@@ -55,7 +55,8 @@ impl<'a> Settings<'a, '_> {
         self.0.get(name).map(|a| a.integers.clone())
     }
 
-    /// Exactly `N` integers from 0 to 65536.
+    /// Reads an attribute of exactly `N` integers from 0 to 65536. If the attribute is absent, all of them are
+    /// `default`.
     pub fn sizes<const N: usize>(&self, name: &str, default: usize) -> Result<[usize; N]> {
         let Some(values) = self.integers(name).filter(|values| !values.is_empty()) else { return Ok([default; N]) };
         let wrong = || Error::format(format!("{name} is {values:?}; {N} numbers from 0 to 65536 are needed"));
@@ -64,7 +65,7 @@ impl<'a> Settings<'a, '_> {
         sizes.try_into().map_err(|_| wrong())
     }
 
-    /// Checks that an attribute has the only supported value.
+    /// Returns an error unless an attribute has the only supported value.
     pub fn only(&self, name: &str, value: i64) -> Result<()> {
         match self.integer(name, value) {
             found if found == value => Ok(()),

@@ -1,5 +1,5 @@
-//! Direct convolution of images, without an im2col matrix. Four output channels by sixteen pixels are accumulated in
-//! registers, over input channels and taps in order.
+//! Direct convolution of images, without an im2col matrix. Sums for four output channels by sixteen pixels stay in
+//! registers while the code runs over input channels and taps in a fixed order.
 
 use super::super::read::unsupported;
 use super::super::tensor::{MemoryBudget, Tensor};
@@ -9,15 +9,15 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::simd::widest;
 
-/// Pixels along a row that are accumulated together.
+/// Number of neighbouring pixels of a row whose sums are accumulated together.
 const LANES: usize = 16;
-/// Output channels that are accumulated together.
+/// Number of output channels whose sums are accumulated together.
 const GROUP: usize = 4;
 
 pub struct Conv {
     window: Window,
     groups: usize,
-    /// Rows and columns that a transposed convolution adds at the end.
+    /// Number of rows and columns that a transposed convolution adds at the end of its output.
     output_padding: [usize; 2],
     output_shape: Option<Vec<i64>>,
 }
@@ -30,7 +30,7 @@ impl Conv {
         Ok(Self { window: Window::read(at)?, groups, output_padding, output_shape: at.integers("output_shape") })
     }
 
-    /// Convolution with weights `[out, in / groups, rows, columns]`.
+    /// Convolves the input with weights of the shape `[out, in / groups, rows, columns]`.
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -57,8 +57,8 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
 
-        // Number of output channels that are accumulated together; all belong to one group, so they read the same
-        // inputs.
+        // Accumulate four, two or one output channels together. The number divides the number of channels of a group,
+        // so that these channels read the same inputs.
         let of_group = out_channels / groups;
         let together = [GROUP, 2, 1].into_iter().find(|n| of_group.is_multiple_of(*n)).unwrap_or(1);
         let weights = weights.as_floats()?;
@@ -87,8 +87,8 @@ impl Conv {
         Ok(Tensor::floats(shape, out))
     }
 
-    /// Transposed convolution with weights `[in, out / groups, rows, columns]`: every output pixel gathers its
-    /// contributions.
+    /// Transposed convolution with weights of the shape `[in, out / groups, rows, columns]`. Each output pixel gathers
+    /// the input pixels that contribute to it.
     pub fn run_transposed(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -149,7 +149,7 @@ impl Conv {
     }
 }
 
-/// Images padded with a border of zeros.
+/// Images with a border of zeros.
 struct Padded {
     values: Vec<f32>,
     height: usize,
@@ -176,7 +176,7 @@ impl Padded {
     }
 }
 
-/// The input channels of one group; `values` begins with the first of them.
+/// The input channels of one group, one plane after another, from the start of `values`.
 struct Planes<'a> {
     values: &'a [f32],
     height: usize,
@@ -184,7 +184,7 @@ struct Planes<'a> {
 }
 
 struct Weights<'a> {
-    /// Weights of the output channels that are accumulated together, one after the other.
+    /// Weights of the output channels that are accumulated together, one channel after another.
     taps: &'a [f32],
     bias: &'a [f32],
 }

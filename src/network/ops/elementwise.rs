@@ -1,4 +1,4 @@
-//! Element-wise operators, with numpy's broadcasting.
+//! Element-wise operators, with the broadcasting rules of numpy.
 
 use super::super::tensor::{Data, MemoryBudget, Tensor, count};
 use super::call::{Call, Settings};
@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
 
-/// Items per unit of work.
+/// Number of elements per unit of parallel work.
 const ROW: usize = 4096;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub enum Unary {
 impl Unary {
     pub fn read(kind: &str, at: &Settings) -> Option<Self> {
         Some(match kind {
-            // Dropout is the identity outside training.
+            // Dropout changes nothing outside training.
             "Identity" | "Dropout" => Self::Identity,
             "Relu" => Self::Relu,
             "LeakyRelu" => Self::LeakyRelu(at.float("alpha", 0.01)),
@@ -143,7 +143,8 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
     }
 }
 
-/// Processes rows of equal length, the last one shorter; `start` is the index of a row's first item.
+/// Calls `work` in parallel for rows of [`ROW`] elements, with the index of each row's first element. The last row may
+/// be shorter.
 pub fn by_rows<T: Send>(out: &mut [T], job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     let whole = out.len() / ROW * ROW;
     let (rows, rest) = out.split_at_mut(whole);
@@ -228,7 +229,7 @@ impl Binary {
     }
 }
 
-/// Two or more inputs, combined from left to right.
+/// Applies a binary operator to two or more inputs, from left to right.
 pub fn binary(op: Binary, call: &Call) -> Result<Tensor> {
     let mut left = call.input(0)?.clone();
     for k in 1..call.inputs.len().max(2) {
@@ -279,7 +280,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
             let out = spread.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
             Ok(Tensor::integers(spread.shape, out))
         }
-        // The exponent may be an integer.
+        // The exponent of a float may be an integer.
         (Data::Floats(_), Data::Integers(b)) if op == Binary::Pow => {
             let b = try_collect(b.iter().map(|&v| v as f32))?;
             pair(op, left, &Tensor::floats(right.shape.clone(), b), call)
@@ -288,10 +289,10 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
     }
 }
 
-/// Broadcasting of several tensors to a common shape.
+/// Broadcasts several tensors to a common shape.
 pub struct Spread {
     pub shape: Vec<usize>,
-    /// Stride of each tensor along each axis; 0 where it is repeated.
+    /// Stride of each tensor along each axis of the common shape; 0 where the tensor repeats.
     strides: Vec<Vec<usize>>,
 }
 
@@ -323,7 +324,8 @@ impl Spread {
         Ok(Self { shape, strides })
     }
 
-    /// The position in a tensor at which the `row`th row of the shape (along the last axis) starts.
+    /// Returns the index of the tensor's element at which row `row` starts. A row runs along the last axis of the
+    /// common shape.
     fn start(&self, tensor: usize, mut row: usize) -> usize {
         let outer = self.shape.len().saturating_sub(1);
         let mut start = 0;
@@ -373,7 +375,7 @@ impl Spread {
         Ok(out)
     }
 
-    /// The items of a tensor broadcast to the whole shape.
+    /// Returns the elements of a tensor broadcast to the common shape.
     pub fn all<T: Copy + Send + Sync>(&self, tensor: usize, values: &[T], zero: T, call: &Call) -> Result<Vec<T>> {
         let mut out = call.budget.vec(count(&self.shape)?, zero)?;
         let length = self.shape.last().copied().unwrap_or(1);
@@ -386,7 +388,7 @@ impl Spread {
     }
 }
 
-/// Clips to bounds, which newer files give as inputs.
+/// Clips values to bounds, which older files give as attributes and newer files as inputs.
 pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let bound = |setting: Option<f32>, k: usize, none: f32| match (setting, call.optional(k)) {
@@ -403,7 +405,7 @@ pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> 
     Ok(Tensor::floats(x.shape.clone(), out))
 }
 
-/// `condition ? a : b`.
+/// Returns `condition ? a : b` for each element.
 pub fn choose(call: &Call) -> Result<Tensor> {
     let (condition, a, b) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let spread = Spread::of(&[condition, a, b])?;

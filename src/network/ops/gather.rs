@@ -1,4 +1,4 @@
-//! Operators that rearrange items: each output index along an axis maps to an input index, or to none.
+//! Operators that rearrange elements: along each axis, every output index maps to an input index, or to none.
 
 use super::super::read::unsupported;
 use super::super::tensor::{Data, Tensor, count};
@@ -6,8 +6,8 @@ use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// A tensor of the same rank with the given shape. The item at position `i` along an axis is the item of `x` at
-/// position `index(axis, i)`, or `fill` where that is `None` for some axis.
+/// Returns a tensor of the given shape, with as many axes as `x`. The element at index `i` along an axis is the
+/// element of `x` at index `index(axis, i)`, or `fill` if `index` is `None` for any axis.
 fn picked(
     x: &Tensor,
     shape: Vec<usize>,
@@ -16,7 +16,8 @@ fn picked(
     index: impl Fn(usize, usize) -> Option<usize>,
 ) -> Result<Tensor> {
     let (total, rank) = (count(&shape)?, shape.len());
-    // Allocate first: the maps below are as long as the axes.
+    // Allocate the output first: if its size is refused, the index maps, which are as long as the axes, need not be
+    // computed.
     let data = match &x.data {
         Data::Floats(values) => Values::Floats(values, call.budget.vec(total, fill)?),
         Data::Integers(values) => Values::Integers(values, call.budget.vec(total, fill as i64)?),
@@ -58,7 +59,8 @@ impl Rows<'_> {
         let outer = self.to.len().saturating_sub(1);
         let length = self.to.last().copied().unwrap_or(1);
         exec::for_rows(out, length, call.job, |row, out| {
-            // Find where this row's source starts, axis by axis up to the slowest; `None` if an index maps to nothing.
+            // Find where this row's source starts, from the last axis before the row to the first. `None` if an index
+            // maps to no input.
             let (mut start, mut rest) = (Some(0), row);
             let mut stride = self.from.last().copied().unwrap_or(1);
             for axis in (0..outer).rev() {
@@ -82,7 +84,7 @@ impl Rows<'_> {
     }
 }
 
-/// The padding mode beyond an image.
+/// How an image continues beyond its border.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Pad {
     Constant,
@@ -124,7 +126,7 @@ pub fn pad(mode: Pad, pads: &Option<Vec<i64>>, value: f32, call: &Call) -> Resul
         let at = match mode {
             Pad::Constant => at,
             Pad::Edge => at.clamp(0, last),
-            // 0 1 2 1 0 1 2 ...
+            // Indices 0 1 2 continue as 0 1 2 1 0 1 2 ...
             Pad::Reflect if last == 0 => 0,
             Pad::Reflect => last - (at.rem_euclid(2 * last) - last).abs(),
         };
@@ -169,7 +171,7 @@ pub fn slice(
     })
 }
 
-/// Selects items along an axis by given indices.
+/// Selects elements along an axis by an input of indices.
 pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let axis = x.axis(axis)?;
@@ -188,14 +190,14 @@ pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     taken.reshaped(shape)
 }
 
-/// A shape from a tensor of integers.
+/// Reads a shape from a tensor of integers.
 pub fn shape_from(tensor: &Tensor) -> Result<Vec<usize>> {
     let sizes = tensor.as_integers()?;
     let of = |&d: &i64| usize::try_from(d).map_err(|_| Error::format(format!("a shape holds {d}")));
     sizes.iter().map(of).collect()
 }
 
-/// The tensor with leading axes of size 1 added up to a rank.
+/// Adds leading axes of size 1 until the tensor has `rank` axes.
 fn of_rank(x: &Tensor, rank: usize) -> Tensor {
     let mut shape = vec![1; rank.saturating_sub(x.shape.len())];
     shape.extend(&x.shape);
@@ -229,7 +231,7 @@ pub fn tile(call: &Call) -> Result<Tensor> {
     picked(x, shape, 0.0, call, |axis, i| Some(i % x.shape[axis]))
 }
 
-/// Permutes axes: output axis `k` is the input's axis `order[k]`; an empty order reverses them.
+/// Permutes the axes: output axis `k` is input axis `order[k]`. An empty order reverses all axes.
 pub fn transpose(order: &[i64], call: &Call) -> Result<Tensor> {
     turned(call.input(0)?, order, call)
 }
@@ -286,7 +288,7 @@ fn turned(x: &Tensor, order: &[i64], call: &Call) -> Result<Tensor> {
     }
 }
 
-/// Moves channels to pixels: `block²` channels become one pixel's neighbourhood.
+/// Moves channels to pixels: each group of `block²` channels becomes a block of `block × block` pixels.
 pub fn depth_to_space(block: usize, columns_first: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;

@@ -1,4 +1,5 @@
-//! Matrix products: four rows by sixteen columns are accumulated in registers, in order along the shared axis.
+//! Matrix products. Sums for four rows by sixteen columns stay in registers while the code runs along the shared axis
+//! in order.
 
 use super::super::tensor::{Tensor, count};
 use super::call::{Call, Settings};
@@ -10,7 +11,7 @@ use crate::simd::widest;
 
 const ROWS: usize = 4;
 const LANES: usize = 16;
-/// Block length along the shared axis for which the block of the right matrix stays in the cache.
+/// Length of a block along the shared axis, chosen so that the right matrix's block stays in the cache.
 const DEPTH: usize = 256;
 
 pub struct Gemm {
@@ -27,7 +28,7 @@ impl Gemm {
         Self { alpha: at.float("alpha", 1.0), beta: at.float("beta", 1.0), turns_left, turns_right }
     }
 
-    /// `α A B + β C`.
+    /// Computes `α A B + β C`.
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let turned = |k: usize, turns: bool| {
             let tensor = call.input(k)?;
@@ -66,7 +67,7 @@ fn transposed(tensor: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(vec![columns, rows], out))
 }
 
-/// The product of two stacks of matrices, as in numpy.
+/// Returns the product of two stacks of matrices, broadcast as in numpy.
 pub fn run(call: &Call) -> Result<Tensor> {
     product(call.input(0)?, call.input(1)?, call)
 }
@@ -74,7 +75,7 @@ pub fn run(call: &Call) -> Result<Tensor> {
 fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let wrong =
         || Error::format(format!("matrices of shapes {:?} and {:?} cannot be multiplied", left.shape, right.shape));
-    // A vector is a row on the left and a column on the right.
+    // A vector on the left is a row; a vector on the right is a column.
     let (mut a, mut b) = (left.clone(), right.clone());
     if a.shape.len() == 1 {
         a.shape.insert(0, 1);
@@ -95,7 +96,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let (values_a, values_b) = (a.as_floats()?, b.as_floats()?);
     shape.extend([rows, columns]);
     count(&shape)?;
-    // Process rows in fours; pad the last four, and cut the padding off afterwards.
+    // Process rows in fours. Pad the last four rows, and cut the padding off afterwards.
     let padded = rows.next_multiple_of(ROWS);
     let mut out = call.budget.zeros(&[stack, padded, columns])?;
     exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {
@@ -125,8 +126,8 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(shape, out))
 }
 
-/// Pairs the matrices of two stacks by broadcasting: the shape of the result, and the index of each matrix in its
-/// stack.
+/// Pairs the matrices of two stacks by broadcasting. Returns the shape of the resulting stack and, for each of its
+/// matrices, the index of the matrix in either stack.
 fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>; 2])> {
     let numbered = |shape: &[usize]| -> Result<Tensor> {
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
@@ -139,7 +140,7 @@ fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>
     Ok((spread.shape, indices))
 }
 
-/// Some rows of the left matrix, and the right matrix.
+/// Up to four rows of the left matrix, and the whole right matrix.
 struct Block<'a> {
     a: &'a [f32],
     b: &'a [f32],
@@ -154,7 +155,7 @@ widest! {
 }
 
 widest! {
-    /// Processes the remaining rows, of which there are fewer than four.
+    /// Processes the last rows, of which there are fewer than four.
     fn rest(block: &Block, out: &mut [f32]) {
         for (a, out) in block.a.chunks_exact(block.shared.max(1)).zip(out.chunks_exact_mut(block.columns)) {
             rows_of::<1>(&Block { a, ..*block }, out);

@@ -21,7 +21,7 @@ use call::Settings;
 use elementwise::{Binary, Unary};
 pub use resize::cubic_planes as resize_cubic;
 
-/// An operator with its attributes. Attributes that newer files give as inputs are `Option`s.
+/// An operator with its attributes. An attribute that newer files give as an input is an `Option`.
 pub enum Op {
     Constant(Tensor),
     Unary(Unary),
@@ -60,7 +60,8 @@ pub enum Op {
 }
 
 impl Op {
-    /// Parses the attributes of a node; `constants` are its inputs known in advance.
+    /// Parses an operator and its attributes from a node. `constants` are the node's inputs, as far as they are known
+    /// before the run.
     pub fn read(node: &NodeMessage, opset: i64, constants: &[Option<&Tensor>]) -> Result<Self> {
         let at = Settings(&node.attributes);
         if !matches!(node.domain, "" | "ai.onnx") {
@@ -96,7 +97,7 @@ impl Op {
             "LayerNormalization" => {
                 Self::LayerNorm { axis: at.integer("axis", -1), epsilon: at.float("epsilon", 1e-5) }
             }
-            // Before opset 13, softmax covers all axes from `axis` on.
+            // Before opset 13, softmax normalises over `axis` and all axes after it.
             "Softmax" if opset < 13 => Self::Softmax { axis: at.integer("axis", 1), flattens: true },
             "Softmax" => Self::Softmax { axis: at.integer("axis", -1), flattens: false },
             "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => {
@@ -107,7 +108,7 @@ impl Op {
         })
     }
 
-    /// Parses an operator that rearranges items or computes shapes.
+    /// Parses an operator that rearranges elements or computes shapes.
     fn read_rearranging(node: &NodeMessage, at: &Settings) -> Result<Self> {
         let axes = || at.integers("axes");
         Ok(match node.kind {
@@ -146,7 +147,7 @@ impl Op {
         })
     }
 
-    /// Computes the operator's outputs; the node may use fewer.
+    /// Runs the operator and returns its outputs; the node may use only some of them.
     pub fn run(&self, call: &Call) -> Result<Vec<Tensor>> {
         let one = |tensor: Result<Tensor>| tensor.map(|tensor| vec![tensor]);
         match self {

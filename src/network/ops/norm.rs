@@ -1,11 +1,11 @@
-//! Normalisations and the softmax.
+//! Normalisation operators and the softmax.
 
 use super::super::tensor::Tensor;
 use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// `scale (x - mean) / √(variance + ε) + bias`, with per-channel parameters.
+/// Computes `scale (x - mean) / √(variance + ε) + bias`, with parameters per channel.
 pub fn batch(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);
@@ -31,7 +31,7 @@ fn channel_values(tensor: &Tensor, channels: usize) -> Result<&[f32]> {
     Err(Error::format(format!("{} values for {channels} channels", values.len())))
 }
 
-/// Normalises every channel of every image to zero mean and unit variance, then scales and shifts it.
+/// Normalises each channel of each image to zero mean and unit variance, then scales and shifts the channel.
 pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);
@@ -47,7 +47,7 @@ pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(x.shape.clone(), out))
 }
 
-/// Normalises over all axes from `axis` on to zero mean and unit variance, then scales and shifts item by item.
+/// Normalises to zero mean and unit variance over `axis` and all axes after it, then scales and shifts each element.
 pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;
@@ -74,7 +74,7 @@ fn standardise(values: &[f32], epsilon: f32, out: &mut [f32]) {
     out.iter_mut().zip(values).for_each(|(out, &v)| *out = ((f64::from(v) - mean) * factor) as f32);
 }
 
-/// `e^x / Σ e^x` along an axis, or, if `flattens`, along all axes from it on.
+/// Computes `e^x / Σ e^x` along an axis or, if `flattens`, over this axis and all axes after it.
 pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;

@@ -1,4 +1,4 @@
-//! Pooling over windows of images.
+//! Pooling operators, which combine the pixels in each window of an image.
 
 use super::super::read::unsupported;
 use super::super::tensor::Tensor;
@@ -6,7 +6,7 @@ use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// The placement of windows over an image.
+/// How windows are placed over an image.
 pub struct Window {
     pub strides: [usize; 2],
     pub dilations: [usize; 2],
@@ -14,17 +14,18 @@ pub struct Window {
 }
 
 pub enum Padding {
-    /// Top, left, bottom, right.
+    /// Rows and columns added at the top, left, bottom and right.
     Explicit([usize; 4]),
-    /// Padding for which the output size is `⌈input / stride⌉`, with the odd pixel at the end or at the start.
+    /// Padding for which the output size is `⌈input / stride⌉`. An odd number of padding rows or columns has its
+    /// larger half at the start if `odd_first`, otherwise at the end.
     Same { odd_first: bool },
 }
 
-/// Windows over an image of a given size.
+/// The placement of windows over an image of a given size.
 pub struct Place {
-    /// Rows and columns of padding before the image.
+    /// Number of rows and columns of padding before the image.
     pub before: [usize; 2],
-    /// Rows and columns that all windows together cover, including padding.
+    /// Number of rows and columns that all windows together cover, including padding.
     pub extent: [usize; 2],
     pub out: [usize; 2],
 }
@@ -63,7 +64,7 @@ impl Window {
                 )));
             };
             let mut last = if rounds_up { steps.div_ceil(stride) } else { steps / stride };
-            // No window may begin in the padding behind the image.
+            // No window may begin in the padding after the end of the image.
             if rounds_up && last * stride >= n + before {
                 last -= 1;
             }
@@ -108,7 +109,7 @@ impl Pool {
         let mut out = call.budget.zeros(&shape)?;
         let values = x.as_floats()?;
         let Window { strides, dilations, .. } = &self.window;
-        // The taps of the window at `k` along an axis that lie inside the image.
+        // Iterates over the pixels along an axis that window `k` covers inside the image.
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
             (0..self.kernel[axis]).filter_map(move |i| {
@@ -133,7 +134,7 @@ impl Pool {
     }
 }
 
-/// The mean over each image.
+/// Returns the mean of each channel of each image.
 pub fn global_average(call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;

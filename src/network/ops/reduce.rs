@@ -1,4 +1,4 @@
-//! Sums, means and extrema along axes.
+//! Reductions along axes: sums, means and extrema.
 
 use super::super::tensor::{Tensor, count};
 use super::call::{Call, Settings};
@@ -42,7 +42,7 @@ impl Reduce {
             is_reduced[x.axis(axis)?] = true;
         }
 
-        // The output position of each input item, axis by axis.
+        // Compute the output shape, and for each input axis the stride of the output: 0 along reduced axes.
         let kept: Vec<usize> = x.shape.iter().zip(&is_reduced).map(|(&n, &r)| if r { 1 } else { n }).collect();
         let mut strides = vec![0; kept.len()];
         let mut stride = 1;

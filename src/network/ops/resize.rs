@@ -1,5 +1,5 @@
-//! Resizing of images along their last two axes, one after the other: each output row or column is a weighted sum of
-//! up to four input ones.
+//! Resizes images along their last two axes, one axis after the other. Each output row or column is a weighted sum of
+//! up to four input rows or columns.
 
 use super::super::read::unsupported;
 use super::super::tensor::{MemoryBudget, Tensor, count};
@@ -12,7 +12,7 @@ pub struct Resize {
     pub filter: Filter,
     pub place: Place,
     scales: Option<Vec<f32>>,
-    /// Indices of the inputs that hold scales and sizes.
+    /// Indices of the inputs that hold the scales and the sizes.
     scales_at: usize,
     sizes_at: Option<usize>,
 }
@@ -21,7 +21,7 @@ pub struct Resize {
 pub enum Filter {
     Nearest(Rounding),
     Linear,
-    /// Keys' cubic with this parameter: -0.75 in OpenCV and ONNX.
+    /// Keys' cubic convolution with this parameter: -0.75 in OpenCV and ONNX.
     Cubic(f32),
 }
 
@@ -33,17 +33,17 @@ pub enum Rounding {
     Ceil,
 }
 
-/// The mapping from the centre of an output pixel to the input.
+/// How an output pixel's coordinate maps to an input coordinate, by the names of ONNX.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     HalfPixel,
-    /// Like `HalfPixel`, but a single output pixel maps to the first input pixel.
+    /// Like `HalfPixel`, but if the output has a single pixel, this pixel maps to the first input pixel.
     PytorchHalfPixel,
     AlignCorners,
     Asymmetric,
 }
 
-/// One axis of a resampling.
+/// The sizes along one axis before and after resampling, in pixels.
 #[derive(Clone, Copy)]
 pub struct Axis {
     pub from: usize,
@@ -128,7 +128,7 @@ impl Resize {
     }
 }
 
-/// Resamples `planes` images, stored one after the other, along their rows and columns.
+/// Resamples `planes` images, stored one after another, along their rows and columns.
 pub fn resample(
     values: &[f32],
     planes: usize,
@@ -138,7 +138,7 @@ pub fn resample(
     budget: MemoryBudget,
     job: Job,
 ) -> Result<Vec<f32>> {
-    // Along rows first, then along columns.
+    // Resample along the rows first, then along the columns.
     let taps = taps(horizontal, filter, place, budget)?;
     let mut wide = budget.zeros(&[planes, vertical.from, horizontal.to])?;
     exec::for_rows(&mut wide, horizontal.to, job.part(0.0, 0.5), |k, out| {
@@ -159,7 +159,7 @@ pub fn resample(
     Ok(out)
 }
 
-/// The input indices and weights of each output pixel.
+/// Returns the input indices and weights of each output pixel along one axis.
 fn taps(axis: Axis, filter: Filter, place: Place, budget: MemoryBudget) -> Result<Vec<[(usize, f32); 4]>> {
     let mut taps = budget.vec(axis.to, [(0, 0.0); 4])?;
     let last = axis.from as i64 - 1;
@@ -209,7 +209,7 @@ fn taps(axis: Axis, filter: Filter, place: Place, budget: MemoryBudget) -> Resul
     Ok(taps)
 }
 
-/// Weights of Keys' cubic convolution at a fraction `t` between the second and the third of four pixels.
+/// Weights of Keys' cubic convolution for four pixels, at a fraction `t` between the second and the third.
 fn cubic(t: f32, a: f32) -> [f32; 4] {
     let near = |t: f32| ((a + 2.0) * t - (a + 3.0)) * t * t + 1.0;
     let far = |t: f32| ((a * t - 5.0 * a) * t + 8.0 * a) * t - 4.0 * a;

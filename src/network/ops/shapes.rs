@@ -1,11 +1,12 @@
-//! Operators on shapes: reshape, query, join and split. Most of them move no data.
+//! Operators on shapes: reshaping, querying, joining and splitting. Most of them move no data.
 
 use super::super::tensor::{Data, Tensor, count, normal_axis};
 use super::call::Call;
 use super::gather::shape_from;
 use crate::error::{Error, Result};
 
-/// Reshapes; 0 stands for the input's own size, -1 for the remaining size.
+/// Reshapes a tensor. A size of 0 stands for the input's size along this axis, unless `keeps_zero`; -1 stands for the
+/// size that remains.
 pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let wanted = call.input(1)?.as_integers()?;
@@ -28,7 +29,7 @@ pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     x.reshaped(shape)
 }
 
-/// Flattens to two axes: those before `axis`, and the rest.
+/// Flattens a tensor to two axes: the axes before `axis`, and the others.
 pub fn flatten(axis: i64, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;
@@ -112,7 +113,7 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     let size = x.shape[axis];
     let sizes: Vec<usize> = match call.integers(sizes, 1)? {
         Some(sizes) => sizes.iter().filter_map(|&n| usize::try_from(n).ok()).collect(),
-        // Split evenly; the last part takes the remainder.
+        // Split evenly; the last part may be smaller.
         None => {
             let even = size.div_ceil(call.outputs.max(1));
             (0..call.outputs).map(|k| even.min(size.saturating_sub(k * even))).collect()
@@ -148,7 +149,7 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     Ok(parts)
 }
 
-/// The sizes of some axes.
+/// Returns the sizes of the axes from `start` to `end`.
 pub fn shape(start: i64, end: Option<i64>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;
@@ -173,7 +174,7 @@ pub fn filled(value: &Tensor, call: &Call) -> Result<Tensor> {
     })
 }
 
-/// `start, start + delta, ...` below the limit.
+/// Returns `start, start + delta, ...` up to, but without, the limit.
 pub fn range(call: &Call) -> Result<Tensor> {
     let [start, limit, delta] = [call.input(0)?, call.input(1)?, call.input(2)?];
     let wrong = || Error::format("a range needs a start, a limit and a step that is not 0");

@@ -1,4 +1,4 @@
-//! Compares warps with exact means, and tests extreme sizes and maps.
+//! Compares warps with exact means over footprints, and tests extreme sizes and maps.
 
 use super::warp;
 use crate::error::ErrorKind;
@@ -39,7 +39,7 @@ fn drawing(p: DVec2) -> f32 {
     0.1 + 0.5 * f32::from(bar) + 0.3 * f32::from(disc)
 }
 
-/// The mean of the drawing over the footprint of the pixel at (x, y).
+/// Returns the mean of the drawing over the footprint of the pixel at (x, y), from `sub` × `sub` samples.
 fn mean_of_drawing(map: &Homography, x: usize, y: usize, sub: usize) -> f32 {
     let at = |k: usize| DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
     let sum: f32 = (0..sub * sub).map(|k| drawing(map.apply(DVec2::new(x as f64, y as f64) + at(k)))).sum();
@@ -57,8 +57,9 @@ fn warps_are_means_over_the_footprints_of_pixels() {
         let [to, from] = [256.0, -32.0].map(|c| DMat3::from_translation(DVec2::splat(c)));
         Homography(to * map * from)
     };
-    // Rotations, tilts, and scales small enough to need pyramid levels and parts. The last number is the minimum peak
-    // signal-to-noise ratio in dB; in the first case the reference's own discretisation limits it.
+    // The maps are rotations, tilts, and scales that need pyramid levels and several parts per footprint. The last
+    // number is the minimum peak signal-to-noise ratio in dB; in the first case the reference's own discretisation
+    // limits it.
     for (turn, scale, tilt, min_decibels) in [
         (0.0, 1.0, DVec2::ZERO, 50.0),
         (0.4, 1.0, DVec2::ZERO, 38.0),
@@ -110,7 +111,7 @@ fn channels_are_warped_equally_for_any_number_and_at_the_border() {
         same(&warped[1], &warped[2], 1, 1);
         (0..6).for_each(|c| same(&warped[3], &warped[2], c, c % 3));
     }
-    // A constant image stays constant up to the very border.
+    // A constant image stays constant up to its border.
     let grey = Image::from_fn(37, 23, |_, _| [0.7f32]).unwrap();
     for scale in [0.3, 1.0, 2.0, 5.0, 40.0] {
         let map = Homography(DMat3::from_scale(DVec2::splat(scale)));
@@ -130,8 +131,8 @@ fn warps_are_the_same_to_the_bit_at_every_level_of_instructions_and_on_any_numbe
         image.data.iter_mut().enumerate().for_each(|(i, v)| *v = Rng::new(6, &[i as u64]).next_f32());
         image
     });
-    // Interpolation, the transition to averaging, and averages over few and many parts; with and without tilt, across
-    // every border.
+    // The scales cover interpolation, the transition to averaging, and averages over few and many parts; the maps
+    // cross every border, with and without tilt.
     let tilted =
         DMat3::from_cols(DVec3::new(1.0, 0.25, 0.001), DVec3::new(-0.3, 0.9, 0.002), DVec3::new(30.0, -20.0, 1.0));
     let straight = DMat3::from_translation(DVec2::splat(-3.3));
@@ -160,8 +161,8 @@ fn warps_of_tiny_sources_and_of_extreme_quadrilaterals_are_correct() {
         for channels in [1, 3, 4] {
             let mut grey = Image::new(width, height, channels).unwrap();
             grey.data.fill(0.7);
-            // From a quadrilateral of a millionth of a pixel to one of a million pixels, around the centre of the
-            // source.
+            // Map the output to a quadrilateral around the centre of the source; its side ranges from a millionth of a
+            // pixel to a million pixels.
             for scale in [1e-6 / 40.0, 0.1, 1.0, 3.0, 1e6 / 40.0] {
                 let middle = DVec2::new(width as f64, height as f64) / 2.0;
                 let centred = DMat3::from_translation(middle) * DMat3::from_scale(DVec2::splat(scale));
@@ -174,7 +175,7 @@ fn warps_of_tiny_sources_and_of_extreme_quadrilaterals_are_correct() {
                     assert!(pixel.iter().all(|v| (v - want).abs() < 1e-5), "{width} x {height}, {scale}: {pixel:?}");
                 }
             }
-            // A map to a single point, a map to nothing, and a map that is not finite.
+            // Test a map to nothing, a map to a single point, and a map that is not finite.
             let nothing = warp(&grey, &Homography(DMat3::ZERO), 5, 5, monitor.job()).unwrap();
             assert!(nothing.data.iter().all(|&v| v == 0.0));
             let point = Homography(DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, DVec3::new(0.5, 0.5, 1.0)));
@@ -202,7 +203,8 @@ fn a_pixel_that_is_not_finite_spoils_those_it_is_part_of_and_no_others() {
                 let at = DVec2::new((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5) * scale - 20.5;
                 hit += usize::from(!b[1].is_finite());
                 assert!(a[0] == b[0] && a[2] == b[2]);
-                // A pixel closer than 0.6 always contributes; a pixel beyond the taps never does.
+                // An output pixel closer than 0.6 source pixels to the bad pixel depends on it; one beyond the taps
+                // never does.
                 assert!(!(at.abs().max_element() < 0.6) || !b[1].is_finite(), "{at} at {scale}");
                 assert!(at.abs().max_element() <= 2.0 || a[1] == b[1], "{at} at {scale}");
             }

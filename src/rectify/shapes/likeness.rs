@@ -1,4 +1,4 @@
-//! Measures how similar the shapes on a plane are to each other when the plane is seen straight on.
+//! Measures how similar the lamp shapes on a plane are to each other, when a given tilt of the plane is undone.
 
 use crate::geometry::robust::weighted_median;
 use crate::image::Image;
@@ -6,63 +6,66 @@ use crate::image::regions::Regions;
 use crate::{error::Result, image::try_vec};
 use glam::{DMat2, DVec2, DVec3};
 
-/// Uncertainty in photo pixels of the border of a region, caused by blur and bloom [bench photos:tune].
+/// Standard deviation, in photo pixels, of the border of a region, caused by blur and bloom. [bench photos:tune]
 const BORDER_ERROR: f64 = 0.7;
-/// Relative differences in length or width among lamps of one kind [bench photos:tune].
+/// Standard deviation of the relative differences in length or width among lamps of one kind. [bench photos:tune]
 const VARIETY: f64 = 0.08;
-/// Minimum number of pixels of a region: the pixel grid dominates the form of smaller regions [bench photos:tune].
+/// Minimum number of pixels of a region: the pixel grid dominates the form of smaller regions. [bench photos:tune]
 const MIN_PIXELS: f64 = 12.0;
-/// Maximum number of regions: more regions take time and add no certainty [bench photos:tune].
+/// Maximum number of regions: more regions take time and add no certainty. [bench photos:tune]
 const MAX_SHAPES: usize = 32;
-/// Minimum sine of the angle between a plane and the ray through a shape's centre [bench photos:tune].
+/// Minimum sine of the angle between a plane and the ray through a shape's centre. [bench photos:tune]
 const MIN_INCIDENCE: f64 = 0.05;
-/// Cost of the assumption that all shapes are stretched alike: it adds two parameters, and most lamps are not stretched
-/// [bench photos:tune].
+/// Cost of assuming that all shapes are stretched alike: the assumption adds two parameters, and most lamps are not
+/// stretched. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
-/// Squared deviation, in variances, from which the cost of a shape grows more slowly, because the shape is probably of
-/// another kind [convention].
+/// Squared deviation of a shape, in variances, above which its cost grows more slowly, because the shape is probably
+/// of another kind. [convention]
 const OUTLIER: f64 = 4.0;
-/// Variance of a position within a pixel [convention].
+/// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
-/// Widths of bloom that are tried, in units of [`BLOOM_UNIT`], and the prior standard deviation of the width. Bloom
-/// lengthens the semi-axes of all regions by its width [bench photos:tune].
+/// Widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`], and the
+/// prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
+/// [bench photos:tune]
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
-/// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels [convention].
+/// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels. [convention]
 const BLOOM_UNIT: f64 = 1.0 / 640.0;
-/// Minimum semi-axis of a region after its bloom is removed, in photo pixels [convention].
+/// Minimum semi-axis of a region after its bloom is removed, in photo pixels. [convention]
 const MIN_SEMIAXIS: f64 = 0.5;
 
-/// A region of the photo that shows a complete shape.
+/// A region of the mask that shows a complete shape, that is, a lamp inside the photo.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
     /// Centre of the region in photo pixels, relative to the principal point.
     centre: DVec2,
-    /// Covariance of the region's pixel positions after removal of each of the [`BLOOMS`] in turn.
+    /// Covariance of the region's pixel positions, after removal of bloom of each of the widths [`BLOOMS`].
     covariances: [DMat2; BLOOMS.len()],
-    /// Standard deviations of the `size` and of the `stretch` of the region's [`Form`].
+    /// Standard deviation of the `size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
+    /// [`Form`].
     size_error: f64,
     stretch_error: f64,
 }
 
-/// Size and stretch of an ellipse, from the standard deviations along its axes: `size` is the logarithm of their
-/// product; `stretch` is the logarithm of their ratio, as a vector at twice the angle of the long axis.
+/// Size and stretch of an ellipse, computed from the standard deviations along its axes. `size` is the logarithm of
+/// their product. `stretch` is a vector: its length is the logarithm of their ratio, and its angle is twice the angle
+/// of the long axis.
 #[derive(Clone, Copy, Debug)]
 struct Form {
     size: f64,
     stretch: DVec2,
 }
 
-/// The variances along the principal axes of a covariance, largest first, and the unit vector at twice the angle of the
-/// first axis.
+/// Returns the variances along the principal axes of a covariance, largest first, and the unit vector at twice the
+/// angle of the first axis.
 fn axes(c: DMat2) -> ([f64; 2], DVec2) {
     let (mean, half, cross) = (0.5 * (c.x_axis.x + c.y_axis.y), 0.5 * (c.x_axis.x - c.y_axis.y), c.x_axis.y);
     let spread = half.hypot(cross);
     ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
 }
 
-/// The covariance of a uniform ellipse after its semi-axes are shortened by `width`.
+/// Returns the covariance of a uniform ellipse after its semi-axes are shortened by `width`.
 fn without_border(covariance: DMat2, width: f64) -> DMat2 {
     let (variances, double_angle) = axes(covariance);
     let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));
@@ -79,8 +82,8 @@ impl Shape {
         Self { centre, covariances, size_error, stretch_error }
     }
 
-    /// The form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses the
-    /// plane or meets it at too small an angle.
+    /// Returns the form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses
+    /// the plane or meets it at too small an angle.
     fn on_plane(&self, normal: DVec3, focal: f64, bloom: usize) -> Option<Form> {
         let ray = (self.centre / focal).extend(1.0);
         let depth = normal.dot(ray);
@@ -96,7 +99,7 @@ impl Shape {
     }
 }
 
-/// The largest regions of a mask that do not touch the border of the photo; at most [`MAX_SHAPES`] of them.
+/// Finds the largest regions of a mask that do not touch the border of the photo; at most [`MAX_SHAPES`] of them.
 pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     #[derive(Clone, Copy, Default)]
     struct Sums {
@@ -131,8 +134,8 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     Ok(whole.iter().map(shape).collect())
 }
 
-/// How much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that they are
-/// alike. Infinite if a shape lies beyond the plane's horizon.
+/// Returns how much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that
+/// they are alike. Infinite if the camera sees a shape beyond the plane's horizon or at too small an angle.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
     least_cost(shapes, normal, focal, 1)
 }
@@ -147,7 +150,7 @@ fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
 
-/// The cost after removal of one of the [`BLOOMS`] from the shapes.
+/// Computes the cost after removal of bloom of one of the widths [`BLOOMS`] from the shapes.
 fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f64 {
     let mut forms = Vec::with_capacity(shapes.len());
     for shape in shapes {
@@ -169,8 +172,8 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
     by_size + by_stretch(DVec2::ZERO).min(by_stretch(stretch) + STRETCH_COST)
 }
 
-/// The cost of a squared deviation in variances. It grows more slowly than the squared deviation from about [`OUTLIER`]
-/// on (Cauchy's function).
+/// Returns the cost of a squared deviation in variances. From about [`OUTLIER`] on, the cost grows more slowly than
+/// the squared deviation (Cauchy's function).
 fn robust(square: f64) -> f64 {
     OUTLIER * (square / OUTLIER).ln_1p()
 }

@@ -1,8 +1,8 @@
-//! Estimates the camera from lamps that are alike, for photos whose lines do not determine the camera. Seen straight
-//! on, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine Rectification from Change of
-//! Scale", ACCV 2010), so the search looks for the tilt of their plane at which the lamps become alike. Most lamps are
-//! as long as they are wide. Oblong lamps of one kind are assumed to be equally long and parallel.
-//!
+//! Estimates the camera from lamps that are alike, for photos whose lines do not determine the camera. In
+//! fronto-parallel view, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine Rectification
+//! from Change of Scale", ACCV 2010), so the search looks for the tilt of their plane at which the lamps become alike.
+//! It assumes that most lamps are as long as they are wide, and that oblong lamps of one kind are equally long and
+//! parallel.
 //! ```text
 //! mask of lamps ─▶ likeness ─▶ tilt of their plane, focal length ─▶ retilt: rotation about the normal ─▶ View
 //!                                                    segments ─────────┘
@@ -24,19 +24,20 @@ use likeness::Shape;
 use tilt::{Found, Tilt};
 
 /// Minimum number of shapes: two shapes of one kind give six measurements (the size and the two components of the
-/// stretch of each) for the five unknowns [convention].
+/// stretch of each) for the five unknowns. [convention]
 const MIN_SHAPES: usize = 2;
-/// Minimum decrease of the cost relative to the view from lines. The cost is on the scale of a chi-square
-/// [bench photos:tune].
+/// A tilt is accepted only if it decreases the cost of the shapes by at least this, compared with the tilt that the
+/// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]
 const MIN_GAIN: f64 = 15.0;
-/// Maximum cost of the tilt found: as a share of the cost of the tilt from lines, and per shape. These limits reject
-/// shapes of several kinds, whose cost is high at every tilt [bench photos:tune].
+/// Maximum cost of an accepted tilt: as a share of the cost of the tilt that the lines imply (`MAX_SHARE`), and per
+/// shape (`MAX_COST`). These limits reject shapes of several kinds, whose cost is high at every tilt.
+/// [bench photos:tune]
 const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
 
 impl View {
-    /// The view in which the lamps marked by `lamps`, on the plane marked by `plane`, are alike. `None` if the lines
-    /// determine the view, if there are too few lamps, if the lamps already agree with the view, or if the lamps
+    /// Returns the view in which the lamps marked by `lamps`, on the plane marked by `plane`, are alike. `None` if the
+    /// lines determine the view, if there are too few lamps, if the lamps already agree with the view, or if the lamps
     /// contradict each other.
     pub fn with_lamps_alike(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.uncertain_tilt(plane) else { return Ok(None) };
@@ -49,8 +50,8 @@ impl View {
         Ok(better.map(|found: Found| self.retilted(&found, &shapes, [plane.width, plane.height])))
     }
 
-    /// The tilt of the plane according to the lines, and the standard deviation of the plane's normal in radians.
-    /// `None` if the lines determine the normal well, or if the caller gave the focal length.
+    /// Returns the tilt of the plane according to the lines, and the standard deviation of the plane's normal in
+    /// radians. `None` if the lines determine the normal well, or if the caller gave the focal length.
     fn uncertain_tilt(&self, mask: &Image) -> Option<(Tilt, f64)> {
         let camera = &self.perspective;
         if camera.focal_source == FocalSource::Given {
@@ -65,7 +66,7 @@ impl View {
     }
 }
 
-/// Whether the shapes are alike at `tilt` and differ at `than`.
+/// Whether the shapes are alike at `tilt` and clearly less alike at `than`.
 fn is_better(shapes: &[Shape], tilt: &Tilt, than: &Tilt) -> bool {
     let [cost, before] = [tilt, than].map(|tilt| likeness::cost(shapes, tilt.normal, tilt.focal));
     before - cost > MIN_GAIN && cost < MAX_SHARE * before && cost < MAX_COST * shapes.len() as f64

@@ -1,4 +1,4 @@
-//! Computes the view for another tilt of the plane.
+//! Computes the view in which the plane has the tilt at which its lamps are alike.
 
 use super::likeness::{self, Shape};
 use super::tilt::{Found, Tilt};
@@ -8,25 +8,27 @@ use crate::rectify::{VanishingPoint, View, camera, manhattan};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// Maximum increase of the shapes' cost when the lines correct the tilt, and the minimum share of the lines that run
-/// along the corrected axes [bench photos:tune].
+/// Limits for accepting the correction of the tilt by the lines. `MAX_LOSS`: maximum increase of the shapes' cost.
+/// `MIN_EXPLAINED`: minimum score of the corrected axes; the score is about the share of the lines that run along the
+/// axes. [bench photos:tune]
 const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
-/// Number of rotations about the normal that are tried within a right angle [convention].
+/// Number of rotations about the normal that are tried within a right angle. [convention]
 const ROTATIONS: usize = 360;
-/// Minimum number of segments that determine a direction [convention].
+/// Minimum number of segments that determine a direction. [convention]
 const MIN_SUPPORT: usize = 3;
 
 impl View {
-    /// The view with the plane tilted as found, turned about its normal so that most lines run along the axes.
+    /// Returns the view with the plane tilted as found, and rotated about its normal so that most lines run along the
+    /// axes.
     pub(super) fn retilted(&self, found: &Found, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
         let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();
         let indexed = frame.weighted_lines(&segments);
         let lines: Vec<WeightedLine> = indexed.iter().map(|(_, line)| *line).collect();
 
-        // Turn the axes to run along the lines. Then let the lines correct the axes and the focal length, and keep the
-        // correction only if enough lines and the shapes agree with it.
+        // Rotate the axes to run along the lines. Then let the lines correct the axes and the focal length, and keep
+        // the correction only if enough lines and the shapes agree with it.
         let start = turned(&lines, found.tilt.normal, found.tilt.focal / frame.scale);
         let corrected = manhattan::polished(&lines, start, found.tilt.focal / frame.scale);
         let tilt = Tilt { normal: corrected.axes.col(0), focal: corrected.focal * frame.scale };
@@ -44,8 +46,8 @@ impl View {
             let support = members.iter().filter(|member| **member == Some(axis)).count();
             let mut covariance = found.covariance;
             if direction.dot(normal).abs() < FRAC_1_SQRT_2 {
-                // The uncertainty of a direction within the plane is that of the normal plus that of the lines along
-                // the direction.
+                // The covariance of a direction within the plane is that of the normal plus that of the rotation about
+                // the normal, which the lines along the direction determine.
                 let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
                 covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
             }
@@ -57,7 +59,7 @@ impl View {
     }
 }
 
-/// For each segment the axis that it runs along, if any.
+/// Returns for each segment the axis along which it runs; `None` if it runs along no axis.
 fn members(lines: &[(usize, WeightedLine)], axes: &DMat3, focal: f64, count: usize) -> Vec<Option<usize>> {
     let points = [0, 1, 2].map(|axis| project(axes.col(axis), focal));
     let mut members = vec![None; count];
@@ -69,7 +71,7 @@ fn members(lines: &[(usize, WeightedLine)], axes: &DMat3, focal: f64, count: usi
     members
 }
 
-/// The normal and the two directions of its plane along which most of the lines run.
+/// Returns the normal, and the two orthogonal directions within its plane along which most of the lines run.
 fn turned(lines: &[WeightedLine], normal: DVec3, focal: f64) -> DMat3 {
     let along = normal.any_orthonormal_vector();
     let directions = |k: usize| {

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 const SIZE: [usize; 2] = [640, 480];
 const FOCAL: f64 = 560.0;
 
-/// A ceiling seen from below, tilted as a raised camera shows it.
+/// The normal of a ceiling, seen by a camera that is pitched upwards.
 fn true_normal() -> DVec3 {
     DVec3::new(0.05, -0.8, 0.6).normalize()
 }
@@ -22,7 +22,7 @@ fn camera(normal: DVec3, focal: f64) -> Perspective {
     Perspective { focal, focal_source: FocalSource::Assumed, principal, axes }
 }
 
-/// A view of a few lines: axes known up to `error` radians.
+/// A view whose axes have the standard deviation `error`, in radians, as a few lines would determine them.
 fn view(normal: DVec3, error: f64) -> View {
     let perspective = camera(normal, 500.0);
     let point = |axis: usize| VanishingPoint {
@@ -41,7 +41,7 @@ fn view(normal: DVec3, error: f64) -> View {
     }
 }
 
-/// The photo's mask of discs on the true plane at distance 1, each with its radius.
+/// Draws the mask of discs on the true plane at distance 1. Each disc has a centre and a radius in plane units.
 fn discs(at: &[(DVec2, f64)]) -> Image {
     let perspective = camera(true_normal(), FOCAL);
     let (right, down) = (perspective.axes.col(0), perspective.axes.col(2));

@@ -1,4 +1,4 @@
-//! Searches for the tilt of a plane at which the shapes on the plane are alike.
+//! Searches for the tilt of a plane at which the lamp shapes on the plane are alike.
 
 use super::likeness::{self, Shape};
 use crate::error::Result;
@@ -10,31 +10,32 @@ use crate::rectify::focal::Expected;
 use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
 use glam::{DMat3, DVec3};
 
-/// Number of directions tried over the sphere: 6 degrees apart [convention].
+/// Number of plane normals tried, spread over the sphere about 6 degrees apart. [convention]
 const DIRECTIONS: usize = 1000;
 /// Number of focal lengths tried on either side of the expected focal length, and the logarithm of the ratio between
-/// neighbours [convention].
+/// neighbouring focal lengths. [convention]
 const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
-/// Standard deviation of the logarithm of a focal length below which it counts as known [bench photos:tune].
+/// A focal length counts as known if the standard deviation of its logarithm is below this. [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
-/// Step of the finite differences that measure the curvature of the cost at its minimum. Medians and limits make kinks
-/// in the cost, which a wide step smooths [bench photos:tune].
+/// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
+/// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
+/// [bench photos:tune]
 const WIDTH: f64 = 0.02;
-/// Number of tilts that are refined [bench photos:tune].
+/// Number of tilts of the coarse search that are refined. [bench photos:tune]
 const STARTS: usize = 12;
-/// First and last step of the refinement, in radians [convention].
+/// First and last step of the refinement, in radians. [convention]
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
-/// Maximum cost of a contradiction to the lines, in variances. The cost is limited because the lines may be entirely
-/// wrong [bench photos:tune].
+/// Maximum cost of a deviation from the normal that the lines imply, in variances. The cost is limited because the
+/// lines may be entirely wrong. [bench photos:tune]
 const MAX_LINES_COST: f64 = 9.0;
-/// Standard deviation of the camera's roll in radians, and the maximum cost of a roll. Most photographers hold the
-/// camera upright [bench photos:tune].
+/// Standard deviation of the camera's roll in radians, and the maximum cost of a roll in variances. Most photographers
+/// hold the camera upright. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// Minimum cosine of the angle between the normal and the normal from the lines: both must put the plane on the same
-/// side of the camera [bench photos:tune].
+/// Minimum cosine of the angle between the normal found and the normal from the lines: both normals must put the plane
+/// on the same side of the camera. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.
@@ -48,7 +49,8 @@ pub struct Tilt {
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub tilt: Tilt,
-    /// Covariance of the normal in radians squared, and standard deviation of the logarithm of the focal length.
+    /// Covariance of the normal in radians squared, and standard deviation of the logarithm of the focal length
+    /// (`focal_spread`).
     pub covariance: DMat3,
     pub focal_spread: f64,
 }
@@ -78,7 +80,7 @@ impl Total<'_> {
         }
         let by_focal = ((tilt.focal / self.expected.focal).ln() / self.expected.spread).powi(2);
         let by_lines = (cosine.min(1.0).acos() / self.lines_error).powi(2).min(MAX_LINES_COST);
-        // The camera's roll shows only in planes above and below the camera, not in planes ahead.
+        // Roll is visible only on planes above and below the camera, not on planes ahead of it.
         let roll = tilt.normal.x.atan2(tilt.normal.y.abs());
         let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
         let by_roll = if is_level { (roll / ROLL_ERROR).powi(2).min(MAX_ROLL_COST) } else { 0.0 };
@@ -86,8 +88,8 @@ impl Total<'_> {
     }
 }
 
-/// The tilt with the least cost, given the normal and focal length that the lines imply. `None` if the cost of every
-/// tilt tried is infinite.
+/// Finds the tilt with the least cost, given the normal and focal length that the lines imply. `None` if the cost of
+/// every tilt tried is infinite.
 pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected, job: Job) -> Result<Option<Found>> {
     let total = Total { shapes, lines: by_lines.normal, lines_error: error, expected };
     let is_known = expected.spread < KNOWN_FOCAL;
@@ -95,8 +97,8 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
-    // Find the best focal length for every direction, then refine the best of these tilts. Refining only one is not
-    // enough: if all shapes are stretched alike, the cost has several minima.
+    // Find the best focal length for every direction, then refine the tilts with the least cost. Refining a single
+    // tilt is not enough: if all shapes are stretched alike, the cost has several minima.
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
@@ -111,7 +113,7 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     Ok(Some(Found { tilt, covariance, focal_spread }))
 }
 
-/// The k-th of [`DIRECTIONS`] directions spread evenly over the sphere (a Fibonacci lattice).
+/// Returns the k-th of [`DIRECTIONS`] directions spread evenly over the sphere (a Fibonacci lattice).
 fn direction(k: usize) -> DVec3 {
     let z = (2 * k + 1) as f64 / DIRECTIONS as f64 - 1.0;
     let golden_angle = std::f64::consts::PI * (3.0 - 5f64.sqrt());
@@ -120,14 +122,14 @@ fn direction(k: usize) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, z)
 }
 
-/// The tilt after a step of the normal along two tangents and a step of the logarithm of the focal length.
+/// Returns the tilt after a step of the normal along two tangents and a step of the logarithm of the focal length.
 fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
     let (a, b) = tilt.normal.any_orthonormal_pair();
     Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
 }
 
-/// Pattern search: takes the best step along an axis or a diagonal, and halves the step if none decreases the cost.
-/// Returns the final cost and tilt.
+/// Refines a tilt by a pattern search: takes the best step along an axis or a diagonal, and halves the step if no step
+/// decreases the cost. Returns the final cost and tilt.
 fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     let mut least = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
@@ -144,8 +146,8 @@ fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     (least, tilt)
 }
 
-/// Covariance of the normal, and spread of the focal length, from the curvature of the cost: twice the inverse of its
-/// Hessian.
+/// Computes the covariance of the normal, and the standard deviation of the logarithm of the focal length, from the
+/// curvature of the cost: twice the inverse of its Hessian.
 fn covariance(total: &Total, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
     let at = |by: [f64; 3]| total.of(&moved(tilt, by));
     let unit = |k: usize, size: f64| std::array::from_fn(|i| if i == k { size } else { 0.0 });

@@ -1,4 +1,4 @@
-//! Every warning about a camera and a plane is raised by its defect, and good ones raise no warning.
+//! Every defect of a camera or a plane raises its warning, and a good camera and a good plane raise none.
 
 use super::*;
 use crate::geometry::{Homography, Perspective, Segment};
@@ -20,7 +20,7 @@ fn camera(yaw: f64, pitch: f64) -> Perspective {
     }
 }
 
-/// The view from thirty noisy lines along each axis.
+/// Estimates the view from thirty noisy lines along each axis.
 fn view(camera: &Perspective, noise: f64) -> View {
     let mut rng = Rng::new(5, &[]);
     let mut segments = Vec::new();
@@ -51,7 +51,7 @@ fn a_room_seen_along_its_axis_leaves_the_focal_length_open() {
     let view = view(&camera(0.0, 0.0), 0.3);
     let warnings = view.warnings();
     assert_eq!(codes(&warnings), [Code::FocalAssumed]);
-    // The stated spread is that of photos in general.
+    // The spread in the warning is that of the prior, since the lines do not narrow it.
     assert!((warnings[0].severity / USUAL_SPREAD - 1.0).abs() < 0.1, "{:?}", warnings[0]);
     assert!(warnings[0].severity > warnings[0].limit);
     // A focal length that the caller gives raises no warning.
@@ -71,7 +71,7 @@ fn uncertain_axes_bent_lines_and_oblique_walls_raise_warnings() {
     let warnings = bent(-0.05, 0.01).warnings();
     assert_eq!(codes(&warnings), [Code::LensDistortion]);
     assert!(warnings[0].message.contains("5.0 % of barrel"), "{}", warnings[0].message);
-    // Little distortion, and distortion that may be chance.
+    // Neither a little distortion nor a distortion within its error raises a warning.
     assert_eq!(codes(&bent(0.01, 0.001).warnings()), []);
     assert_eq!(codes(&bent(0.05, 0.02).warnings()), []);
 
@@ -81,7 +81,7 @@ fn uncertain_axes_bent_lines_and_oblique_walls_raise_warnings() {
     assert_eq!(codes(&skewed(0.1, 0.05).warnings()), []);
 }
 
-/// An unwarped plane of 100 x 80 pixels with the given map to the photo.
+/// An unwarped plane of 100 x 80 pixels with the given homography to the photo.
 fn unwarped(to_photo: DMat3) -> Unwarped {
     Unwarped {
         image: Image::new(100, 80, 3).unwrap(),
@@ -119,7 +119,7 @@ fn a_footprint_has_the_magnification_and_the_angle_to_the_plane() {
 
 #[test]
 fn a_ceiling_seen_nearly_edge_on_raises_a_warning() {
-    // The part of the ceiling that begins `above` pixels above the horizon and is equally high.
+    // Unwarps the part of the ceiling that lies between `above` and `2 * above` pixels above the horizon.
     let seen = |above: f64| {
         let camera = camera(0.5, 0.0);
         let view = view(&camera, 0.1);

@@ -1,4 +1,4 @@
-//! Results of the paper, and inputs at the limits.
+//! Tests that reproduce results of the paper, and tests with extreme inputs.
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
             scene.materials.push(Material { double_sided: false, ..Material::diffuse("paint", colour) });
             scene.meshes[mesh].material = scene.materials.len() - 1;
         }
-        // A strip of the ceiling emits; the rest of the ceiling is the target, as in the photo.
+        // A strip just below the ceiling emits; the ceiling is the target, as in the photo.
         let ceiling = scene.meshes[1].clone();
         scene.meshes[1].material = 0;
         let strip = Vec3::new(0.5, 0.0, 0.1);
@@ -38,7 +38,7 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
 }
 
 /// Matching the ceiling and matching all visible surfaces give different light (the paper's Table 1): the ceiling is
-/// lit by the wooden floor, the grey walls by the lamp.
+/// lit by the wooden floor, whereas the grey walls are lit by the lamp.
 #[test]
 fn ceiling_and_overall_targets_differ() {
     let mut scene = room(Vec3::new(5.0, 2.7, 4.0), Vec3::splat(0.5), Vec3::splat(0.8), Vec3::ONE);
@@ -63,7 +63,8 @@ fn ceiling_and_overall_targets_differ() {
     assert!(ceiling.scale.y > 1.1 * overall.scale.y, "{ceiling:?} {overall:?}");
 }
 
-/// A closed room of albedo 0.99 has long paths: with all surfaces emitting, `L = e / (1 - ρ)` everywhere.
+/// In a closed room whose surfaces all emit `e` and have the albedo `ρ`, the radiance is `L = e / (1 - ρ)` everywhere,
+/// for any size of the room. At an albedo of 0.99, paths are long.
 #[test]
 fn a_white_closed_room_and_rooms_of_any_size() {
     for size in [1e-6, 1.0, 1e6] {
@@ -93,7 +94,8 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         let responses = Pool::new(2)
             .unwrap()
             .run(|| lamp_responses(&world, 1, &lamps, &[grid], &params, Monitor::default().job()).unwrap());
-        // Every wall emits and reflects e / (1 - ρ) = 2 in total, of which each of the six lamps has a share.
+        // In total, every wall emits and reflects e / (1 - ρ) = 2. Each of the six walls is a lamp and contributes to
+        // this total.
         let all = responses.all(0);
         assert_eq!(lamps.count(), 6);
         assert!((all.mean.x - 2.0).abs() < 4.0 * all.standard_error.x + 1e-5, "size {size}: {all:?}");
@@ -102,12 +104,13 @@ fn a_white_closed_room_and_rooms_of_any_size() {
     let scene = room(Vec3::ONE, Vec3::splat(0.99), Vec3::splat(0.99), Vec3::ONE);
     let params = Params { quantity: Quantity::Incident, paths: 1 << 13, target_error: 0.0, ..Params::default() };
     let solution = solve(&scene, Vec3::ONE, &params).unwrap();
-    // Flux π e S/6 into 6 walls, each of which absorbs 1 %: the mean radiance is about 1/6 / 0.01 = 16.7.
+    // One wall of six emits, and every wall absorbs 1 % of the light: in equilibrium, the mean radiance is about 1/6 /
+    // 0.01 = 16.7.
     let mean = solution.response.x;
     assert!((mean / (1.0 / 0.06) - 1.0).abs() < 0.1, "{mean}");
 }
 
-/// A convex vault in empty space sees nothing of itself: no light of its lamps returns to it, and the result says so.
+/// In empty space, light from the lamps of a convex vault never returns to the vault. The error message says so.
 #[test]
 fn a_convex_ceiling_receives_no_light_of_its_own() {
     let (apex, ring) = (Vec3::Y, |i: u32| Vec3::new((i as f32 * 0.785).cos(), 0.0, (i as f32 * 0.785).sin()) * 2.0);

@@ -1,14 +1,14 @@
-//! Tests of per-lamp responses and of the powers of groups.
+//! Tests of the responses to single lamps, and of the solved powers of lamp groups.
 
 use super::*;
 use crate::image::Image;
 use crate::photometry::Luminaire;
 use crate::scene::{Texture, TextureRef};
 
-/// Texels along each side of the ceiling's texture.
+/// Number of texels along each side of the ceiling's texture.
 const TEXELS: usize = 16;
 
-/// A grey room with emissive texels at `lamps` in the ceiling's texture; each is a lamp.
+/// A grey room with emissive texels at `lamps` in the ceiling's texture; each of these texels is a lamp.
 fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
     let mut image = Image::new(TEXELS, TEXELS, 1).unwrap();
     for (&[x, y], &value) in lamps.iter().zip(values) {
@@ -46,7 +46,7 @@ fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
     let params = Params { paths: 1 << 15, target_error: 0.0, quantity: Quantity::Incident, ..Params::default() };
     let input = Input { world: &world, emitter: 1, target_triangles: FLOOR, target: Vec3::ONE };
     let whole = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap());
-    // The same paths, in different bins.
+    // Both results come from the same paths, sorted into different bins.
     let all = responses.all(0).mean;
     assert!((all - whole.response).abs().max_element() < 1e-9 * all.x, "{all} {}", whole.response);
     for lamp in 1..4 {
@@ -55,7 +55,7 @@ fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
         assert!((a.mean.x - b.mean.x).abs() < 4.5 * sigma, "lamp {lamp}: {a:?} {b:?}");
         assert!(a.standard_error.x / a.mean.x < 0.02);
     }
-    // Rows of the texture.
+    // Group the lamps by rows of the texture.
     let (rows, count) = lamps.rows(1, 0.1);
     assert_eq!((rows.as_slice(), count), (&[0, 0, 1, 1][..], 2));
     let rows = responses.grouped(&rows, count).unwrap();
@@ -93,11 +93,11 @@ fn groups_of_equal_or_very_different_strength_and_dark_goals() {
     let responses = respond(&world, &lamps, &goals);
     let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let x: Vec<f64> = solution.scale.iter().map(|x| x.x).collect();
-    // The regularisation decides what a single goal leaves open: all lamps are equal.
+    // A single goal leaves the distribution over the lamps open; the regularisation makes all powers equal.
     assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
     assert!((solution.outcomes[0].achieved.x / 20.0 - 1.0).abs() < 1e-6);
-    // Where only the faint lamp could help, it would have to be 1e12 times as strong: the solution stays finite, and
-    // the result says that the goal is missed.
+    // The faint lamp would have to be 1e12 times as strong to light the second desk. The solution stays finite, and a
+    // missed goal is reported.
     let ask = [goal(desk(0.9, 0.9), Vec3::splat(20.0)), goal(desk(3.1, 3.1), Vec3::splat(90.0))];
     let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
     let most = GroupParams { max_scale: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
@@ -111,7 +111,7 @@ fn groups_of_equal_or_very_different_strength_and_dark_goals() {
     let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
     let off = powers(&responses, &dark, &GroupParams::default()).unwrap();
     assert!(off.scale.iter().all(|x| *x == DVec3::ZERO) && off.unreachable.is_none(), "{off:?}");
-    // Two desks, each below a lamp; one of them is to be brighter.
+    // There are two desks, each below a lamp; the first is to be brighter.
     let goals = [goal(desk(0.9, 0.9), Vec3::splat(40.0)), goal(desk(3.1, 3.1), Vec3::splat(25.0))];
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let responses = respond(&world, &lamps, &goals);
@@ -147,7 +147,7 @@ fn other_light_that_is_too_bright_is_named() {
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
     assert_eq!(solution.outcomes[0].status, [TargetStatus::TooBright; 3]);
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
-    // Errors name the parameter.
+    // Invalid parameters are errors.
     for bad in [
         GroupParams { regularisation: 0.0, ..GroupParams::default() },
         GroupParams { max_scale: vec![1.0], ..GroupParams::default() },
@@ -157,7 +157,7 @@ fn other_light_that_is_too_bright_is_named() {
     }
 }
 
-/// Each reason for missed goals is reported in its own case.
+/// Causes each reason for a missed goal, and checks that the reason is reported.
 #[test]
 fn every_reason_for_a_missed_goal_is_reported() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -173,7 +173,8 @@ fn every_reason_for_a_missed_goal_is_reported() {
     let redless = World::build(Arc::new(redless), Monitor::default().job()).unwrap();
     let reason = reason_for(&redless, &[floor(Vec3::splat(5.0))], &free);
     assert!(reason.contains("in red") && reason.contains("no light of these lamps finds its way there"), "{reason}");
-    // Groups that cannot produce a colour, and contradictory goals, with fixed and with free colours.
+    // Test a colour that the groups cannot produce, then goals that contradict each other, with fixed and with free
+    // colours.
     let reason = reason_for(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
     assert!(reason.contains("a colour that the groups do not have"), "{reason}");
     let torn = [floor(Vec3::splat(5.0)), floor(Vec3::splat(9.0))];
@@ -185,7 +186,8 @@ fn every_reason_for_a_missed_goal_is_reported() {
         reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
         "{reason}"
     );
-    // A bound, and other lights (to be below them, the power would have to be negative).
+    // Test powers at their bound, then other lights that exceed the target, so that the power would have to be
+    // negative.
     let reason =
         reason_for(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
@@ -235,13 +237,15 @@ fn limits_count_on_one_side() {
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, constraint| at(0.0, 0.0, least, constraint);
-    // With equal lamps, the darker desk gets its lower limit and the brighter one exceeds it.
+    // If both lamps have the same power, the darker desk just reaches its lower limit, and the brighter desk exceeds
+    // it.
     let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
     let solution = solve(one(40.0, Constraint::AtLeast), one(40.0, Constraint::AtLeast));
     assert!(solution.unreachable.is_none(), "{solution:?}");
     let power = solution.scale.iter().map(|x| x.x).fold(0.0, f64::max);
     assert!((power / (40.0 / both) - 1.0).abs() < 1e-3, "{solution:?} {both}");
-    // An upper limit that equal lamps would violate: power moves to the lamp of the other desk.
+    // Equal powers would violate the upper limit of the second desk, so the lamp above the first desk takes over some
+    // power.
     let solution = solve(one(40.0, Constraint::AtLeast), one(25.0, Constraint::AtMost));
     let light: Vec<f64> = solution.outcomes.iter().map(|o| o.achieved.x).collect();
     assert!(light[0] > 39.99 && light[1] < 25.01 && solution.unreachable.is_none(), "{solution:?}");
@@ -250,19 +254,19 @@ fn limits_count_on_one_side() {
     assert_eq!(solve(one(caps[0], Constraint::AtMost), one(1e3, Constraint::AtMost)).scale, [DVec3::ONE; 2]);
     let solution = solve(one(caps[1], Constraint::AtMost), one(1e3, Constraint::AtMost));
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
-    // An unreachable goal is reported with its side.
+    // An unreachable goal is reported with the kind of its limit.
     let goals = [at(0.9, 0.9, 40.0, Constraint::AtLeast), at(3.1, 3.1, 1.0, Constraint::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);
     assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
-    // A luminance goal has a single side.
+    // A luminance goal can have only one kind of constraint.
     let mixed = [Constraint::AtLeast, Constraint::AtMost, Constraint::Exactly];
     let goals = [Goal { aspect: Aspect::Luminance, constraint: mixed, ..traced[0] }, traced[1]];
     assert_eq!(powers(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
-/// With dimming levels, the powers are levels, and the error of the goal is at most the distance between levels; with
-/// too few levels, the outcome reports the miss.
+/// With dimming levels, all powers are levels and the goals are still met; with too few levels, the missed goals are
+/// reported.
 #[test]
 fn powers_in_steps() {
     let places: Vec<[usize; 2]> = (0..16).map(|i| [1 + 4 * (i % 4), 1 + 4 * (i / 4)]).collect();
@@ -305,7 +309,7 @@ fn luminaires_are_lamps() {
     let mut scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     scene.lights = places.map(hang).to_vec();
     scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 1000.0, [0.0; 3]))];
-    // Squares of 10 cm are nearly points.
+    // Squares of 1 cm are nearly points.
     let desks = [Vec3::new(0.9, 0.75, 0.9), Vec3::new(2.6, 0.75, 2.1)];
     let (across, down) = (Vec3::X * 0.01, Vec3::Z * 0.01);
     let aims: Vec<Goal> = desks
@@ -357,7 +361,8 @@ fn free_colours_meet_a_coloured_goal() {
     assert!(kept.unreachable.unwrap().contains("colour"));
 }
 
-/// The whole loop with many lamps: the intervals of single lamps contain the truth, taken from many paths.
+/// With many lamps, the confidence intervals of single lamps contain the true responses, which are taken from many
+/// paths.
 #[test]
 fn intervals_of_single_lamps_cover() {
     let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();
@@ -376,7 +381,7 @@ fn intervals_of_single_lamps_cover() {
             (a.mean.x - b.mean.x).abs() < 2.04 * sigma
         })
         .count();
-    // 64 trials at 95 %: fewer than 54 has a probability below 1e-3.
+    // Of 64 intervals at 95 %, fewer than 54 contain the truth with a probability below 1e-3.
     assert!(inside >= 54, "{inside} of 64");
 }
 

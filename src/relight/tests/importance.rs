@@ -32,7 +32,7 @@ fn map(scene: &Scene, cells: usize, error: f32) -> Importance {
     Pool::new(2).unwrap().run(|| Importance::trace(&scene, 1, &goal, &params, monitor.job()).unwrap())
 }
 
-/// Lamps of several colours and sizes.
+/// A texture with lamps of several colours and sizes.
 fn lamps() -> Texture {
     let mut image = Image::new(64, 64, 3).unwrap();
     let mut rng = Rng::new(5, &[]);
@@ -46,8 +46,8 @@ fn lamps() -> Texture {
     Texture::new("lamps", image)
 }
 
-/// The map times a texture equals tracing the textured room, within the joint interval, for any placement of the
-/// texture.
+/// The dot product of the map and a texture equals the result of tracing the textured room, within the joint interval,
+/// for any placement of the texture.
 #[test]
 fn a_dot_product_with_the_map_equals_tracing() {
     let scene = coloured_room();
@@ -71,14 +71,14 @@ fn a_dot_product_with_the_map_equals_tracing() {
             // The joint interval is narrow, so that the test can fail.
             assert!(allowed < 0.1 * direct.response[c], "{allowed} {}", direct.response[c]);
         }
-        // In the closed form from the map, the scale is the target over the response.
+        // In the closed form, the scale for a target of 1 is the reciprocal of the response.
         let solution = map.solve(&response, Vec3::ONE).unwrap();
         assert!((solution.scale * response.light.mean - 1.0).abs().max_element() < 1e-2);
     }
 }
 
-/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from
-/// a uniform floor, all reflections included.
+/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals the light per area that the
+/// ceiling gets from a uniform floor, all reflections included.
 #[test]
 fn light_transport_is_reciprocal() {
     let mean = |emitter: usize, target: usize| {
@@ -93,7 +93,7 @@ fn light_transport_is_reciprocal() {
         let params = Params { quantity: Quantity::Incident, target_error: 0.003, ..Params::default() };
         Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap())
     };
-    // Floor and ceiling have equal area: meshes 0 and 1, materials 2 and 1.
+    // Floor and ceiling have equal area; they are meshes 0 and 1 and have the materials 2 and 1.
     let (down, up) = (mean(1, 0), mean(2, 1));
     for c in 0..3 {
         let relative = |s: &Solution| s.half_width[c] / s.scale[c] / 2.04;
@@ -131,7 +131,7 @@ fn a_map_needs_texture_coordinates_and_has_the_same_bits() {
     };
     let image = trace(&scene, 1).unwrap().image().unwrap();
     assert_eq!(image.data, trace(&scene, 3).unwrap().image().unwrap().data);
-    // The centre of the ceiling contributes more to the floor than its corners.
+    // The centre of the ceiling contributes more light to the floor than the corners of the ceiling do.
     assert!(image.rgb(4, 4).x > 1.2 * image.rgb(0, 0).x);
     scene.meshes[1].uvs[0].clear();
     let error = trace(&scene, 1).unwrap_err();

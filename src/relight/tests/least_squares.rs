@@ -1,11 +1,11 @@
-//! Tests of least squares over the target's points against closed forms.
+//! Tests of the least squares fit over the target's points against closed forms.
 
 use super::*;
 
-/// Half the side of the black floor, and of the lamps one metre above it.
+/// Half the side, in metres, of the black floor and of the lamps one metre above it.
 const FLOOR: f64 = 2.0;
 const LAMP: f64 = 0.5;
-/// Position of the lamp to solve for and of another lamp, and the radiance of the latter.
+/// Position along x of the lamp to solve for and of another lamp, and the radiance of the other lamp.
 const PLACES: [f64; 2] = [-0.7, 1.0];
 const OTHER: f64 = 2.0;
 
@@ -37,7 +37,7 @@ fn response(x: f64, z: f64, lamp: f64) -> f64 {
     corner(x[1], z[1]) - corner(x[0], z[1]) - corner(x[1], z[0]) + corner(x[0], z[0])
 }
 
-/// Mean over the floor.
+/// Returns the mean of `f` over the floor.
 fn mean(f: impl Fn(f64, f64) -> f64) -> f64 {
     const N: usize = 400;
     let at = |i: usize| FLOOR * ((2 * i + 1) as f64 / N as f64 - 1.0);
@@ -49,7 +49,8 @@ fn solve_with(scene: &Scene, fit: Fit, params: &Params) -> Solution {
     super::solve(scene, Vec3::ONE, &Params { fit, quantity: Quantity::Incident, ..params.clone() }).unwrap()
 }
 
-/// Without other light, the solution is that of the mean divided by `1 + CV²`.
+/// Without other light, the scale by least squares is the scale by the mean, divided by `1 + CV²`. CV is the
+/// coefficient of variation of the response over the target.
 #[test]
 fn bright_points_count_more_by_the_coefficient_of_variation() {
     let mut scene = scene();
@@ -71,8 +72,8 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     assert!((ratio * (1.0 + variation) - 1.0).abs() < 4.0 * sigma, "{ratio}, {variation}");
 }
 
-/// With other light, `c = E r (t - b) / E r²`. Noise does not bias it: few paths have the same expected result,
-/// although the mean of their squares would be far too large.
+/// With other light `b`, the solution for the target `t` is `c = E r (t - b) / E r²`. Noise does not bias `c`: its
+/// expected value is right even for few paths, although the squares of their noisy values would be far too large.
 #[test]
 fn noise_does_not_make_the_answer_dark() {
     let scene = scene();

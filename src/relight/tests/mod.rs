@@ -55,7 +55,8 @@ fn powers(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result
     Pool::new(2).unwrap().run(|| solve_groups(responses, goals, params, Monitor::default().job()))
 }
 
-/// A floor below a small ceiling with black walls: `E = π F e`, where F is the form factor of parallel rectangles.
+/// In a room with black walls, the floor gets light directly from the ceiling only: its irradiance is `E = π F L`,
+/// where L is the radiance of the ceiling and F the form factor of two equal parallel rectangles.
 #[test]
 fn a_black_room_answers_with_the_form_factor() {
     let scene = room(Vec3::new(2.0, 1.0, 2.0), Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
@@ -78,11 +79,11 @@ fn a_black_room_answers_with_the_form_factor() {
         );
         assert!(solution.half_width[c] / solution.scale[c] < 0.002);
     }
-    // 0.2 % of a middle grey is about 0.07 in lightness; the errors of the channels are equal.
+    // An error of 0.2 % of a middle grey is about 0.07 in lightness; the errors of the channels are equal.
     assert!(solution.delta_e > 0.01 && solution.delta_e < 0.1, "{}", solution.delta_e);
 }
 
-/// Solve, scale the emission, and measure again: the target is met.
+/// The emission that caused a target radiance is recovered from this radiance, with another light in the room.
 #[test]
 fn a_known_emitter_is_recovered_under_other_light() {
     let truth = Vec3::new(120.0, 80.0, 40.0);
@@ -96,7 +97,7 @@ fn a_known_emitter_is_recovered_under_other_light() {
     let solution = solve(&scene, target, &Params { seed: 99, ..params }).unwrap();
     for c in 0..3 {
         let error = (solution.scale[c] - f64::from(truth[c])).abs();
-        // Two independent estimates, each with its own interval.
+        // The target and the solution are independent estimates, each with its own interval.
         assert!(error < 2.0 * std::f64::consts::SQRT_2 * solution.half_width[c], "{solution:?}");
     }
 }
@@ -127,7 +128,7 @@ fn unreachable_targets_are_reported() {
     }
 }
 
-/// A channel with a limit: the emission keeps its colour unless that violates the limit.
+/// If a channel has a limit, the emission keeps its colour unless the limit would then be violated.
 #[test]
 fn a_limit_binds_only_where_it_is_broken() {
     let scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ONE);
@@ -156,11 +157,11 @@ fn a_limit_binds_only_where_it_is_broken() {
         let s = least(truth, Constraint::AtMost).scale;
         (s.y + s.z) / 2.0
     });
-    // All channels have limits: the least light that satisfies them.
+    // If all channels have limits, the solution is the least light that satisfies them.
     let all =
         solve(&scene, truth, &Params { constraint: [Constraint::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
     assert_eq!(all.scale, least(truth, Constraint::Exactly).scale);
-    // No light is needed where other light suffices.
+    // No light is needed where other light satisfies the limits.
     let mut bright = scene.clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::splat(1e3) });
     let none = solve(&bright, Vec3::splat(1e-3), &Params { constraint: [Constraint::AtLeast; 3], ..params }).unwrap();

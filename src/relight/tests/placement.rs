@@ -1,11 +1,11 @@
-//! Tests of gradients against differences, and of placements with a known optimum.
+//! Tests of gradients against finite differences, and of placements with a known optimum.
 
 use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use std::f64::consts::PI;
 
-/// A warm map with its maximum in the centre and a smooth decay to the sides.
+/// An importance map with its maximum in the centre and a smooth decay to the sides, largest in red.
 fn map() -> Importance {
     let cell = |i: usize, n: usize| (PI * ((i as f64 + 0.5) / n as f64 - 0.5)).cos();
     let (width, height) = (40, 32);
@@ -57,8 +57,8 @@ fn place(texture: &Image, params: &PlaceParams) -> Placement {
     Pool::new(2).unwrap().run(|| map().place(texture, params, monitor.job()).unwrap())
 }
 
-/// A single lamp moves to the centre of the surface, where the importance is largest, from anywhere in its texture; or
-/// to the corner, where it is smallest.
+/// The brightest placement moves a single lamp to the centre of the surface, where the importance is largest, wherever
+/// the lamp lies in its texture. The darkest placement moves it to the corner, where the importance is smallest.
 #[test]
 fn a_lamp_moves_to_the_largest_or_smallest_importance() {
     for (x, y) in [(10, 40), (50, 3)] {
@@ -75,7 +75,7 @@ fn a_lamp_moves_to_the_largest_or_smallest_importance() {
     }
 }
 
-/// With free scale and rotation, a reachable target is met, and the prediction equals that of `respond`.
+/// With fixed and with free scale and rotation, a reachable target is met, and the response equals that of `respond`.
 #[test]
 fn a_target_is_met_by_moving_the_lamp() {
     let texture = lamp(10, 40);
@@ -102,7 +102,7 @@ fn a_target_is_met_by_moving_the_lamp() {
     assert_eq!(place(&texture, &held).pose, Pose::IDENTITY);
 }
 
-/// A pattern with several periods and noise: the multi-start search finds the optimum over all offsets.
+/// For a pattern with several periods and noise, the multi-start search finds the optimum over all offsets.
 #[test]
 fn many_starts_find_the_best_of_a_periodic_pattern() {
     let texture = Image::from_fn(60, 60, |x, y| {

@@ -1,4 +1,4 @@
-//! Channels that do not meet their target, and targets that are bounds.
+//! Tests of the warnings about channels that do not meet their target, and about targets that are only bounds.
 
 use super::*;
 use glam::DVec3;

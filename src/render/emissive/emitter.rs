@@ -67,7 +67,7 @@ impl Emitter {
         }
     }
 
-    /// Returns the mean over the channels of the emission that a texel of this colour gives, in cd/m².
+    /// Returns the emission of a texel of this colour in cd/m², averaged over the channels.
     pub(super) fn emission_of_texel(&self, colour: Vec4) -> f32 {
         mean_channel(self.factor * colour.truncate().max(Vec3::ZERO))
     }

@@ -31,9 +31,9 @@ pub struct Emitters {
     /// How each emitter is divided into pieces.
     divisions: Vec<Division>,
     tilings: Vec<Tiling>,
-    /// Index of the piece of every tile of every tiling; `NONE` for dark tiles.
+    /// For each tile of each tiling, the index of the tile's piece; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// The pieces. Their indices count first the undivided triangles (`even`), then the emissive tiles.
+    /// All pieces. Piece indices count the undivided triangles (`even`) first, then the emissive tiles.
     even: Vec<Even>,
     tiles: Vec<Tile>,
     /// Flux of all emitters in lumens; of a double-sided emitter only one side counts.
@@ -143,7 +143,8 @@ impl Emitters {
         Ok(())
     }
 
-    /// Samples a point of a piece in proportion to its emission. Returns the index of the emitter and the barycentric
+    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). The density of the
+    /// samples is proportional to the emission at the point. Returns the index of the emitter and the barycentric
     /// coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {

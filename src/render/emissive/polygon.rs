@@ -93,8 +93,8 @@ impl Polygon {
         (1..self.len.saturating_sub(1)).map(|i| self.fan(i)).sum::<f64>() / 2.0
     }
 
-    /// Samples a point uniformly by area: `u` selects a triangle of the fan; the remainder of `u` and `v` select the
-    /// point.
+    /// Samples a point uniformly by area: `u` selects a triangle of the polygon's fan. The remainder of `u`, rescaled
+    /// to `[0, 1]`, and `v` select the point in this triangle.
     pub fn sample(&self, (u, v): (f64, f32)) -> Option<DVec2> {
         let mut target = u * 2.0 * self.area();
         let last = self.len.checked_sub(2).filter(|&l| l > 0)?;

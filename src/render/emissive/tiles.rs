@@ -14,8 +14,8 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// A triangle is divided into tiles only if its bounding box has at most this many texels, or at most four times the
-/// texels of the texture if that is more. The limit bounds memory. [convention]
+/// A triangle is divided into tiles only if its bounding box has at most this many texels, or at most four times as
+/// many texels as the texture. The limit bounds memory. [convention]
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Bound on texture coordinates, in texels. Beyond it, single precision cannot separate neighbouring texels.
 /// [rounding]
@@ -25,7 +25,7 @@ const MAX_TEXEL_COORDINATE: f64 = 8e6;
 pub struct Tiling {
     /// The triangle's corners in texel coordinates.
     triangle: [DVec2; 3],
-    /// Converts an offset from the first corner, in texels, to barycentric coordinates.
+    /// Converts an offset from the triangle's first corner, in texels, to barycentric coordinates.
     to_barycentric: DMat2,
     /// The first texel of the tile grid (`start`), and the number of tiles along u (`columns`) and v (`rows`).
     start: [i64; 2],
@@ -97,7 +97,8 @@ impl Tiling {
             && !self.texel_inside(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// Returns the texture's texel at the tile's first texel, if the whole tile lies inside the texture.
+    /// Returns the column and row of the tile's first texel in the texture, or `None` if the tile extends beyond the
+    /// texture. `first` is that texel in unwrapped texel coordinates.
     fn texel_inside(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let is_inside =
@@ -151,8 +152,8 @@ impl Tiling {
         }
     }
 
-    /// Samples a point of a tile in proportion to its emission: `u` selects the texel; the remainder of `u` and `v`
-    /// select the point within it. Returns barycentric coordinates.
+    /// Samples a point of a tile in proportion to its emission: `u` selects the texel. The remainder of `u`, rescaled
+    /// to `[0, 1]`, and `v` select the point within the texel. Returns barycentric coordinates.
     pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
         let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
         // Count the entries up to the target instead of bisecting: the table is in the cache, and the count has no

@@ -1,7 +1,7 @@
 //! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! The first passes render a coarse image. The next ones give every pixel a few paths, then twice as many, and so on,
-//! since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
+//! The first passes render a coarse image. The next passes give every pixel a few paths, then twice as many, and so
+//! on, since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
 //! paths after [`MIN_UNIFORM_PATHS`] paths per pixel. If the target limits the error of the whole image, the number of
 //! paths is proportional to the standard deviation of the tile's paths, absolute or relative to the tile's radiance
 //! (Neyman 1934). If the target limits the error of each pixel, the number follows from the tile's own error. Each
@@ -53,7 +53,7 @@ impl<'p> AdaptiveSampler<'p> {
         if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
         }
-        // Refine the coarse image down to one path per pixel.
+        // While the image is still coarse, halve the pixel stride. At a stride of 1, every pixel has one path.
         if self.stride > 1 {
             self.stride /= 2;
             self.uniform_paths = 1;
@@ -81,8 +81,8 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
     }
 
-    /// Returns a pass that doubles the paths of the tiles with the largest need, or `None` if no tile needs more
-    /// paths.
+    /// Returns a pass that doubles the paths of some tiles, or `None` if no tile needs more paths. The tiles with the
+    /// largest need come first. The need of a tile is its required number of paths divided by its present number.
     fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let statistics = canvas.statistics(|_, _| 1.0, job)?;
         let target_paths = self.target_paths(canvas, &statistics, job)?;

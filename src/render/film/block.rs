@@ -1,8 +1,8 @@
 //! Blocks of pixels whose paths share secondary vertices (see `shared`).
 //!
-//! A block covers 4 × 2 pixels of a tile, or 2 × 4 pixels in every second replication. The alternation keeps the
-//! correlated errors of its pixels from showing as blocks. The division into blocks depends only on the replication
-//! and the position in the image.
+//! A replication is one of the four point sequences of a pixel. A block covers 4 × 2 pixels of a tile, or 2 × 4 pixels
+//! in every second replication. The alternation keeps the correlated errors of its pixels from showing as blocks. The
+//! division into blocks depends only on the replication and the position in the image.
 
 use super::eye::Eye;
 use super::grid::{AREA, TILE};
@@ -21,7 +21,7 @@ const BLOCKS: usize = AREA / MAX_SHARED;
 /// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
-/// A pixel of a block, with the length and the seed of its paths in one replication.
+/// A pixel of a block, with the length limit and the seed of its paths in one replication.
 pub struct BlockPixel {
     /// Index of the pixel in its tile.
     pub pixel: usize,

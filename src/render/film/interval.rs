@@ -4,8 +4,9 @@
 //! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96
 //! standard errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The
 //! variances of neighbouring pixels are almost independent of the pixel's mean, because only pixels of the same block
-//! share some paths (see `block`). Intervals from variances that are averaged over 7 × 7 pixels with binomial weights
-//! cover 93 to 97 % of the pixels from 8 paths per pixel on; `benches/error_control.rs` measures this coverage.
+//! share some paths (see `block`). The variances are therefore averaged over 7 × 7 pixels with binomial weights. From
+//! 8 paths per pixel on, the resulting intervals contain the truth for 93 to 97 % of the pixels;
+//! `benches/error_control.rs` measures this coverage.
 
 use super::pooling::pooled;
 use crate::error::Result;

@@ -38,12 +38,13 @@ use std::time::Duration;
 
 /// Largest number of tiles that the pilot run renders. [origin not recorded]
 const MAX_TILES: usize = 128;
-/// Paths per pixel of the three passes. Each replication gets a power of four, at which points are stratified best.
+/// Paths per pixel of the three passes. Each of the four replications of a pixel gets a power of four of these paths,
+/// because points are stratified best at powers of four.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation of all tiles, so
-/// that tiles without variance can be selected, too. [origin not recorded]
+/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation over all tiles. It
+/// lets tiles without variance be selected, too. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
@@ -57,8 +58,8 @@ pub struct Pilot {
     pub squared_errors: [f64; 3],
     /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,
-    /// Root mean square of the image's radiance, divided by its mean. The factor converts an error that is the same
-    /// share of the radiance everywhere to the error of the image.
+    /// Root mean square of the image's radiance, divided by its mean. If the error of every pixel is the same share of
+    /// the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
     pub contrast: f64,
 }
 
@@ -89,7 +90,7 @@ struct PilotTile {
 struct TileSums {
     weight: f64,
     pixels: f64,
-    /// What the first look expects for the sums `mean` and `square`.
+    /// Predictions of the first look for the sums `mean` and `square`.
     expected: [f64; 2],
     mean: f64,
     square: f64,
@@ -179,8 +180,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. It is the time per path of all pilot tiles together, times the
-/// ratio of the weighted to the unweighted time per path, because the selected tiles are not typical of the image.
+/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is corrected, because
+/// the selected tiles are not typical of the image: it is multiplied by the ratio of the weighted to the unweighted
+/// mean.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);

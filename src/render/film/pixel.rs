@@ -64,8 +64,8 @@ impl Pixel {
         self.sums.iter().map(|s| s.as_dvec3()).sum::<DVec3>() / f64::from(self.count.max(1))
     }
 
-    /// Returns the mean of the even and the mean of the odd replications. They are independent if the pixel has at
-    /// least two paths; otherwise both are equal.
+    /// Returns the mean of the even and the mean of the odd replications. The two means are independent if the pixel
+    /// has at least two paths, and equal otherwise.
     pub fn halves(&self) -> [DVec3; 2] {
         [0, 1].map(|first| {
             let of = || (0..REPLICATIONS).zip(&self.sums).filter(|(replication, _)| replication % 2 == first);

@@ -22,8 +22,8 @@ use std::sync::atomic::AtomicU64;
 
 /// Paths per sampled pixel for the median radiance of the image. [origin not recorded]
 const PATHS: u32 = 4;
-/// Stride of the sampled pixels of a tile, each with one path, for the roulette weight of the tile. [origin not
-/// recorded]
+/// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of
+/// this stride. [origin not recorded]
 const STEP: usize = 2;
 /// Salt of the prepass's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;

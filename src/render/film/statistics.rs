@@ -98,8 +98,8 @@ impl Canvas<'_> {
         })
     }
 
-    /// Returns for each tile the mean square over its pixels of the relative half-width of the 95 % confidence
-    /// interval. The half-width is relative to the luminance of the pixel, or to `floor` if the pixel is darker.
+    /// Returns for each tile the mean square of the relative errors of its pixels. The relative error of a pixel is
+    /// the half-width of its 95 % confidence interval, divided by its luminance, or by `floor` if the pixel is darker.
     pub fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
         let variance = pooled(&self.variance(job)?, job)?;
         exec::map(self.grid.tiles(), job, |tile| {

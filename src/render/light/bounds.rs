@@ -60,7 +60,7 @@ impl Bounds {
     pub fn union(parts: &[Self]) -> Self {
         let mut whole = parts[0];
         // Average the axes, weighted by intensity. The axis of a two-sided light may point either way, so it is
-        // flipped to the side of the others.
+        // flipped into the half-space of the other axes.
         let mut sum = Vec3::ZERO;
         whole.intensity = 0.0;
         for part in parts {
@@ -130,7 +130,8 @@ pub struct BoundsLanes {
     intensity: Lanes,
 }
 
-/// Because of rounding, a cosine whose bound is above minus this margin may be positive. [rounding]
+/// The true cosine may be positive if its computed upper bound exceeds minus this margin, because the bound is
+/// rounded. [rounding]
 const MARGIN: f32 = 1e-4;
 
 impl BoundsLanes {

@@ -110,8 +110,8 @@ impl Lights {
         self.pieces
     }
 
-    /// Samples a light for a receiver: `u` selects the light; the remainder of `u` and `v` select the point on it.
-    /// Returns `None` if no light can be sampled or the sampled point faces away.
+    /// Samples a light for a receiver: `u` selects the light. The remainder of `u`, rescaled to `[0, 1)`, and `v`
+    /// select the point on the light. Returns `None` if no light can be sampled or the sampled point faces away.
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         let [near, directional, environment] = self.groups;

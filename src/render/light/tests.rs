@@ -67,7 +67,7 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
             assert!(total < 1.0 + 1e-5);
             let mut counts = vec![0.0; count + 1];
             for i in 0..n {
-                // Stratify the samples. If the sampling is right, this only lowers chi-squared.
+                // Stratify the samples. If the sampling is right, the stratification only lowers chi-squared.
                 match tree.sample(&receiver, (f64::from(i) + rng.next_f64()) / f64::from(n)) {
                     None => counts[count] += 1.0,
                     Some((light, pmf, rest)) => {

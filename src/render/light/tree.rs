@@ -268,7 +268,8 @@ fn split(items: &mut [Item]) -> usize {
     let mut best = (f32::INFINITY, 0, 0);
     for axis in axes {
         let bins = &bins[axis];
-        // Accumulate the costs of the bins from each border upwards, then add the costs of the bins below.
+        // For each border between two bins, compute the cost of the lights above the border, then add the cost of the
+        // lights below it.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
         for i in (1..BINS).rev() {

@@ -83,7 +83,8 @@ impl Automaton {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
-    /// Adds to `states` all live states that follow after diffuse or, if `is_layered`, glossy scattering at a mesh.
+    /// Adds to `states` the states that follow after diffuse scattering at a mesh and, if `is_layered`, after glossy
+    /// scattering. Leaves out the dead state.
     pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
         let next = self.next(state, self.class(mesh));
         for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {

@@ -1,4 +1,4 @@
-//! Tracks a light path through the automaton of light path expressions, as components: each is a state of the
+//! Tracks a light path through the automaton of light path expressions, as components. A component is a state of the
 //! automaton with its share of the path's light.
 //!
 //! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
@@ -7,8 +7,8 @@
 //! to be truncated. Components in the dead state are dropped. Once all components are in absorbing states, further
 //! scattering costs nothing.
 //!
-//! A subpath that several paths reuse is tracked only once, separately for each state in which these paths may join
-//! it.
+//! A subpath that several paths reuse is traced only once, and tracked separately for each state in which these paths
+//! may join it.
 
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
@@ -44,7 +44,7 @@ pub struct Trail<'a> {
     /// Scratch memory: the components before an event (`before`), and the components at a light (`ends`).
     before: Vec<Component>,
     ends: Vec<Component>,
-    /// The panes between the vertex and its light sample.
+    /// The panes between the current vertex and its light sample.
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
@@ -217,8 +217,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components,
-    /// because a share of its light may pass beside it.
+    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components:
+    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses the pane.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;

@@ -131,7 +131,7 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
     // At the smallest strengths, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
-    // Every published film has a preview, from the first coarse pass on.
+    // Even the first film, which is published after the coarse pass, has a preview.
     let monitor = Monitor::default();
     let mut published = 0;
     let all = run(&world, &camera, &params, monitor.job(), &mut |film| {

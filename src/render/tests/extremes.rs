@@ -45,8 +45,8 @@ fn grown_viewer(scale: f32) -> Camera {
     Camera { position: camera.position * scale, ..camera }
 }
 
-/// Returns the share of values that differ by more than rounding, relative to the mean of `a`. `b` is divided by
-/// `scale` first.
+/// Returns the share of values at which `a` and `b / scale` differ by more than rounding. The tolerance is 1/1000 of
+/// the value in `a`, or of the mean of `a` if that is larger.
 fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
     let mean = a.data.iter().sum::<f32>() / a.data.len() as f32;
     let differs = |(a, b): (&f32, &f32)| (a - b / scale).abs() > 1e-3 * a.max(mean);
@@ -56,7 +56,7 @@ fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
 #[test]
 fn lamps_of_any_brightness_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
-    // Test about 1e-9 and 1e9 cd/m². The factors are powers of two, so that scaling is exact.
+    // Test lights of about 1e-9 and of about 1e9 cd/m². The factors are powers of two, so that scaling is exact.
     for light in [2f32.powi(-30), 2f32.powi(30)] {
         let film = render(&world(grown(1.0, light)), &viewer(), &SMALL());
         assert_eq!(differing(&unit.beauty, &film.beauty, light), 0.0, "{light}");

@@ -158,7 +158,7 @@ fn a_cancelled_render_leaves_what_was_published() {
         monitor.cancel();
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
-    // Only some pixels have a path, and every pixel shows one of these.
+    // Only some pixels have a path; every other pixel shows the value of one of these pixels.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");
@@ -200,7 +200,8 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
                     let film = render(&world, &viewer(), &params);
                     (film, processor_time() - start)
                 };
-                // Measure the smallest possible render: a path for one pixel in many, and an image of these paths.
+                // Time the smallest possible render, which traces one path in only a few of the pixels and assembles
+                // an image from them.
                 let (film, min) = timed(1);
                 let paths: f32 = film.paths.data.iter().sum();
                 assert!(paths > 0.0 && (paths <= 1024.0 || width == 1), "{width} x {height}: {paths}");

@@ -81,7 +81,7 @@ fn complete_sets_sum_to_the_image_and_leave_its_bits() {
 }
 
 /// The lamps of an emission texture are separate lights: their images and the image of all other light add up to the
-/// main image, and each equals a render with the other lamp off.
+/// main image. The image of one lamp equals a render with the other lamp off.
 #[test]
 fn lamps_of_a_texture_are_light_groups() {
     let texture = |lit: [f32; 2]| {

@@ -1,27 +1,28 @@
-//! Per-ray values shared by the box test and the triangle test.
+//! Per-ray values shared by the box test and the triangle test of the BVH traversal.
 
 use super::ray::Ray;
 use glam::{BVec4A, Vec4};
 
-/// A ray in registers of four lanes, the last lane being 0, with its dominant axis.
+/// A ray in SIMD registers of four lanes (the fourth lane is 0), with its dominant axis.
 pub(super) struct Aligned {
     pub origin: Vec4,
     pub direction: Vec4,
-    /// Reciprocal of the direction, always finite: a component too small to invert is replaced by one that moves the
-    /// ray by less than the margin of its boxes.
+    /// Componentwise reciprocal of the direction, always finite. Direction components too small to invert get a large
+    /// finite reciprocal instead of infinity; the resulting error is less than the margin that
+    /// [`super::node::NodeRay`] adds to the boxes.
     pub inverse: Vec4,
-    /// Mask of the axes with the largest absolute component; several if tied.
+    /// Mask of the axes along which the direction has its largest absolute component; several axes if tied.
     pub is_dominant: BVec4A,
 }
 
 impl Aligned {
-    /// `None` for rays that hit nothing: zero direction or length, or non-finite components.
+    /// Prepares a ray. `None` if it can hit nothing: its direction or length is zero, or a component is not finite.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Option<Self> {
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(0.0));
         let size = direction.abs();
         let along = size.max_element();
-        // Zero times infinity or NaN is NaN.
+        // A number times zero is zero; infinity or NaN times zero is NaN, which compares unequal.
         let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         let is_dominant = size.cmpeq(Vec4::splat(along));
         let limit = finite(Vec4::splat(1e12 / along));
@@ -29,14 +30,14 @@ impl Aligned {
         (is_finite && along > 0.0 && ray.t_max > 0.0).then_some(Self { origin, direction, inverse, is_dominant })
     }
 
-    /// The dominant axis; the last one if tied.
+    /// Index of the dominant axis; the highest index if several are tied.
     #[inline(always)]
     pub fn dominant_axis(&self) -> usize {
         (31 - (self.is_dominant.bitmask() & 7 | 1).leading_zeros()) as usize
     }
 }
 
-/// Clamps infinities to the largest finite numbers.
+/// Replaces infinities by the largest finite numbers of the same sign.
 #[inline(always)]
 pub(super) fn finite(v: Vec4) -> Vec4 {
     v.max(Vec4::splat(f32::MIN)).min(Vec4::splat(f32::MAX))

@@ -1,4 +1,4 @@
-//! Builds the acceleration structure from triangles.
+//! Builds the acceleration structure: sorts triangles into leaves, clusters them, optimises and collapses the tree.
 
 use super::costs::Source;
 use super::leaves::{self, Leaves};
@@ -13,13 +13,13 @@ use crate::job::Job;
 use crate::simd::Level;
 use glam::{Vec3, Vec4};
 
-/// For each round of reinsertion, the share of nodes (largest first) that it tries to move. More rounds or larger
-/// shares gain little [bench rays].
+/// For each round of reinsertion, the share of all nodes that the round tries to move: the nodes of largest area. More
+/// rounds or larger shares gain little. [bench rays]
 const ROUNDS: [f32; 3] = [0.1, 0.1, 0.03];
 
 impl Accel {
-    /// Builds the structure. Degenerate triangles (without area or with non-finite corners) cannot be hit; they are
-    /// left out and counted. Call it on the library's own pool: the builder uses the current pool.
+    /// Builds the structure. Degenerate triangles (without area or with non-finite corners) cannot be hit: they are
+    /// left out and counted. Call this on the library's own thread pool, because the builder runs on the current pool.
     pub fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Self> {
         if triangles.len() >= 1 << 31 {
             return Err(Error::argument(format!(

@@ -1,15 +1,15 @@
 //! Bottom-up construction of the binary tree: hierarchical, parallel, locally-ordered clustering (Benthin, Meister,
 //! Barczak, Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
 //!
-//! The list of leaves, sorted along a space-filling curve, is split recursively where the curve leaves the largest
-//! cells of space. From the smallest ranges up, the remaining clusters of two halves are merged with their nearest
-//! neighbours until few are left. Two clusters merge if each is the neighbour with which the other forms the smallest
-//! box.
+//! The leaves arrive sorted by Morton code. Their list is split recursively at the highest bit in which the codes
+//! differ, that is, between the two halves of a cell of space. On the way back up, the clusters of two neighbouring
+//! ranges are merged until few are left. Two clusters merge if each is the other's best partner: the one with which it
+//! forms the smallest box.
 //!
-//! On regular grids, such as the walls of rooms, all merges of neighbours cost the same. Among equal boxes, a cluster
-//! prefers the one whose index differs from its own in the lowest bits. The preference is mutual, so a row of equal
-//! clusters merges in pairs. (With a preference by order, hardly any two clusters would choose each other, and the
-//! merges would be irregular.)
+//! On regular grids, such as tessellated walls, many candidate partners form boxes of equal area. Among equals, a
+//! cluster prefers the partner whose index differs from its own in the lowest bits. This preference is mutual, so a
+//! row of equal clusters merges in pairs. (If every cluster preferred the first equal partner, hardly any two would
+//! choose each other, and the merges would be irregular.)
 
 use super::lanes::{Baseline, Lanes};
 use super::leaves::Leaves;
@@ -20,21 +20,21 @@ use crate::job::Job;
 use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Number of clusters to which a range is reduced before it is joined with its neighbour.
+/// The clusters of a range are merged until at most this many are left; then the range is combined with its neighbour.
 const FEW_CLUSTERS: usize = 32;
-/// Neighbours on either side among which a cluster chooses.
+/// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
-/// Maximum number of leaves in a range processed by one thread.
+/// Maximum number of leaves in a range that one thread processes without splitting off parallel work.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Mask of the low bits of a union's area, which are overwritten with the XOR of the indices of the two clusters: it
-/// tells the index of the partner.
+/// Mask of the low bits of a candidate's area, which are replaced by the XOR of the indices of the two clusters. From
+/// these bits and its own index a cluster recovers the index of its partner.
 const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
-/// The tree over all leaves, of which there must be at least one.
+/// Builds the tree over all leaves. There must be at least one leaf.
 pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tree> {
     let mut clusters = pages::filled(leaves.order.len(), Cluster::default(), job)?;
-    // The first pair belongs to the root.
+    // Reserve pair 0 for the root.
     let len = leaves.order.len() + 1;
     let mut tree =
         Tree { pairs: pages::filled(len, Pair::default(), job)?, parents: pages::filled(len, Tree::ROOT, job)? };
@@ -49,19 +49,19 @@ pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tre
     Ok(tree)
 }
 
-/// A subtree whose sibling is not known yet.
+/// A finished subtree that still needs a sibling.
 #[derive(Clone, Copy, Default)]
 struct Cluster {
     node: Bvh2Node,
-    /// Index of an unused pair of nodes, reserved for this cluster's parent.
+    /// Index of an unused pair in [`Tree::pairs`], reserved for joining this cluster with its sibling.
     pair: u32,
 }
 
-/// Pairs of nodes still to be filled.
+/// The part of the tree's pairs that a range of leaves may fill.
 struct NewPairs<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
-    /// Index of the first of them in the whole tree.
+    /// Index in the whole tree of the first pair of this part.
     first: u32,
 }
 
@@ -73,7 +73,7 @@ impl NewPairs<'_> {
         (left, NewPairs { pairs, parents, first: self.first + middle as u32 })
     }
 
-    /// Makes two clusters siblings. They use one of their two free pairs; the other passes to their parent.
+    /// Makes two clusters siblings in one of the two pairs reserved for them. The merged cluster keeps the other pair.
     fn join(&mut self, a: &Cluster, b: &Cluster) -> Cluster {
         let (pair, free) = (a.pair.min(b.pair), a.pair.max(b.pair));
         self.pairs[(pair - self.first) as usize] = Pair([a.node, b.node]);
@@ -86,8 +86,8 @@ impl NewPairs<'_> {
     }
 }
 
-/// A range of leaves along the curve, with its clusters. It owns as many new pairs as leaves, one more than joining
-/// them all requires.
+/// A range of leaves along the space-filling curve, with its clusters. It owns as many unfilled pairs as leaves: one
+/// more than it needs to join them all.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
@@ -97,7 +97,7 @@ struct Range<'a> {
 }
 
 impl Range<'_> {
-    /// Merges the range to a few clusters, stored at the front, and returns their number.
+    /// Merges the leaves of the range to at most [`FEW_CLUSTERS`] clusters, stored at the front; returns their number.
     fn merge(&mut self, job: Job) -> Result<usize> {
         let len = self.order.len();
         if len <= FEW_CLUSTERS {
@@ -119,7 +119,8 @@ impl Range<'_> {
         Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW_CLUSTERS, self.level))
     }
 
-    /// The split position: where the highest differing bit of the codes changes.
+    /// Returns where to split the range: at the first leaf whose Morton code has the highest differing bit set. A
+    /// range of equal codes is halved.
     fn middle(&self) -> usize {
         let (first, last) = (self.order[0].0, self.order[self.order.len() - 1].0);
         if first == last {
@@ -139,7 +140,7 @@ impl Range<'_> {
     }
 }
 
-/// Merges neighbours until at most `few` are left, at the front; returns their number.
+/// Merges the clusters until at most `few` are left, stored at the front; returns their number.
 fn merge_nearest(clusters: &mut [Cluster], new: &mut NewPairs, few: usize, level: Level) -> usize {
     let mut len = clusters.len();
     if len <= few {
@@ -168,14 +169,15 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut NewPairs, few: usize, level
 
 const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 
-/// Bounds of boxes in SoA layout, surrounded by sentinel boxes too large to be chosen.
+/// Bounds of the clusters' boxes in SoA layout. Sentinel boxes on both sides are too large to be chosen as partners.
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
-/// Larger than any box: scenes are scaled to unit size, though they may lie 2^24 times as far from the origin
-/// [convention].
+/// Half the side of a sentinel box, larger than any coordinate: scenes are scaled to unit size, though they may lie
+/// 2^24 times as far from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
-/// `[i][k]`: the bits in which the indices `i` and `i - SEARCH_RADIUS + k` differ.
+/// For each cluster `i` (block of eight lanes, lane) and neighbour `i - SEARCH_RADIUS + k`: the bits in which their
+/// indices differ. Indexed as `[i / LANES][k][i % LANES]`.
 static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
     let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
@@ -198,7 +200,7 @@ impl Boxes {
         boxes
     }
 
-    /// Loads the boxes of some clusters and resets the rest of the `before` previous ones to sentinels.
+    /// Loads the boxes of `clusters`. The boxes left over from the `before` clusters held so far become sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());
@@ -213,11 +215,12 @@ impl Boxes {
         }
     }
 
-    /// For each box, the neighbour with which it forms the smallest union: the bits of the union's area (non-negative
-    /// floats sort as their bits do), the lowest of which are replaced by the bits in which the two indices differ.
+    /// Chooses for each cluster the neighbour with which it forms the smallest box. Returns that area as a float whose
+    /// low bits ([`PARTNER_BITS`]) hold the XOR of the two indices. Areas are compared through their bits, because
+    /// non-negative floats sort as their bits do.
     fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW_CLUSTERS] {
         match level {
-            // SAFETY: the processor supports its level and all levels below.
+            // SAFETY: the processor supports this level and all levels below it.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { self.choose_avx2(len) },
             Level::Baseline => self.choose_with::<Baseline>(len),
@@ -269,7 +272,7 @@ mod tests {
 
     #[test]
     fn equal_merges_make_a_balanced_tree() {
-        // Every other square of a grid, so that no two triangles share a leaf.
+        // Leave out every other square of a grid, so that no two triangles share a leaf.
         let square = |i: u32, j: u32| {
             let corner = |x, y| Vec3::new((2 * i) as f32 + x, (2 * j) as f32 + y, 0.0);
             [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]

@@ -1,10 +1,11 @@
-//! Collapses the binary tree to nodes of eight children, minimising the expected cost of rays (Ylitie, Karras and
+//! Collapses the binary tree into nodes of eight children, minimising the expected cost of a ray (Ylitie, Karras and
 //! Laine 2017, section 3.1).
 //!
-//! For each binary subtree, the minimum expected cost of representing it by one to seven wide subtrees is computed;
-//! then the optimal choices are followed from the root down.
+//! First, `costs` computes for each binary subtree the minimum expected cost of representing it by one to seven wide
+//! subtrees. Then this file follows the optimal choices from the root down and writes the wide nodes.
 //!
-//! The tree is cut near its root into parts, which are processed in parallel. The cut depends on the tree alone.
+//! For parallel work, the tree is cut near its root into parts. The cut depends on the tree alone, not on the number
+//! of threads.
 
 use super::costs::{Binary, Branch, Content, Source, distribute};
 use super::lines::{Draft, Lines};
@@ -18,23 +19,23 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Number of parts of a large tree; number of leaves per part of smaller trees; and minimum number of parts worth
-/// cutting.
+/// Number of parts of a large tree; number of leaves per part of a smaller tree; minimum number of parts for which
+/// cutting is worthwhile.
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
 const MIN_PARTS: usize = 8;
-/// Lines in a page of memory: a step to a node within it needs no new page-table lookup.
+/// Cache lines in a page of memory. A step to another node in the same page needs no new page-table lookup.
 const PAGE_LINES: usize = 64;
 
-/// Builds the nodes and packets of `accel`.
+/// Collapses the tree of `source` and stores the nodes and packets in `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
-    // Compute the costs of the parts in parallel, then the costs above them.
+    // Compute the costs of the parts in parallel, then the costs of the tree above the parts.
     let cut = source.cut();
     let part = |&root: &u32| Binary::new(source, root, &HashMap::new(), &[], job);
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
     binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries, job)?);
-    // Follow the choices above the parts first; then process the remaining subtrees in parallel.
+    // Write the nodes above the parts first; then the subtrees below them in parallel.
     let choice = Choice { source, binaries: &binaries, job };
     let mut top = choice.widen((cut.len(), 0), true)?;
     let tasks = std::mem::take(&mut top.left);
@@ -42,7 +43,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
 
-    // Determine the final position of each part, the top first, and store it in its parent.
+    // Assign final line numbers: the top first, then one block per subtree, whose root is stored in its parent node.
     let mut len = top.lines.len();
     let mut bases = Vec::with_capacity(tasks.len());
     for (task, wide) in tasks.iter().zip(&done) {
@@ -65,13 +66,14 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 }
 
 impl Source<'_> {
-    /// Roots of the parts: the tree is opened repeatedly at the largest box. Empty for a small tree.
+    /// Returns the roots of the parts, by splitting the node of the largest box again and again. Empty for a small
+    /// tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
         if parts < MIN_PARTS {
             return Vec::new();
         }
-        // Non-negative floats sort as their bits do.
+        // Compare areas by their bits: non-negative floats sort as their bits do.
         let entry = |index: u32| (half_area(self.tree[index].aabb()).to_bits(), index);
         let mut open = BinaryHeap::from([entry(Tree::ROOT)]);
         let mut leaves = Vec::new();
@@ -91,22 +93,22 @@ impl Source<'_> {
     }
 }
 
-/// A branch of one of the binary parts: (part, branch).
+/// A branch of the binary tree: the index of its part, and its index within that part.
 type Place = (usize, usize);
 
-/// Wide nodes of a subtree.
+/// The wide nodes and packets written for one subtree.
 #[derive(Default)]
 struct Wide {
     lines: Draft,
     root: Child,
-    /// Line of each node.
+    /// Line number of each node.
     nodes: Vec<usize>,
     stack_need: usize,
     left: Vec<Left>,
 }
 
 impl Wide {
-    /// Shifts the line numbers of all children.
+    /// Adds `lines` to the line numbers of all children.
     fn move_by(&mut self, lines: usize) {
         for &node in &self.nodes {
             let children = &mut self.lines.get_mut::<Node>(node).children;
@@ -115,26 +117,26 @@ impl Wide {
     }
 }
 
-/// A branch that is to become a node.
+/// A branch that will become a wide node.
 struct Open {
     place: Place,
     area: f32,
-    /// The parent node, and the lane of this child.
+    /// Line of the parent node, and the lane of this child in it; `None` for the root.
     parent: Option<(usize, usize)>,
-    /// Number of entries on the stack when a ray visits it.
+    /// Number of entries on the traversal stack when a ray visits this node.
     waiting: usize,
 }
 
-/// A child left to another task, and its position in its parent.
+/// A child that another task will write, and its position in its parent.
 struct Left {
     at: Place,
     node: usize,
     lane: usize,
-    /// Number of entries on the stack when a ray visits it.
+    /// Number of entries on the traversal stack when a ray visits this child.
     waiting: usize,
 }
 
-/// Follows the choices of minimum cost down the tree.
+/// Follows the choices of minimum cost down the tree and writes wide nodes.
 struct Choice<'a> {
     source: &'a Source<'a>,
     binaries: &'a [Binary],
@@ -146,15 +148,17 @@ impl Choice<'_> {
         &self.binaries[binary].branches[at]
     }
 
-    /// The wide subtree of a branch; with `leave`, children in other parts are left to other tasks.
+    /// Writes the wide subtree below a branch. With `leave`, children that lie in other parts are left to other tasks
+    /// and listed in [`Wide::left`].
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
         let mut wide = Wide { lines: Draft::with_capacity(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);
         }
-        // Fill each page with the nodes most likely to be visited together: a root, then repeatedly the largest node
-        // below the nodes present. Nodes that do not fit start new pages.
+        // Fill each page of memory with the nodes most likely to be visited together: start with one node, then
+        // repeatedly add the node of largest area among the children of nodes in the page. Children that do not fit
+        // start new pages.
         let mut roots = vec![Open { place: root, area: 0.0, parent: None, waiting: 0 }];
         let mut open = Vec::new();
         while let Some(next) = roots.pop() {
@@ -172,7 +176,7 @@ impl Choice<'_> {
         Ok(wide)
     }
 
-    /// Creates a node and its packets; appends the nodes below it to `open`.
+    /// Creates a node and the packets below it, and appends the child nodes still to be written to `open`.
     fn make_node(&self, this: Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
         let node = wide.lines.push(&Node::empty())?;
         wide.nodes.push(node);
@@ -185,7 +189,7 @@ impl Choice<'_> {
         let mut ranked = members.map(|at| (0.0, at));
         ranked[..len].iter_mut().for_each(|(benefit, at)| *benefit = self.benefit(*at));
         ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Determine and prefetch all triangles before the first is used.
+        // Determine and prefetch the triangles of all packets before any of them is used.
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
         wide.stack_need = wide.stack_need.max(this.waiting + len);
         let waiting = this.waiting + len - 1;
@@ -206,7 +210,8 @@ impl Choice<'_> {
         Ok(())
     }
 
-    /// Expected benefit of a child to an any-hit query, which visits the last lane first: surface area hit per cost.
+    /// Expected benefit of a child for an any-hit query: surface area found per unit of traversal cost. Children are
+    /// sorted by this benefit, because such a query visits the last lane first.
     fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]
@@ -216,17 +221,19 @@ impl Choice<'_> {
         self.binaries[binary].is_packet(at)
     }
 
-    /// The children of a branch that becomes a node.
+    /// Collects the up to eight children of a branch that becomes a wide node; returns their number.
     fn members(&self, node: Place, members: &mut [Place; 8]) -> usize {
         let mut len = 0;
-        // A stack of (branch, maximum number of wide subtrees); at most one right half per level is pending.
+        // Stack of (branch, maximum number of wide subtrees for it). At most one right half per level of the tree
+        // waits.
         let mut open = [(node, 8); 8];
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
             let ((binary, at), mut roots) = open[waiting];
             let branch = self.branch((binary, at));
-            // Use fewer subtrees if they cost the same; the node itself must be divided.
+            // Use fewer wide subtrees if they cost the same. The root of the node itself (`roots` = 8) must be
+            // divided.
             while roots < 8 && roots > 1 && branch.cost[roots - 2] <= branch.cost[roots - 1] {
                 roots -= 1;
             }
@@ -255,7 +262,8 @@ impl Choice<'_> {
         len
     }
 
-    /// The triangles of a branch, which may extend into another part; prefetches them.
+    /// Collects and prefetches the triangles of a branch, which may continue in another part; returns them and their
+    /// number.
     fn triangles(&self, at: Place) -> ([u32; WIDTH], usize) {
         let mut ids = [0; WIDTH];
         let mut len = 0;

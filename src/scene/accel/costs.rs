@@ -1,7 +1,8 @@
-//! Expected traversal cost of each subtree of the binary tree, represented by one to seven wide subtrees.
+//! Expected traversal cost of each subtree of the binary tree when it is represented by one to seven wide subtrees.
 //!
-//! A ray that hits a parent's box hits a child's box with probability proportional to the child's surface area (the
-//! surface area heuristic). The costs of a subtree follow from those of its two halves.
+//! By the surface area heuristic, a ray that hits a parent's box hits a child's box with a probability of the child's
+//! surface area over the parent's. The costs of a subtree follow from those of its two halves (Ylitie et al. 2017,
+//! section 3.1).
 
 use super::packet::WIDTH;
 use super::pages;
@@ -15,26 +16,26 @@ use obvhs::bvh2::node::Bvh2Node;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Expected cost of intersecting a packet of triangles, relative to that of a node [origin not recorded].
+/// Expected cost of intersecting a packet of triangles, relative to the cost of a node. [origin not recorded]
 const PACKET_COST: f32 = 1.0;
 
-/// Branches processed between two checks for cancellation: a part may hold nearly the whole tree.
+/// Number of branches processed between two checks for cancellation: one part may hold nearly the whole tree.
 const CHUNK: usize = 1 << 14;
 
 pub(super) struct Source<'a> {
     pub triangles: &'a [[Vec3; 3]],
     pub tree: &'a Tree,
-    /// Scale of the tree's boxes.
+    /// Factor from the scene's units to the units of the tree's boxes.
     pub scale: f32,
 }
 
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// Index of the first half; the second follows it.
+    /// An inner node: index of its first half; the second half follows it.
     Halves(u32),
-    /// One triangle or two, starting at this index.
+    /// A leaf of one or two triangles: index of the first.
     Leaf(u32),
-    /// Index of another part, whose root this is.
+    /// The root of another part of the tree, which is cut into parts for parallel work: index of that part.
     Part(u32),
 }
 
@@ -42,13 +43,14 @@ pub(super) enum Content {
 pub(super) struct Branch {
     pub shape: Aabb,
     pub content: Content,
-    /// Number of triangles below.
+    /// Number of triangles below this branch.
     count: u32,
-    /// Half the surface area of its box.
+    /// Half the surface area of this branch's box.
     pub area: f32,
-    /// Sum of the half areas of all leaves below: roughly the area of their triangles, as most leaves are flat boxes.
+    /// Sum of the half areas of the boxes of all leaves below. This approximates the area of their triangles, as most
+    /// leaf boxes are flat.
     pub surface: f32,
-    /// `cost[i]`: the minimum expected cost with at most `i + 1` wide subtrees.
+    /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it.
     pub cost: [f32; 7],
 }
 
@@ -59,18 +61,19 @@ impl Branch {
         Self { shape, content, count: node.prim_count, area, surface: area, cost: [area * PACKET_COST; 7] }
     }
 
-    /// Estimated number of cache lines: packets are rarely full, and nodes add a tenth.
+    /// Estimated number of cache lines for this branch's packets and nodes: packets are rarely full, and nodes add a
+    /// tenth.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }
 
-    /// The triangles of a leaf.
+    /// Range of the triangles of a leaf, the first of which is `first`.
     pub fn triangles(&self, first: u32) -> Range<u32> {
         first..first + self.count
     }
 }
 
-/// A part of the binary tree in breadth-first order, with its costs.
+/// The branches of one part of the binary tree in breadth-first order, with their costs.
 pub(super) struct Binary {
     pub branches: Vec<Branch>,
 }
@@ -78,8 +81,8 @@ pub(super) struct Binary {
 impl Binary {
     pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary], job: Job) -> Result<Self> {
         let mut branches = Vec::new();
-        // Nodes are scattered over memory. Breadth-first order reveals early which nodes are needed, so many can be
-        // prefetched at once.
+        // The nodes are scattered over memory. In breadth-first order their indices are known long before use, so many
+        // nodes can be prefetched at once.
         let mut indices = vec![root];
         let mut at = 0;
         while at < indices.len() {
@@ -114,11 +117,11 @@ impl Binary {
         Ok(this)
     }
 
-    /// Computes the costs of a branch from those of its halves.
+    /// Computes the costs of branch `at` from those of its two halves, the first of which is branch `first`.
     fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);
-        // A leaf costs the same for any number of subtrees.
+        // `halves[i]`: cost of both halves with `i + 2` wide subtrees in total. A leaf costs the same for any number.
         let halves = match (l.content, r.content) {
             (Content::Leaf(_), _) => r.cost.map(|cost| cost + l.cost[0]),
             (_, Content::Leaf(_)) => l.cost.map(|cost| cost + r.cost[0]),
@@ -135,7 +138,7 @@ impl Binary {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether a branch that is to be a single wide subtree costs least as a packet.
+    /// If a single wide subtree represents the branch, whether a packet of triangles is at most as costly as a node.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32
@@ -143,8 +146,8 @@ impl Binary {
     }
 }
 
-/// `[i]`: the minimum cost of two halves with `i + 2` wide subtrees in total. Branch-free, since the branches would be
-/// unpredictable.
+/// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. Written without branches,
+/// which would be unpredictable.
 fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {
@@ -155,12 +158,13 @@ fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     best
 }
 
-/// A single instruction, unlike `f32::min`; costs are never NaN.
+/// Returns the smaller cost in a single instruction, unlike `f32::min`. Costs are never NaN.
 fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The minimum cost of two halves with `roots` wide subtrees in total, and the number of these for the left half.
+/// Returns the minimum cost of two halves with `roots` wide subtrees in total, and how many of these the left half
+/// gets.
 pub(super) fn distribute(left: &[f32; 7], right: &[f32; 7], roots: usize) -> (f32, usize) {
     let mut best = (left[0] + right[(roots - 2).min(6)], 1);
     for k in 2..roots {

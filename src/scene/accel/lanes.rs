@@ -1,45 +1,46 @@
-//! Eight `f32` lanes: one AVX2 register, or two baseline registers of four.
+//! SIMD arithmetic on eight `f32` lanes: one AVX2 register, or two baseline registers of four lanes.
 //!
-//! Every operation except [`Lanes::mul_add`] rounds as IEEE 754 prescribes, so results without it are identical on
-//! every processor.
+//! Every operation except [`Lanes::mul_add`] rounds as IEEE 754 prescribes. Computations without `mul_add` therefore
+//! give identical results on every processor.
 
 use glam::{BVec4A, Vec4};
 
-/// Eight values in memory: 32 bytes aligned to 32.
+/// Eight values in memory: 32 bytes, aligned to 32.
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
 pub(super) struct Row(pub [f32; 8]);
 
 pub(super) trait Lanes: Copy {
-    /// The result type of comparisons.
+    /// The result of a comparison, with one truth value per lane.
     type Mask: Copy;
 
     fn splat(value: f32) -> Self;
     fn load(row: &Row) -> Self;
-    /// Loads from an unaligned position.
+    /// Loads eight values that need not be aligned.
     fn load_from(values: &[f32; 8]) -> Self;
     fn store(self) -> Row;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// If one operand is NaN, the result is `other`.
+    /// The smaller value per lane. If one operand is NaN, the result is `other`; `max` treats NaN likewise.
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
-    /// Replaces the masked bits by those of `others`.
+    /// Replaces the bits of each lane that are set in `mask` by the bits of `others`.
     fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self;
-    /// `self * factor + term`, rounded once or twice: only for bounds that have a margin.
+    /// `self * factor + term`, rounded once or twice depending on the processor. Use it only for bounds that have a
+    /// margin.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     fn le(self, other: Self) -> Self::Mask;
     fn lt(self, other: Self) -> Self::Mask;
     fn eq(self, other: Self) -> Self::Mask;
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Bit `i` is set if lane `i` is true.
+    /// Returns an integer whose bit `i` is set if lane `i` is true.
     fn bits(mask: Self::Mask) -> u32;
-    /// Writes `payload[i]` for every lane `i` in `mask`, packed in lane order; the remaining of eight entries are
-    /// overwritten with arbitrary values.
+    /// Writes `payload[i]` for every lane `i` in `mask`, in lane order without gaps, as `u64` each. The entries after
+    /// the last one written, up to eight in all, receive arbitrary values.
     ///
     /// # Safety
     /// Eight entries must be writable at `to`.
@@ -170,7 +171,7 @@ impl Lanes for Baseline {
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
-            // SAFETY: the mask has at most eight bits.
+            // SAFETY: the mask has at most eight bits, so at most eight entries are written.
             unsafe {
                 to.write(u64::from(payload[lane]));
                 to = to.add(1);
@@ -187,12 +188,13 @@ mod avx2 {
     use super::{Lanes, Row};
     use std::arch::x86_64::*;
 
-    /// One register of eight lanes. Use it only on processors with AVX2 and FMA: `Accel` checks this once when it is
-    /// built, and everything below is inlined into functions compiled for these instructions.
+    /// One register of eight lanes, for processors with AVX2 and FMA only. `Accel` checks the processor once, when it
+    /// is built. Everything below is inlined into functions compiled for these instructions.
     #[derive(Clone, Copy)]
     pub struct Avx2(__m256);
 
-    /// The lanes of each mask, one per byte from the lowest.
+    /// For each mask of eight lanes, the indices of its set lanes in ascending order: one index per byte, lowest byte
+    /// first.
     static LANES_OF: [u64; 256] = {
         let mut table = [0; 256];
         let mut mask = 0;
@@ -213,7 +215,7 @@ mod avx2 {
     impl Lanes for Avx2 {
         type Mask = __m256;
 
-        // SAFETY of all blocks below: the processor supports AVX2, as required above; rows are aligned to 32 bytes.
+        // SAFETY of all blocks below: the processor supports AVX2, as `Avx2` requires; rows are aligned to 32 bytes.
 
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -328,7 +330,7 @@ mod avx2 {
     }
 }
 
-/// Removes and returns the lowest lane of a non-empty mask.
+/// Removes the lowest lane from a non-empty mask and returns it.
 #[inline(always)]
 pub(super) fn take_lowest(mask: &mut u32) -> usize {
     let lane = mask.trailing_zeros() as usize & 7;
@@ -336,7 +338,7 @@ pub(super) fn take_lowest(mask: &mut u32) -> usize {
     lane
 }
 
-/// Removes and returns the highest lane of a non-empty mask.
+/// Removes the highest lane from a non-empty mask and returns it.
 #[inline(always)]
 pub(super) fn take_highest(mask: &mut u32) -> usize {
     let lane = mask.ilog2() as usize & 7;

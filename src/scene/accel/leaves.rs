@@ -1,8 +1,8 @@
-//! The leaves of the binary tree: non-degenerate triangles, paired where two form a quadrilateral, sorted so that
-//! neighbours in space are neighbours in the list.
+//! The leaves of the binary tree. Each holds one triangle, or two triangles that form a quadrilateral. The leaves are
+//! sorted by Morton code, so that neighbours in space are neighbours in the list.
 //!
-//! Meshes store the two halves of a quadrilateral consecutively. Their boxes nearly coincide, so separating them saves
-//! no ray; a shared leaf halves the work of building.
+//! Meshes store the two halves of a quadrilateral consecutively. Their boxes nearly coincide, so almost every ray that
+//! hits one box hits both, and separate leaves would save nothing. Shared leaves halve the work of building the tree.
 
 use super::pages;
 use super::tree::half_area;
@@ -17,26 +17,28 @@ use rayon::prelude::*;
 
 /// Triangles per unit of parallel work.
 const CHUNK: usize = 4096;
-/// Bits of each coordinate in a Morton code.
+/// Bits per coordinate in a Morton code.
 const BITS: u32 = 21;
-/// Lower bound of the extent of a scene scaled to unit size; a flat scene has one layer of cells [rounding].
+/// Lower bound of the extent along an axis, relative to the scene's size. It avoids a division by zero; a scene that
+/// is flat along an axis has one layer of grid cells there. [rounding]
 const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
-    /// The leaves. Each holds one or two triangles, starting at `first_index`. Boxes are scaled by `scale`.
+    /// The leaves. Each holds one or two triangles, the first of which has the index `first_index`. The boxes are
+    /// multiplied by `scale`.
     pub list: Vec<Bvh2Node>,
-    /// Morton codes of the centres with their indices in the list, sorted.
+    /// Morton codes of the box centres, each with its leaf's index in `list`, sorted.
     pub order: Vec<(u64, u32)>,
-    /// Scale of the coordinates that prevents overflow of areas: a power of two, which is exact.
+    /// Factor of the boxes that prevents overflow of their areas. It is a power of two, so scaling is exact.
     pub scale: f32,
     /// Bounds of all leaves, in the scene's own units.
     pub low: Vec3,
     pub high: Vec3,
-    /// Number of triangles without area, which are left out.
+    /// Number of degenerate triangles, which are left out.
     pub dropped: usize,
 }
 
-/// Sorts the triangles into leaves.
+/// Pairs triangles into leaves, scales their boxes, and sorts the leaves by Morton code.
 pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Leaves> {
     let chunks: Vec<Chunk> = triangles
         .par_chunks(CHUNK)
@@ -89,7 +91,7 @@ impl Chunk {
     fn gather(triangles: &[[Vec3; 3]], first: u32) -> Result<Self> {
         let leaves = try_with_capacity(triangles.len())?;
         let mut chunk = Self { leaves, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, dropped: 0 };
-        // Half the surface area of the previous triangle's box, if it is not paired yet.
+        // Half the surface area of the previous triangle's box, unless that triangle already belongs to a pair.
         let mut alone: Option<f32> = None;
         for (i, corners) in triangles.iter().enumerate() {
             if !has_area(corners) {
@@ -102,8 +104,8 @@ impl Chunk {
             chunk.low = chunk.low.min(this.min);
             chunk.high = chunk.high.max(this.max);
             let area = half_area(&this);
-            // A pair is tested whenever its common box is hit, single triangles whenever their own boxes are: pair
-            // them if that is cheaper.
+            // Pair this triangle with the previous one if that lowers the expected cost. A ray tests a pair whenever
+            // it hits the common box, and single triangles whenever it hits their own boxes.
             if let Some(before) = alone.take()
                 && let Some(leaf) = chunk.leaves.last_mut()
                 && let both = leaf.aabb().union(&this)
@@ -125,10 +127,10 @@ fn has_area(corners: &[Vec3; 3]) -> bool {
     doubled.is_finite() && doubled > 0.0
 }
 
-/// The grid of cells that Morton codes index: the same number of cells along each axis.
+/// The grid whose cells the Morton codes number. It has the same number of cells along each axis.
 struct Grid {
     scale: f32,
-    /// In scaled units, as are the cells.
+    /// Lower corner of the grid in scaled units.
     low: Vec3A,
     per_unit: Vec3A,
 }
@@ -138,7 +140,7 @@ impl Grid {
         let extent = high.as_dvec3() - low.as_dvec3();
         let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
         let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
-        // A scene that is flat along an axis has one layer there.
+        // `MIN_EXTENT` gives a scene that is flat along an axis one layer of cells there.
         let per_unit = (max_cell / (extent * scale).max(DVec3::splat(MIN_EXTENT))).as_vec3a();
         Self { scale: scale as f32, low: Vec3A::from(low) * scale as f32, per_unit }
     }
@@ -149,7 +151,7 @@ impl Grid {
     }
 }
 
-/// Spreads the lowest 21 bits of a number, inserting two zeros after each.
+/// Spreads the lowest 21 bits of a number: two zero bits follow each of them.
 fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number & ((1 << BITS) - 1));
     bits = (bits | bits << 32) & 0x1f_0000_0000_ffff;

@@ -1,7 +1,7 @@
-//! Nodes and packets in one list of cache lines.
+//! Storage for the nodes and packets of the acceleration structure in one list of cache lines.
 //!
-//! Below the cached levels of the tree, each step of a ray waits for memory, and longer if it leads to another page.
-//! Each node is therefore followed by its packets, and nodes visited together share a page.
+//! Deep in the tree, nodes are no longer in the processor's caches: each step of a ray waits for memory, and longer if
+//! it leads to another page. Each node is therefore followed by its packets, and nodes visited together share a page.
 
 use super::node::Node;
 use super::packet::Packet;
@@ -20,17 +20,17 @@ pub(super) struct Lines<List = Pages<Line>> {
     list: List,
 }
 
-/// A growing list of lines.
+/// A list of lines that still grows, during construction.
 pub(super) type Draft = Lines<Vec<Line>>;
 
-/// Types that may be stored in lines: whole lines of plain numbers, for which any bits are valid.
+/// Types that may be stored in cache lines: they fill whole lines with plain numbers, for which any bits are valid.
 ///
 /// # Safety
-/// All fields must be `u32` or `f32`, without padding, and the alignment must be that of a line.
+/// All fields must be `u32` or `f32`, without padding, and the type must have the alignment of a line.
 pub(super) unsafe trait Plain {}
-// SAFETY: `Node` and `Packet` consist of an even number of rows of eight such numbers.
+// SAFETY: `Node` consists of eight rows of eight `u32` or `f32`, without padding.
 unsafe impl Plain for Node {}
-// SAFETY: as above.
+// SAFETY: `Packet` consists of ten rows of eight `f32` or `u32`, without padding.
 unsafe impl Plain for Packet {}
 
 const fn lines_of<T>() -> usize {
@@ -43,11 +43,11 @@ impl Draft {
         Ok(Self { list: try_with_capacity(len)? })
     }
 
-    /// Appends a node or a packet and returns its line.
+    /// Appends a node or a packet and returns the number of its first line.
     pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
         let line = self.list.len();
         make_room(&mut self.list, lines_of::<T>())?;
-        // SAFETY: `T` is `Plain`, and has the size and alignment of these lines.
+        // SAFETY: `T` is `Plain`, and it fills `lines_of::<T>()` lines with the alignment of a line.
         self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
         Ok(line)
     }
@@ -69,14 +69,14 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         self.list.len()
     }
 
-    /// Size in bytes.
+    /// Size of all lines in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.list)
     }
 
     pub fn get_mut<T: Plain>(&mut self, line: usize) -> &mut T {
         let lines = &mut self.list[line..line + lines_of::<T>()];
-        // SAFETY: `T` is `Plain`, and has the size and alignment of these lines.
+        // SAFETY: `T` is `Plain`, and it fills `lines_of::<T>()` lines with the alignment of a line.
         unsafe { &mut *lines.as_mut_ptr().cast() }
     }
 
@@ -85,11 +85,11 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
     #[inline(always)]
     pub unsafe fn get<T: Plain>(&self, line: usize) -> &T {
         debug_assert!(line + lines_of::<T>() <= self.list.len());
-        // SAFETY: the lines are in the list, and `T` is `Plain`.
+        // SAFETY: the caller stored a `T` at this line, so all its lines are in the list.
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Prefetches the item at a line: a packet, or a node and one more line.
+    /// Prefetches the lines of a packet, the longer item. For a node this includes one line more than needed.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
         pages::prefetch(self.at(line), lines_of::<Packet>());

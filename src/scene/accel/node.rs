@@ -1,11 +1,11 @@
-//! Nodes of eight children, and the conservative test of a ray against their boxes.
+//! Nodes of eight children, and the conservative test of a ray against their eight boxes.
 
 use super::aligned::{Aligned, finite};
 use super::lanes::{Lanes, Row};
 use glam::{Vec3, Vec4};
 
-/// A child reference: another node, a packet of triangles, or empty. Nodes and packets are identified by their first
-/// line.
+/// A child reference: another node, a packet of triangles, or empty. Nodes and packets are identified by the number of
+/// their first cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Child(u32);
 
@@ -17,7 +17,7 @@ impl Default for Child {
 
 impl Child {
     pub const EMPTY: Self = Self(u32::MAX);
-    /// Maximum number of lines that references can address.
+    /// Maximum number of cache lines that a child reference can address.
     pub const LINES: usize = (1 << 31) - 1;
     const PACKET: u32 = 1 << 31;
 
@@ -51,27 +51,27 @@ impl Child {
         (self.0 & !Self::PACKET) as usize
     }
 
-    /// The child with its line number shifted.
+    /// Returns the child with `lines` added to its line number.
     pub fn moved(self, lines: usize) -> Self {
         if self.is_empty() { self } else { Self(self.0 + lines as u32) }
     }
 }
 
-/// Eight boxes in SoA layout, in four cache lines. The ray test reads all bounds, so these lines are fetched together;
-/// the children at their head are then available without another wait.
+/// Eight boxes in SoA layout, in four cache lines. A ray test reads all bounds, so the four lines are fetched
+/// together, and the children in the first line are then available without another wait for memory.
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    /// Bits of a [`Child`] each, so that eight can be moved at once.
+    /// Bits of eight [`Child`] references, as integers so that all can be moved at once.
     pub children: [u32; 8],
-    /// `bounds[2 * axis]` are the lower bounds, `bounds[2 * axis + 1]` the upper bounds.
+    /// `bounds[2 * axis]` holds the lower bounds, `bounds[2 * axis + 1]` the upper bounds.
     pub bounds: [Row; 6],
-    /// Padding of the last line.
+    /// Padding that fills the last cache line.
     unused: [u32; 8],
 }
 
 impl Node {
-    /// A node without children: every box is inverted, so no ray hits it.
+    /// A node without children. All its boxes are inverted, so no ray hits them.
     pub fn empty() -> Self {
         let (low, high) = (Row([f32::INFINITY; 8]), Row([f32::NEG_INFINITY; 8]));
         Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY.0; 8], unused: [0; 8] }
@@ -90,12 +90,13 @@ impl Node {
         Child(self.children[lane & 7])
     }
 
-    /// Mask of the boxes a ray may hit before `t_max`, and its entry distances. The last bits differ between
-    /// processors, which the margin of [`NodeRay`] covers.
+    /// Returns a mask of the boxes that the ray may hit before `t_max`, and the distances at which it enters them. The
+    /// last bits of a distance differ between processors; the margin of [`NodeRay`] exceeds this difference.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
         let plane = |start: usize, axis: usize, shift: L| {
-            // SAFETY: `near_start` is the offset of one of six rows, and so is that of its neighbour.
+            // SAFETY: `near_start` is the byte offset of one of the six rows; flipping one bit of this offset gives
+            // the offset of the neighbouring row.
             L::load(unsafe { &*self.bounds.as_ptr().byte_add(start) }).mul_add(ray.scale[axis], shift)
         };
         let enter = |axis: usize| plane(ray.near_start[axis], axis, ray.near_shift[axis]);
@@ -106,16 +107,17 @@ impl Node {
     }
 }
 
-/// Sixteen rounding errors of 2^-24 each [rounding].
+/// Relative margin of the box test: sixteen rounding errors of 2^-24 each. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
-/// A ray prepared for box tests: the distance to a plane is `plane * scale + shift`.
+/// A ray prepared for box tests. Its distance to an axis-aligned plane is `plane * scale + shift`.
 ///
 /// The triangle test works on rounded coordinates and may report a hit a few units in the last place outside the
-/// triangle's box. The near planes are therefore moved towards the ray and the far planes away from it, as section 3.3
-/// of Woop et al. requires. The margin is relative to the largest coordinate, so it follows the scale of the scene.
+/// triangle's box. As section 3.3 of Woop et al. requires, the shifts therefore move each box's near planes towards
+/// the ray and its far planes away from the ray. The margin is relative to the largest coordinate, so it follows the
+/// scale of the scene.
 pub(super) struct NodeRay<L> {
-    /// Per axis, the byte offset in [`Node::bounds`] of the row through which the ray enters.
+    /// Per axis, the byte offset in [`Node::bounds`] of the row with the planes through which the ray enters.
     near_start: [usize; 3],
     scale: [L; 3],
     near_shift: [L; 3],
@@ -129,7 +131,8 @@ impl<L: Lanes> NodeRay<L> {
         let dominant = Vec4::select(ray.is_dominant, magnitude, Vec4::ZERO).max_element();
         let margin = (magnitude + Vec4::splat(dominant)) * MARGIN;
         let scale = ray.inverse;
-        // Keep the shifts finite for any ray: an infinity could give NaN for an empty box, and NaN counts as a hit.
+        // Keep the shifts finite for any ray. With an infinite shift, an empty box could give NaN, which would count
+        // as a hit.
         let (middle, margin) = (-ray.origin * scale, margin * scale.abs());
         let (near, far) = (finite(middle - margin), finite(middle + margin));
         let is_negative = ray.direction.is_negative_bitmask() as usize;

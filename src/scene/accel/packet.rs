@@ -5,8 +5,8 @@ use super::lanes::{Lanes, Row};
 use super::ray::Hit;
 use glam::Vec3;
 
-/// Hits nearer than this share of a triangle's depth along the ray are rounding errors: sixteen errors of 2^-24
-/// [rounding].
+/// Smallest distance of a hit, relative to the triangle's largest depth along the ray. Nearer hits are rounding
+/// errors: sixteen errors of 2^-24 each. [rounding]
 const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Maximum number of triangles in a packet.
@@ -15,13 +15,13 @@ pub(super) const WIDTH: usize = 8;
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Packet {
-    /// `corners[corner][axis]` holds one coordinate of eight triangles.
+    /// `corners[corner][axis]` holds one coordinate of one corner for all eight triangles.
     corners: [[Row; 3]; 3],
     ids: [u32; WIDTH],
 }
 
 impl Packet {
-    /// Packs one to eight triangles. Unused lanes are filled with NaN, which no ray hits.
+    /// Packs one to eight triangles. Unused lanes are filled with NaN, so no ray hits them.
     pub fn new(triangles: &[[Vec3; 3]], ids: &[u32]) -> Self {
         let mut packet = Self { corners: [[Row([f32::NAN; 8]); 3]; 3], ids: [u32::MAX; WIDTH] };
         for (lane, &id) in ids.iter().enumerate() {
@@ -35,7 +35,8 @@ impl Packet {
         packet
     }
 
-    /// Mask of the triangles hit at distances in `(0, t_max]`, excluding distances within rounding error of 0.
+    /// Returns a mask of the triangles hit at distances in `(0, t_max]`, without hits within the rounding error of 0,
+    /// and the hits of all lanes.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         let [x, y, z] = self.sheared::<L>(ray);
@@ -45,30 +46,32 @@ impl Packet {
         if L::bits(hit) == 0 {
             return (0, PacketHits { t: zero, u: zero, v: zero });
         }
-        // Recompute zeros in `f64`: the adjacent triangle obtains the same value with the opposite sign, in either
-        // precision. (A zero between edges of opposite signs is outside in any case.)
+        // Recompute edge functions of zero in `f64`. In either precision, the triangle on the other side of the edge
+        // obtains the same value with the opposite sign, so no ray slips between the two triangles. (Lanes whose other
+        // two edge functions have opposite signs stay outside.)
         if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
             edge = self.settled_edges(ray);
             hit = inside(&edge);
         }
-        // Interpolate the distance from those of the corners. A determinant of zero yields NaN or infinity, which fail
-        // below.
+        // Interpolate the distance from the depths of the corners. If the edge functions sum to zero, the distance is
+        // NaN or infinite and fails the comparisons below.
         let corner = z.map(|z| z.mul(L::splat(ray.shear[2])));
         let reciprocal = L::splat(1.0).div(edge[0].add(edge[1]).add(edge[2]));
         let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
         let t = b0.mul(corner[0]).add(u.mul(corner[1])).add(v.mul(corner[2]));
-        // A hit nearer than its own rounding error lies on the surface where the ray starts.
+        // Reject a hit nearer than its own rounding error: it lies on the surface where the ray starts.
         let farthest = corner[0].abs().max(corner[1].abs()).max(corner[2].abs());
         let far_enough = farthest.mul(L::splat(MIN_DISTANCE)).lt(t);
         let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
         (L::bits(hit), PacketHits { t, u, v })
     }
 
-    /// Coordinates of the corners after shearing, so that the ray starts at the origin and runs along the third axis.
+    /// Returns the x, y and z coordinates of the corners, sheared so that the ray starts at the origin and runs along
+    /// z.
     #[inline(always)]
     fn sheared<L: Lanes>(&self, ray: &TriangleRay) -> [[L; 3]; 3] {
         let relative = |corner: usize, k: usize| {
-            // SAFETY: `axes` is a permutation of 0, 1, 2.
+            // SAFETY: `axes` is a permutation of 0, 1, 2, and each corner has three rows.
             let row = unsafe { self.corners[corner].get_unchecked(ray.axes[k]) };
             L::load(row).sub(L::splat(ray.origin[k]))
         };
@@ -77,9 +80,9 @@ impl Packet {
         [[sheared(0, 0), sheared(1, 0), sheared(2, 0)], [sheared(0, 1), sheared(1, 1), sheared(2, 1)], z]
     }
 
-    /// The edge functions, with zeros recomputed without cancellation: products of two `f32` are exact in `f64`, hence
-    /// so is the sign. Recomputes everything from the corners, so that the common path need not keep intermediate
-    /// values.
+    /// Computes the edge functions and recomputes the zeros among them without cancellation: products of two `f32` are
+    /// exact in `f64`, so the sign of their difference is exact. Starts from the corners again, so that the common
+    /// path need not keep intermediate values.
     #[cold]
     #[inline(never)]
     fn settled_edges<L: Lanes>(&self, ray: &TriangleRay) -> [L; 3] {
@@ -104,7 +107,8 @@ impl Packet {
     }
 }
 
-/// Scaled barycentric coordinates: the side of each edge on which the ray passes.
+/// Computes the three edge functions of each triangle (scaled barycentric coordinates). The sign of each tells on
+/// which side of that edge the ray passes.
 #[inline(always)]
 fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
     let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));
@@ -125,7 +129,7 @@ pub(super) struct PacketHits<L> {
     v: L,
 }
 
-/// The hits in memory, indexable by lane.
+/// The hits of a packet in memory, where they can be indexed by lane.
 pub(super) struct HitRows {
     t: Row,
     u: Row,
@@ -147,9 +151,9 @@ impl HitRows {
     }
 }
 
-/// A ray prepared for triangle tests: axes are permuted so that the dominant one is the third.
+/// A ray prepared for triangle tests. Its axes are permuted so that the dominant axis is the third.
 pub(super) struct TriangleRay {
-    /// Permuted, like `shear`.
+    /// The origin in the permuted axes; `shear` uses them too.
     origin: [f32; 3],
     axes: [usize; 3],
     shear: [f32; 3],
@@ -160,7 +164,7 @@ impl TriangleRay {
     pub fn new(ray: &Aligned) -> Self {
         let z = ray.dominant_axis();
         let (origin, d, inverse) = (ray.origin.to_array(), ray.direction.to_array(), ray.inverse.to_array()[z]);
-        // Look up the two following axes in tables of two bits each: 1, 2, 0 and 2, 0, 1.
+        // Look up the two axes that follow z cyclically, in tables of two bits per entry: 1, 2, 0 and 2, 0, 1.
         let (x, y) = (0b00_10_01 >> (2 * z) & 3, 0b01_00_10 >> (2 * z) & 3);
         Self {
             origin: [origin[x], origin[y], origin[z]],

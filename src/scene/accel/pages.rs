@@ -1,8 +1,8 @@
-//! Fallible allocation of large lists, on huge pages.
+//! Storage for the large lists of the acceleration structure: allocation that can fail, on huge pages.
 //!
-//! Rays access the finished structure at random. If it is much larger than the address range of the processor's TLB,
-//! looking up pages costs as much as reading them. On Linux it is therefore allocated on huge pages, which the system
-//! grants on request.
+//! Rays access the finished structure at random. If the structure is much larger than the address range of the
+//! processor's TLB, each page-table lookup costs as much as the memory access itself. On Linux the structure is
+//! therefore allocated on huge pages, which the system grants on request.
 
 use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
@@ -12,10 +12,11 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// Size in bytes from which a huge page is no slower to obtain than the small pages it replaces.
+/// A huge page is worthwhile for at least this many bytes: it is then obtained as fast as the small pages that it
+/// replaces.
 const MIN_HUGE: usize = HUGE / 4;
 
-/// A finished list that starts on a huge page if it is long enough.
+/// A finished list. It starts at the boundary of a huge page if it is long enough for one.
 pub(super) struct Pages<T> {
     storage: Vec<MaybeUninit<T>>,
     first: usize,
@@ -29,7 +30,7 @@ impl<T> Default for Pages<T> {
 }
 
 impl<T: Send + Sync + Copy> Pages<T> {
-    /// Concatenates all parts, copying in parallel.
+    /// Concatenates `parts`, copying them in parallel.
     pub fn join(parts: &[&[T]], job: Job) -> Result<Self> {
         let len = parts.iter().map(|part| part.len()).sum();
         let (mut storage, first) = storage_on_huge_pages(len)?;
@@ -61,22 +62,22 @@ impl<T> Deref for Pages<T> {
 
 impl<T> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut [T] {
-        // SAFETY: as above.
+        // SAFETY: `join` initialised `len` items from `first` on.
         unsafe { std::slice::from_raw_parts_mut(self.storage.as_mut_ptr().add(self.first).cast(), self.len) }
     }
 }
 
-/// Uninitialised storage for a list, and the index at which the list starts. The surrounding memory is never touched,
-/// so it occupies no physical memory.
+/// Allocates uninitialised storage for a list, and returns it with the index at which the list starts. The items
+/// before and after the list are never touched, so they occupy no physical memory.
 fn storage_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
     const { assert!(HUGE.is_multiple_of(size_of::<T>())) };
     let bytes = len * size_of::<T>();
-    // Round up to a huge page if most of its small pages would be needed.
+    // Use a huge page for the end of the list if it covers at least `MIN_HUGE` bytes.
     let huge = if bytes % HUGE >= MIN_HUGE { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
     let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
     let mut storage = Vec::<MaybeUninit<T>>::new();
     make_room(&mut storage, len.saturating_add(around))?;
-    // SAFETY: `MaybeUninit` items need not be initialised.
+    // SAFETY: the capacity was reserved above, and `MaybeUninit` items need not be initialised.
     unsafe { storage.set_len(len + around) };
     if huge == 0 {
         return Ok((storage, 0));
@@ -86,7 +87,7 @@ fn storage_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> 
     Ok((storage, first))
 }
 
-/// Copies of an item, written in parallel: the first write to a page is slow.
+/// A list of copies of `item`, written in parallel because the first write to each page is slow.
 pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T, job: Job) -> Result<Vec<T>> {
     let mut list = try_with_capacity(len)?;
     let storage = &mut list.spare_capacity_mut()[..len];
@@ -95,12 +96,12 @@ pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T, job: Job) -> Re
         storage.fill(MaybeUninit::new(item));
         Ok(())
     })?;
-    // SAFETY: all items were just written.
+    // SAFETY: `fill` has initialised all `len` items.
     unsafe { list.set_len(len) };
     Ok(list)
 }
 
-/// Prefetches a number of cache lines from an item on.
+/// Prefetches `lines` cache lines, starting at `first`.
 #[inline(always)]
 pub(super) fn prefetch<T>(first: *const T, lines: usize) {
     #[cfg(target_arch = "x86_64")]

@@ -1,13 +1,13 @@
-//! Rays and hits.
+//! Rays and hits of the acceleration structure.
 
 use glam::Vec3;
 
-/// A half-line; distances are in units of `direction`, which need not have unit length.
+/// A ray. Distances along it are in units of the length of `direction`, which need not be 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     pub origin: Vec3,
     pub direction: Vec3,
-    /// Hits lie at distances in `(0, t_max)`.
+    /// Upper bound of the distance: hits lie in `(0, t_max)`.
     pub t_max: f32,
 }
 
@@ -24,9 +24,9 @@ impl Ray {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     pub t: f32,
-    /// Index into the list of triangles the structure was built from.
+    /// Index into the list of triangles from which the structure was built.
     pub triangle: u32,
-    /// Barycentric coordinates of corners 1 and 2.
+    /// Barycentric coordinates of the hit: the weights of corners 1 and 2.
     pub u: f32,
     pub v: f32,
 }

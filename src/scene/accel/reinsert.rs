@@ -1,9 +1,10 @@
 //! Optimisation of the binary tree by reinsertion (Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume
-//! Hierarchy Optimization"): a subtree is removed and inserted where the total area of all boxes is smallest.
+//! Hierarchy Optimization"): subtrees are moved to where the total surface area of all boxes is smallest.
 //!
-//! The best positions are searched for in parallel in the unchanged tree; then the moves are applied sequentially,
-//! largest gain first, skipping moves that touch nodes changed by another. The order of the search differs from the
-//! paper: of two children the more promising is entered first, and neither if it promises no gain.
+//! Each round first searches in parallel for the best new position of many subtrees, in the unchanged tree. Then it
+//! makes these moves one after another, largest gain first, and skips moves that touch nodes which an earlier move of
+//! the round has changed. The search order differs from the paper: of two children the more promising is entered
+//! first, and neither child is entered if it promises no gain.
 
 use super::pages;
 use super::tree::{Pair, Tree, half_area};
@@ -15,14 +16,15 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Pairs of nodes per unit of parallel work, and moves applied between two checks for cancellation.
+/// Number of pairs of nodes per unit of parallel search, and of moves made between two checks for cancellation.
 const CHUNK: usize = 256;
-/// Pairs counted per unit of parallel work.
+/// Number of pairs of nodes per unit of parallel work on the histogram of areas.
 const COUNT_CHUNK: usize = 1 << 15;
-/// Leading bits of an area used as its histogram bin: the exponent and a few bits of the mantissa.
+/// Number of leading bits of an area that select its histogram bin: the exponent and four bits of the mantissa.
 const SIZE_BITS: u32 = 8 + 4;
 
-/// A move: a subtree, its better sibling, and the decrease of the total area.
+/// A move of the subtree `from` to a new position as the sibling of `to`. `gain` is the decrease of the total half
+/// area of all boxes.
 #[derive(Clone, Copy)]
 struct Move {
     from: u32,
@@ -39,7 +41,8 @@ fn pair(node: u32) -> usize {
     node as usize / 2
 }
 
-/// The histogram bin of an area. Non-negative floats sort as their bits do.
+/// Returns the histogram bin of an area. Bins are ordered like areas, because non-negative floats sort as their bits
+/// do.
 fn size(area: f32) -> usize {
     (area.to_bits() >> (31 - SIZE_BITS)) as usize
 }
@@ -54,7 +57,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// For each share of all nodes, the area that approximately (and at most) this share reaches.
+    /// Returns an area threshold for each share: at most this share of all nodes, and hardly fewer, have at least this
+    /// area.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
@@ -75,7 +79,7 @@ impl<'a> Reinsertion<'a> {
         })
     }
 
-    /// Tries to move all nodes of at least the given area.
+    /// Finds the best move of each node whose half area is at least `min_area`, and makes the moves.
     pub fn round(&mut self, min_area: f32, job: Job) -> Result<()> {
         let search = |(i, pairs): (usize, &[Pair])| {
             job.check()?;
@@ -110,15 +114,16 @@ impl<'a> Reinsertion<'a> {
         self.tree[node].aabb()
     }
 
-    /// The best position of a subtree. Its parent disappears, the boxes on the way up shrink, and those on the way
-    /// down grow.
+    /// Finds the best new position of a subtree. Removing the subtree deletes its parent and shrinks the boxes above;
+    /// inserting it makes the boxes above the new position grow.
     fn best_move(&self, from: u32, waiting: &mut Vec<Waiting>) -> Move {
         let this = self.aabb(from);
         let best = Move { from, to: 0, gain: 0.0 };
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // The gain on the way up to the pivot, and the box of what remains below it, as long as that box is smaller.
+        // The gain so far on the way up to `pivot`, and the box that remains below `pivot` without the subtree. `None`
+        // once that box is as large as before.
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {
@@ -131,7 +136,7 @@ impl<'a> Reinsertion<'a> {
                 gained += less;
                 rest = (less > 0.0).then_some(smaller);
             }
-            // Stop if no gain is possible: even where no other box grows, the new parent is at least as large as the
+            // Stop where no gain is possible. Even if no other box grows, the new parent is at least as large as the
             // subtree.
             if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
                 return search.best;
@@ -148,8 +153,8 @@ impl<'a> Reinsertion<'a> {
             return;
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
-        // The sibling replaces the parent, the node at the target replaces the sibling, and a new parent replaces the
-        // target.
+        // Three nodes move: the sibling replaces the old parent, the node at `to` replaces the sibling, and a new
+        // parent of that node and the subtree replaces the node at `to`.
         let stays = self.tree[beside];
         let joined = self.tree[to];
         self.put(parent, stays);
@@ -166,7 +171,7 @@ impl<'a> Reinsertion<'a> {
         }
     }
 
-    /// Refits boxes from a node upwards until they no longer change.
+    /// Refits the boxes of the ancestors of a node, upwards until a box no longer changes.
     fn refit_above(&mut self, mut node: u32) {
         while node != Tree::ROOT {
             node = self.parent(node);
@@ -180,10 +185,11 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// The gain above two siblings, and the index of the first.
+/// A pair of siblings whose positions are still to be examined: the gain without the area of the new parent, and the
+/// index of the first sibling.
 type Waiting = (f32, u32);
 
-/// The search for the best position of a subtree.
+/// The search for the best position of one subtree.
 struct Search<'a> {
     tree: &'a Tree,
     this: &'a Aabb,
@@ -193,18 +199,20 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Examines all positions beside a node or below it.
+    /// Examines all positions beside `node` or below it. `gained` is the decrease of the total area of all boxes,
+    /// without the area of the new parent.
     fn below(&mut self, gained: f32, node: u32) {
         self.beside(gained, node);
         while let Some((gained, first)) = self.waiting.pop() {
-            // Skip: better positions may have been found since it was pushed.
+            // Skip the pair if no position in it can beat the best one, which may have improved since the pair was
+            // pushed.
             if gained - self.area <= self.best.gain {
                 continue;
             }
             let len = self.waiting.len();
             self.beside(gained, first);
             self.beside(gained, first + 1);
-            // Visit the more promising one next.
+            // Visit the more promising of the two children next.
             if let [.., a, b] = &mut self.waiting[len..]
                 && a.0 > b.0
             {
@@ -213,8 +221,8 @@ impl Search<'_> {
         }
     }
 
-    /// Examines the position beside a node; pushes its children if any position below could beat the best one. A new
-    /// parent there has at least the area of the subtree.
+    /// Examines the position beside the node `to`. Pushes the children of `to` if a position below could beat the best
+    /// one, given that a new parent there has at least the area of the subtree.
     #[inline(always)]
     fn beside(&mut self, gained: f32, to: u32) {
         let node = &self.tree[to];
@@ -239,7 +247,7 @@ mod tests {
     use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
     use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-    /// Converts the tree, whose root is node 0 in obvhs.
+    /// Converts a tree of obvhs, whose root is node 0, to a [`Tree`], whose root is node 1.
     fn tree_of(bvh: &Bvh2) -> Tree {
         let mut nodes = vec![Bvh2Node::default()];
         nodes.extend(&bvh.nodes);
@@ -268,7 +276,7 @@ mod tests {
         let mut tree = tree_of(&peer);
         let area_of_all = |nodes: &[Bvh2Node]| nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>();
         let before = area_of_all(&peer.nodes);
-        // Compare with the implementation of obvhs, which does not order its search, on the same nodes.
+        // Optimise the same nodes with the implementation of obvhs, which visits children in another order.
         ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
         let monitor = Monitor::default();
         let mut reinsertion = Reinsertion::new(&mut tree, monitor.job()).unwrap();

@@ -1,16 +1,16 @@
-//! The traversal stack.
+//! The traversal stack of a ray: the children still to be visited.
 //!
-//! Its maximum depth is known once a structure is built, so no bounds are checked per ray.
+//! The maximum depth is known once the structure is built, so pushing needs no check of bounds.
 
 use super::lanes::{Lanes, Row, take_lowest};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
-/// A child in the low 32 bits, and the bits of its entry distance in the high 32 bits: non-negative distances sort as
-/// their bits do.
+/// An entry: the child in the low 32 bits, and the bits of its entry distance in the high 32 bits. Non-negative
+/// distances sort as their bits do, so entries sort by distance.
 pub(super) type Waiting = u64;
 
-/// Entries beyond those in use that may be overwritten.
+/// Number of entries above the top that [`Stack::push_all`] may overwrite.
 pub(super) const SLACK: usize = 8;
 
 pub(super) struct Stack<'a> {
@@ -19,13 +19,13 @@ pub(super) struct Stack<'a> {
 }
 
 impl<'a> Stack<'a> {
-    /// `entries` must hold the maximum depth plus `SLACK` entries.
+    /// `entries` must have room for the maximum depth plus [`SLACK`].
     #[inline(always)]
     pub fn new(entries: &'a mut [MaybeUninit<Waiting>]) -> Self {
         Self { entries, len: 0 }
     }
 
-    /// The last child pushed, and its entry distance.
+    /// Removes and returns the child on top, with its entry distance.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<(f32, Child)> {
         let top = self.top()?;
@@ -39,17 +39,17 @@ impl<'a> Stack<'a> {
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 
-    /// Pushes the children in a mask in lane order.
+    /// Pushes the children whose lanes are set in `mask`, in lane order.
     #[inline(always)]
     pub fn push_all<L: Lanes>(&mut self, children: &[u32; 8], mask: u32) {
         debug_assert!(self.len + SLACK <= self.entries.len());
-        // SAFETY: there are eight entries beyond the current depth.
+        // SAFETY: `entries` has at least `SLACK` = 8 entries beyond the current depth.
         unsafe { L::pick(children, mask, self.entries.as_mut_ptr().add(self.len).cast()) };
         self.len += mask.count_ones() as usize;
     }
 
-    /// Pushes the child `first` and the children in a mask, except the nearest, which is returned; the next nearest is
-    /// on top.
+    /// Returns the nearest child among `first` and the lanes in `mask`, and pushes the other children, the nearest of
+    /// them on top.
     #[inline(always)]
     pub fn push_all_but_nearest(&mut self, near: &Row, children: &[u32; 8], first: usize, mut mask: u32) -> Child {
         let entry = |lane: usize| u64::from(near.0[lane & 7].to_bits()) << 32 | u64::from(children[lane & 7]);
@@ -59,7 +59,7 @@ impl<'a> Stack<'a> {
             let other = entry(take_lowest(&mut mask));
             let farther = nearest.max(other);
             nearest = nearest.min(other);
-            // Insertion sort: sink below the nearer ones.
+            // Insertion sort: move nearer entries up to make room for `farther`.
             let mut index = self.len;
             while index > bottom && self.read(index - 1) < farther {
                 self.write(index, self.read(index - 1));
@@ -74,14 +74,14 @@ impl<'a> Stack<'a> {
     #[inline(always)]
     fn read(&self, index: usize) -> Waiting {
         debug_assert!(index < self.len);
-        // SAFETY: every entry below `len` is in the list and was written.
+        // SAFETY: every entry below `len` lies within `entries` and was written.
         unsafe { self.entries.get_unchecked(index).assume_init() }
     }
 
     #[inline(always)]
     fn write(&mut self, index: usize, entry: Waiting) {
         debug_assert!(index < self.entries.len());
-        // SAFETY: `entries` holds the maximum depth.
+        // SAFETY: `entries` has room for the maximum depth, which `index` does not exceed.
         unsafe { self.entries.get_unchecked_mut(index).write(entry) };
     }
 }

@@ -74,7 +74,8 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
             let mut origin = random_vec(&mut rng) * 1.5;
             let mut direction = random_vec(&mut rng);
             if i % 3 == 0 {
-                // Rays along an axis from grid points: all degenerate cases at once.
+                // Rays along an axis from grid points pass through edges and vertices and lie in the planes of
+                // triangles.
                 origin = (origin * 4.0).round() / 4.0;
                 direction = Vec3::AXES[i % 9 / 3] * if i % 2 == 0 { 1.0 } else { -1.0 };
             }
@@ -97,7 +98,8 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
 fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
     let mut rng = Rng::new(2, &[]);
     let mut escaped = 0;
-    // The last but one keeps 16 rounding steps per square; in the last, squares collapse to lines and are dropped.
+    // In the last but one case, `f32` has more than 20 rounding steps along the side of a square. In the last case,
+    // squares collapse to lines and are dropped.
     for (scale, offset) in [
         (1.0, Vec3::ZERO),
         (1e-4, Vec3::ZERO),
@@ -155,7 +157,7 @@ fn empty_scenes_needles_and_invalid_triangles_are_handled() {
 
 #[test]
 fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
-    // Sizes from 1e-12 to 1e12, for which the tree cannot be balanced.
+    // The sizes run from 1e-12 to 1e12, so the tree cannot be balanced.
     let triangles: Vec<[Vec3; 3]> = (0..2000)
         .map(|i| {
             let size = 10f32.powf(-12.0 + i as f32 * 0.012);
@@ -168,8 +170,8 @@ fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
     assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
 }
 
-/// A room of twelve large triangles with a finely divided block in it: large enough to be built in parts, of very
-/// different sizes.
+/// A room of twelve large triangles with a finely divided block in it. The tree is large enough to be built in parts,
+/// which differ much in size.
 fn room_with_block() -> Vec<[Vec3; 3]> {
     let mut triangles = tessellated_box(1, Vec3::splat(-3.0), Vec3::splat(3.0));
     triangles.extend(tessellated_box(34, Vec3::new(-0.5, -3.0, 0.2), Vec3::new(0.7, 0.4, 1.1)));
@@ -217,7 +219,7 @@ fn the_structure_is_the_same_to_the_bit_on_any_number_of_threads() {
     let triangles = room_with_block();
     let [a, b] = [1, 3].map(|threads| Pool::new(threads).unwrap().run(|| build(&triangles)));
     assert_eq!((a.root, a.stack_need), (b.root, b.stack_need));
-    // Compare as unsigned bits: unused lanes are NaN.
+    // Compare the lines as integers: unused lanes hold NaN, which would compare unequal.
     assert!(a.lines.as_slice() == b.lines.as_slice());
 }
 
@@ -246,7 +248,7 @@ fn few_triangles_among_broken_ones_are_found_at_every_scale() {
         for count in [1, 5] {
             let square = |i: usize| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| (p + Vec3::new(0.0, 0.0, i as f32)) * scale);
             let mut triangles: Vec<[Vec3; 3]> = (0..count).map(square).collect();
-            // A NaN corner, a point, and a line.
+            // Add degenerate triangles: one with a NaN corner, one that is a point, and one that is a line.
             triangles.insert(1, [Vec3::NAN, Vec3::X, Vec3::Y]);
             triangles.insert(0, [Vec3::X * scale; 3]);
             triangles.push([Vec3::ZERO, Vec3::X * scale, Vec3::X * 2.0 * scale]);
@@ -294,12 +296,13 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
 }
 
-/// Three million triangles in a room; then with an additional triangle so far away that the room lies in a single cell
-/// of the grid.
+/// Builds the acceleration structure over three million triangles in a room; then over the same triangles and one more
+/// that is so far away that the whole room lies in a single cell of the Morton grid.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_cancel_is_answered_within_50_ms_while_three_million_triangles_are_built() {
-    /// CPU time of this thread in nanoseconds, to a few milliseconds; load on the machine does not count.
+    /// CPU time of this thread in nanoseconds, accurate to a few milliseconds. Other load on the machine does not
+    /// count.
     fn now() -> u64 {
         let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
         schedstat.split_whitespace().next().unwrap().parse().unwrap()
@@ -322,7 +325,7 @@ fn a_cancel_is_answered_within_50_ms_while_three_million_triangles_are_built() {
         };
         let mut monitor = Monitor::default();
         monitor.at_check = Some(Box::new(at_check));
-        // A single thread, which does all the work, has the longest interval between checks.
+        // Run on a single thread: it does all the work, so its intervals between checks are the longest possible.
         Pool::new(1).unwrap().run(|| Accel::build(&triangles, monitor.job())).unwrap();
         let longest = silence.lock().unwrap().longest as f64 * 1e-6;
         assert!(longest > 0.0 && longest < 50.0, "{longest} ms");

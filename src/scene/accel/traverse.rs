@@ -1,4 +1,4 @@
-//! Traversal: the nearest hit of a ray, or whether there is any.
+//! Traversal of the acceleration structure: finds the nearest hit of a ray, or whether there is any hit.
 
 use super::aligned::Aligned;
 use super::lanes::{self, Baseline, Lanes, take_highest, take_lowest};
@@ -11,50 +11,50 @@ use crate::simd::Level;
 use glam::{Vec3, Vec4};
 use std::mem::MaybeUninit;
 
-/// The built structure; it holds its own copy of the triangles.
+/// The finished acceleration structure. It holds its own copy of the triangles.
 pub struct Accel {
     pub(super) lines: Lines,
     pub(super) root: Child,
     pub(super) low: Vec3,
     pub(super) high: Vec3,
-    /// The largest absolute coordinate per axis.
+    /// Largest absolute coordinate of all triangles, per axis.
     pub(super) largest: Vec4,
-    /// Maximum number of entries on the traversal stack.
+    /// Maximum number of entries that a ray needs on the traversal stack.
     pub(super) stack_need: usize,
     pub(super) dropped: usize,
     pub(super) level: Level,
 }
 
-/// Traversal stack entries kept on the thread's stack; deeper trees allocate theirs on the heap.
+/// Capacity of a traversal stack on the thread's own stack; deeper trees allocate theirs on the heap.
 pub(super) const SHORT_STACK: usize = 128;
 
 impl Accel {
-    /// The nearest hit that `accept` approves.
+    /// Returns the nearest hit for which `accept` returns `true`.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> Option<Hit> {
         self.search::<false>(ray, &mut accept)
     }
 
-    /// Whether any surface that `accept` approves lies between the origin and `t_max`.
+    /// Whether a hit for which `accept` returns `true` lies between the origin of the ray and `t_max`.
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> bool {
         self.search::<true>(ray, &mut accept).is_some()
     }
 
-    /// Corners of the bounding box; both zero if there are no triangles.
+    /// Returns the corners of the bounding box, both zero if there are no triangles.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         (self.low, self.high)
     }
 
-    /// Number of degenerate triangles that were left out.
+    /// Number of degenerate triangles, which the structure leaves out.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
 
-    /// Memory used, in bytes.
+    /// Memory of the structure in bytes.
     pub fn bytes(&self) -> usize {
         self.lines.bytes()
     }
 
-    /// The nearest hit, or, with `ANY`, the first one found.
+    /// Returns the nearest accepted hit or, with `ANY`, the first accepted hit found.
     #[inline(always)]
     fn search<const ANY: bool>(&self, ray: &Ray, accept: &mut impl FnMut(&Hit) -> bool) -> Option<Hit> {
         if self.root.is_empty() {
@@ -75,19 +75,19 @@ impl Accel {
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
         match self.level {
-            // SAFETY: the processor supports its level.
+            // SAFETY: the processor supports the instruction set that `level` names.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { self.traverse_avx512::<ANY>(ray, accept, stack) },
-            // SAFETY: as above.
+            // SAFETY: the processor supports the instruction set that `level` names.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => unsafe { self.traverse_avx2::<ANY>(ray, accept, stack) },
             Level::Baseline => self.traverse::<Baseline, ANY>(ray, accept, stack),
         }
     }
 
-    /// The same instructions in AVX-512 encoding, with its 32 registers and broadcast operands: slightly faster. Its
-    /// wider registers and masks are not: both bounds of a node's boxes in one register of sixteen, leaves of sixteen
-    /// triangles, and children sorted in a register were all measured to be slower.
+    /// The AVX2 code compiled with AVX-512 encoding, whose 32 registers and broadcast operands make it slightly
+    /// faster. Three uses of the wider registers and masks of AVX-512 were measured to be slower: both bounds of a
+    /// node's boxes in one register of sixteen lanes, leaves of sixteen triangles, and children sorted in a register.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
     fn traverse_avx512<const ANY: bool>(
@@ -110,7 +110,8 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Visits boxes nearest first; with `ANY`, from the last lane to the first, in order of falling benefit.
+    /// Traverses the tree, visiting the nearest child first. With `ANY`, it visits children from the last lane to the
+    /// first, which is the order of falling benefit.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,
@@ -126,14 +127,14 @@ impl Accel {
         let mut child = self.root;
         loop {
             if child.is_packet() {
-                // SAFETY: children store the lines at which nodes and packets were written.
+                // SAFETY: children refer to the lines at which nodes and packets were written.
                 let packet = unsafe { self.lines.get::<Packet>(child.line()) };
                 if best.update::<L, ANY>(packet, &triangle_ray, accept) {
                     return best.hit;
                 }
             } else {
-                // Test eight boxes and descend into one of those hit, the nearest unless `ANY`.
-                // SAFETY: as above.
+                // Test the eight boxes and descend into a box that the ray hits: the nearest, or the last lane with
+                // `ANY`. SAFETY: children refer to the lines at which nodes and packets were written.
                 let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, best.t_max);
                 if mask != 0 {
@@ -153,7 +154,8 @@ impl Accel {
                     continue;
                 }
             }
-            // Pop the next child that could hold a nearer hit, or an equal one of lower index.
+            // Pop the next child that could hold a nearer hit, or a hit at the same distance with a lower triangle
+            // index.
             child = loop {
                 let Some((near, next)) = stack.pop() else { return best.hit };
                 if ANY || near <= best.t_max {
@@ -166,7 +168,7 @@ impl Accel {
         }
     }
 
-    /// Prefetches the child on top of the stack.
+    /// Prefetches the node or packet on top of the stack.
     #[inline(always)]
     fn prefetch(&self, stack: &Stack) {
         if let Some((_, next)) = stack.top() {
@@ -175,17 +177,17 @@ impl Accel {
     }
 }
 
-/// The nearest accepted hit so far.
+/// The nearest accepted hit so far, and the distances it allows.
 struct Best {
     hit: Option<Hit>,
-    /// Maximum distance of a nearer hit.
+    /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.
     t_max: f32,
     ray_t_max: f32,
 }
 
 impl Best {
-    /// Tests eight triangles; only an accepted hit shortens the ray. Returns whether the search ends, which needs
-    /// `ANY`.
+    /// Tests the triangles of a packet and keeps the nearest accepted hit, which limits the distance of further hits.
+    /// Returns `true` if the traversal can stop: with `ANY`, after an accepted hit.
     #[inline(always)]
     fn update<L: Lanes, const ANY: bool>(
         &mut self,

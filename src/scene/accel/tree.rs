@@ -1,29 +1,31 @@
-//! The binary tree, which is built, optimised, and collapsed into wide nodes.
+//! The binary tree from which the wide nodes are made: `cluster` builds it, `reinsert` optimises it, `collapse` reads
+//! it.
 
 use glam::Vec4Swizzles;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
 use std::ops::{Index, IndexMut};
 
-/// Two siblings in one cache line.
+/// Two sibling nodes in one cache line.
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(64))]
 pub(super) struct Pair(pub [Bvh2Node; 2]);
 
-/// Node `2 * i + k` is the `k`-th of pair `i`, so `node ^ 1` is its sibling. The sibling of the root is unused.
+/// A binary tree of sibling pairs. Node `2 * i + k` is the `k`-th node of pair `i`, so `node ^ 1` is its sibling. The
+/// root is node 1; its sibling, node 0, is unused.
 ///
-/// `prim_count` is 0 for inner nodes and the number of triangles in leaves; `first_index` is the first of two
-/// children, or of the triangles.
+/// `prim_count` is 0 for inner nodes and the number of triangles for leaves. `first_index` is the index of the first
+/// child of an inner node, or of the first triangle of a leaf.
 pub(super) struct Tree {
     pub pairs: Vec<Pair>,
-    /// The parent node of each pair.
+    /// For each pair, the index of its parent node.
     pub parents: Vec<u32>,
 }
 
 impl Tree {
     pub const ROOT: u32 = 1;
 
-    /// Number of nodes, including the unused one.
+    /// Number of nodes, including the unused node 0.
     pub fn len(&self) -> usize {
         2 * self.pairs.len()
     }
@@ -45,8 +47,8 @@ impl IndexMut<u32> for Tree {
     }
 }
 
-/// Half the surface area of a box. The fourth lanes of node boxes hold integers, which as floats are denormal and make
-/// a multiplication many times slower. They must be zero in a sum over all lanes.
+/// Half the surface area of a box. The fourth lane of a node's bounds holds an integer, whose bits are a denormal
+/// float that would slow a multiplication many times; here it is replaced by zero.
 #[inline(always)]
 pub(super) fn half_area(shape: &Aabb) -> f32 {
     let d = (shape.max - shape.min).extend(0.0);

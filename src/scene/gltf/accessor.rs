@@ -1,4 +1,4 @@
-//! Typed arrays in buffers (glTF 2.0, section 3.6.2), including sparse ones.
+//! Reads accessors: typed arrays in buffer views (glTF 2.0, section 3.6.2), including sparse ones.
 
 use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
@@ -7,10 +7,10 @@ use gltf::json::accessor::{self, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
 
-/// Maximum length of an array without data in the file: a sparse array over zeros.
+/// Maximum number of elements of an accessor without a buffer view: zeros, which sparse values may replace.
 const MAX_UNBACKED: usize = 1 << 20;
 
-/// Elements of one type at intervals of `stride` bytes.
+/// The elements of an array, which lie `stride` bytes apart.
 struct Strided<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -20,7 +20,8 @@ struct Strided<'a> {
 }
 
 impl<'a> Strided<'a> {
-    /// A view of `count` elements from `offset` of a buffer view; an error if they exceed it.
+    /// A view of `count` elements, starting `offset` bytes into a buffer view. An error if they exceed the buffer
+    /// view.
     fn new(
         file: &'a File,
         view: Index<buffer::View>,
@@ -85,7 +86,7 @@ impl<'a> Strided<'a> {
     }
 }
 
-/// The integer that stands for 1 where integers are normalised.
+/// Returns the value of an integer type that stands for 1 in normalised accessors.
 fn largest_of(kind: ComponentType) -> f32 {
     match kind {
         ComponentType::I8 => 127.0,
@@ -118,25 +119,25 @@ fn layout(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
     }
 }
 
-/// The number of elements that an accessor declares; nothing else is checked.
+/// Returns the number of elements that an accessor declares, without any check of its data.
 pub fn count(file: &File, index: Index<accessor::Accessor>) -> Result<u64> {
     Ok(find(file, index)?.count.0)
 }
 
-/// The number of components of an accessor's elements.
+/// Returns the number of components of an accessor's elements.
 pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize> {
     Ok(layout(find(file, index)?)?.1)
 }
 
-/// The integer that stands for 1, if the accessor's integers are normalised.
+/// Returns the integer that stands for 1 if the accessor holds normalised integers; `None` otherwise.
 pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
     let accessor = find(file, index)?;
     let (kind, _) = layout(accessor)?;
     Ok((accessor.normalized && kind != ComponentType::F32).then(|| largest_of(kind)))
 }
 
-/// Reads vectors of `N` numbers, or matrices of four columns as 16; normalised integers are scaled to `[0, 1]` or
-/// `[-1, 1]`.
+/// Reads an accessor of vectors with `N` components (16 for 4 × 4 matrices, column by column). Normalised integers are
+/// scaled to `[0, 1]` or `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     read_vectors(file, index).map_err(|e| e.context(format_args!("accessor {}", index.value())))
 }
@@ -178,7 +179,7 @@ fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -
     Ok(out)
 }
 
-/// The indices at which a sparse accessor deviates, and its values there.
+/// Returns the indices of the elements that a sparse accessor replaces, and the values that replace them.
 fn sparse_parts<'a>(
     file: &'a File,
     sparse: &accessor::sparse::Sparse,
@@ -192,7 +193,7 @@ fn sparse_parts<'a>(
     Ok((at, strided(sparse.values.buffer_view, sparse.values.byte_offset.0, count)?))
 }
 
-/// Reads vertex indices.
+/// Reads an accessor of vertex indices.
 pub fn indices(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<u32>> {
     let read = || {
         let accessor = find(file, index)?;

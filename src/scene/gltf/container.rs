@@ -1,5 +1,5 @@
-//! The outer layers of a file: GLB chunks; buffers and images embedded in the file, in `data:` URIs, or in separate
-//! files.
+//! The outer layers of a glTF file: the chunks of a GLB, and buffers and images that are embedded in the file, in
+//! `data:` URIs, or in separate files.
 
 use super::document::{self, Document};
 use super::meshopt::{self, Packed};
@@ -16,25 +16,26 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
-/// The location of the external files that a file refers to.
+/// The location of the external files to which a glTF file refers.
 #[derive(Clone, Copy)]
 pub struct Folder<'a> {
-    /// The folder to which paths are relative; `None` for a file held in memory.
+    /// The folder to which external paths are relative; `None` for a glTF file held in memory without a folder.
     pub path: Option<&'a Path>,
-    /// Whether paths may lead out of the folder.
+    /// Whether external paths may lead out of the folder.
     pub is_open: bool,
 }
 
-/// A parsed file with the contents of all its buffers.
+/// A parsed glTF file with the contents of all its buffers.
 pub struct File<'a> {
     pub root: Root,
-    /// The parts that are not rendered, as far as the JSON shows them.
+    /// The features that are not rendered, as far as the JSON alone shows them.
     pub unrendered: Vec<Unrendered>,
     /// The translation of each node in f64.
     pub translations: Vec<DVec3>,
-    /// `None` for a buffer without data: the fallback of compressed views, or a buffer that is not used.
+    /// The bytes of each buffer. `None` for a buffer without data: the fallback of compressed buffer views, or an
+    /// unused buffer.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
-    /// The decoded data of compressed buffer views.
+    /// The decoded compressed buffer views, each with its index, in ascending order.
     unpacked: Vec<(usize, Vec<u8>)>,
     folder: Folder<'a>,
 }
@@ -64,7 +65,7 @@ impl<'a> File<'a> {
         Ok(Some(bytes))
     }
 
-    /// The bytes of a buffer view, decoded if they are compressed.
+    /// Returns the bytes of a buffer view, decoded if they are compressed.
     pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8]> {
         let number = index.value();
         let view = self.root.get(index).ok_or_else(|| missing("buffer view", number, self.root.buffer_views.len()))?;
@@ -76,11 +77,11 @@ impl<'a> File<'a> {
             .map_err(|e| e.context(format_args!("buffer view {number}")))
     }
 
-    /// A part of a buffer.
+    /// Returns `length` bytes of a buffer, starting at `start`.
     fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
         let whole = self.buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, self.buffers.len()))?;
         let Some(whole) = whole else {
-            // Such a file is valid: an extension of a vendor may supply the data.
+            // A buffer without data is valid in glTF: a vendor's extension may supply its contents.
             let message = format!("buffer {buffer} has no URI, and the file has no binary chunk for it");
             return Err(Error::new(ErrorKind::Unsupported, message));
         };
@@ -94,7 +95,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Compressed buffer views by their index.
+    /// Iterates over the compressed buffer views, each with its index.
     fn packed(&self) -> impl Iterator<Item = (usize, Result<Packed>)> {
         self.root.buffer_views.iter().enumerate().filter_map(|(i, view)| {
             let packed = Packed::of(view)?;
@@ -102,12 +103,12 @@ impl<'a> File<'a> {
         })
     }
 
-    /// Size in bytes of all compressed buffer views after decoding.
+    /// Total size in bytes of the compressed buffer views after decoding.
     pub fn packed_bytes(&self) -> Result<u64> {
         self.packed().try_fold(0u64, |sum, (_, packed)| Ok(sum.saturating_add(packed?.bytes())))
     }
 
-    /// Decodes all compressed buffer views.
+    /// Decodes all compressed buffer views, so that [`File::view`] finds their bytes.
     pub fn unpack(&mut self) -> Result<()> {
         let mut unpacked = Vec::new();
         for (i, packed) in self.packed() {
@@ -122,7 +123,7 @@ impl<'a> File<'a> {
         Ok(())
     }
 
-    /// The bytes that a URI refers to.
+    /// Returns the bytes to which a URI refers: embedded in a `data:` URI, or read from a file.
     pub fn resolve(&self, uri: &str) -> Result<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let (kind, payload) = data.split_once(',').ok_or_else(|| Error::format("a data: URI without a comma"))?;
@@ -146,7 +147,7 @@ pub fn missing(kind: &str, index: usize, count: usize) -> Error {
     Error::format(format!("the file refers to {kind} {index}, but has {count}"))
 }
 
-/// Splits a GLB into its JSON and binary chunks; other input is treated as JSON.
+/// Splits a GLB into its JSON chunk and its binary chunk. Other input is returned whole as JSON.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     if !bytes.starts_with(MAGIC) {
         return Ok((bytes, None));
@@ -166,7 +167,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
         let size = word(at).ok_or_else(truncated)? as usize;
         let (kind, start) = (&bytes[at + 4..at + 8], at + 8);
         let end = start.checked_add(size).filter(|&end| end <= length).ok_or_else(truncated)?;
-        // Skip unknown chunks, as the specification requires.
+        // Skip chunks of unknown type, as the specification requires.
         match kind {
             JSON_CHUNK if json.is_none() => json = Some(&bytes[start..end]),
             BINARY_CHUNK if binary.is_none() => binary = Some(&bytes[start..end]),
@@ -177,7 +178,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     json.map(|json| (json, binary)).ok_or_else(|| Error::format("the GLB file has no JSON chunk"))
 }
 
-/// The path in a URI; an error if it leads out of the folder, unless `is_open`.
+/// Decodes a URI to a relative path. An error if the path leads out of the folder, unless `is_open`.
 fn relative_path(uri: &str, is_open: bool) -> Result<PathBuf> {
     let broken = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
     let refused = |why: &str| Error::new(ErrorKind::Unsupported, format!("the external file {uri:?} {why}"));
@@ -219,7 +220,7 @@ fn decode_percent(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// Decodes base64 (RFC 4648, section 4); padding is optional.
+/// Decodes base64 (RFC 4648, section 4). The padding is optional.
 fn decode_base64(text: &str) -> Result<Vec<u8>> {
     let digits = text.trim_end_matches('=');
     let mut out = try_with_capacity(digits.len() / 4 * 3 + 3)?;

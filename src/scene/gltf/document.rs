@@ -1,5 +1,5 @@
-//! The JSON of a file: its version is checked, and it is put into the shape that the crate `gltf` reads, which is
-//! stricter than glTF in places.
+//! Parses the JSON of a glTF file: checks its version, and adapts it to the crate `gltf`, which is stricter than glTF
+//! in places.
 
 use super::features;
 use crate::error::{Error, ErrorKind, Result};
@@ -9,19 +9,19 @@ use glam::DVec3;
 use gltf::json::Root;
 use serde_json::{Map, Number, Value, json};
 
-/// Largest number up to which floats store every integer: 2^53. [rounding]
+/// Limit below which `f64` represents every integer: 2^53. [rounding]
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// A file's JSON in the shape that the crate `gltf` reads, with the parts that this shape lacks.
+/// The JSON of a file as the crate `gltf` represents it, and information that this representation lacks.
 pub struct Document {
     pub root: Root,
-    /// The parts that are not rendered.
+    /// The features that are not rendered.
     pub unrendered: Vec<Unrendered>,
-    /// The translation of each node, which the crate rounds to f32.
+    /// The translation of each node in f64; the crate `gltf` rounds translations to f32.
     pub translations: Vec<DVec3>,
 }
 
-/// Reads the JSON of a file.
+/// Parses the JSON of a glTF file.
 pub fn parse(json: &[u8]) -> Result<Document> {
     let broken = |e: serde_json::Error| Error::format(format!("not a glTF file, or its JSON is broken: {e}"));
     let mut document: Value = serde_json::from_slice(json).map_err(broken)?;
@@ -35,7 +35,7 @@ pub fn parse(json: &[u8]) -> Result<Document> {
     Ok(Document { root: serde_json::from_value(document).map_err(broken)?, unrendered, translations })
 }
 
-/// The translation of each node, or the last column of its matrix.
+/// Returns the translation of each node, which is the last column of the node's matrix if the node has a matrix.
 fn translations(document: &Value) -> Result<Vec<DVec3>> {
     let nodes = document.get("nodes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let number = |list: Option<&Value>, at: usize| list.and_then(|list| list.get(at)?.as_f64()).unwrap_or(0.0);
@@ -49,7 +49,7 @@ fn translations(document: &Value) -> Result<Vec<DVec3>> {
     try_collect(nodes.iter().map(column))
 }
 
-/// Refuses files of glTF 1, and files that require a version above 2.0.
+/// Refuses files whose version is not 2.x, and files that require a version above 2.0.
 fn check_version(document: &Value) -> Result<()> {
     let asset = document.get("asset");
     let stated = |key: &str| -> Result<Option<(&str, [u32; 2])>> {
@@ -69,7 +69,7 @@ fn check_version(document: &Value) -> Result<()> {
     }
 }
 
-/// Removes `extras`, which may be of any type, and turns whole numbers that are written as floats into integers.
+/// Removes `extras`, which may have any type, and turns whole numbers that are written as floats into integers.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(members) => {
@@ -87,14 +87,15 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Adds members that may be left out, and removes animations, whose targets may lack members.
+/// Adds members that glTF lets files omit but the crate `gltf` requires. Removes animations, which are not read and
+/// whose targets may lack such members.
 fn complete(root: &mut Map<String, Value>) {
     root.remove("animations");
     for scene in objects(root, "scenes") {
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
     for texture in objects(root, "textures") {
-        // Use the WebP image: the other source is a fallback for readers without WebP.
+        // Use the WebP image; the ordinary source is a fallback for readers without WebP.
         let source = texture.get("extensions").and_then(|e| e.get(features::WEBP)?.get("source").cloned());
         if let Some(source) = source {
             texture.insert("source".into(), source);
@@ -102,7 +103,7 @@ fn complete(root: &mut Map<String, Value>) {
     }
 }
 
-/// The objects of a list.
+/// Iterates over the objects in the array `list` of the JSON.
 fn objects<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
     let list = root.get_mut(list).and_then(Value::as_array_mut);
     list.into_iter().flatten().filter_map(Value::as_object_mut)

@@ -1,4 +1,4 @@
-//! Primitives in Draco's compression (`KHR_draco_mesh_compression`), decoded by the crate draco-core.
+//! Reads primitives in Draco's compression (`KHR_draco_mesh_compression`), decoded by the crate draco-core.
 
 use super::container::{File, missing};
 use super::features::DRACO;
@@ -11,23 +11,23 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, buffer};
 use serde_json::Value;
 
-/// Upper bounds of the bytes that the decoder allocates per vertex and per triangle, in addition to the values: corner
-/// tables, traversal and symbols.
+/// Upper bounds of the bytes that the decoder allocates per vertex and per triangle for corner tables, traversal and
+/// symbols, in addition to the attribute values.
 const VERTEX_BYTES: u64 = 256;
 const TRIANGLE_BYTES: u64 = 256;
 
-/// Bytes per component of the decoded attributes: the integers, and the values made from them.
+/// Bytes that decoding takes per attribute component: for the integer and for the value made from it.
 const COMPONENT_BYTES: u64 = 16;
 
 /// A decoded primitive.
 pub struct Decoded {
     mesh: Mesh,
-    /// Each attribute by its name, with its number in the stream.
+    /// The names of the attributes (such as `POSITION`), each with its number in the Draco stream.
     numbers: Vec<(String, u32)>,
 }
 
 impl Decoded {
-    /// Decodes a primitive; `None` if it has no Draco stream, or if its accessors hold the same data uncompressed.
+    /// Decodes a primitive. `None` if it has no Draco stream, or if its accessors also hold the data uncompressed.
     pub fn read(file: &File, budget: &dyn Budget, primitive: &Primitive) -> Result<Option<Self>> {
         let Some(settings) = primitive.extensions.as_ref().and_then(|e| e.others.get(DRACO)) else { return Ok(None) };
         let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
@@ -38,12 +38,13 @@ impl Decoded {
         decode(file, budget, primitive, settings).map(Some).map_err(|e| e.context(DRACO))
     }
 
-    /// The number of vertices.
+    /// Number of vertices.
     pub fn count(&self) -> usize {
         self.mesh.num_points()
     }
 
-    /// The values of an attribute that the stream has, with integers scaled as the accessor says.
+    /// Returns the values of an attribute, with integers normalised if the accessor `index` says so. `None` if the
+    /// stream lacks the attribute.
     pub fn vectors<const N: usize>(
         &self,
         file: &File,
@@ -71,7 +72,7 @@ impl Decoded {
         Ok(out)
     }
 
-    /// The corners of all triangles.
+    /// Returns the vertex indices of all triangles, three per triangle.
     pub fn indices(&self) -> Result<Vec<u32>> {
         let face = |i: usize| self.mesh.face(FaceIndex(i as u32)).map(|point| point.0);
         try_collect((0..self.mesh.num_faces()).flat_map(face))
@@ -90,7 +91,8 @@ fn decode(file: &File, budget: &dyn Budget, primitive: &Primitive, settings: &Va
     };
     let numbers = named.iter().map(number).collect::<Result<Vec<_>>>()?;
 
-    // The accessors state the sizes, so a stream cannot ask for more.
+    // The accessors state the sizes of the decoded data. The limits below are computed from them, so a stream cannot
+    // take more memory.
     let count = |index| accessor::count(file, index);
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
     let vertices = count(positions.ok_or_else(|| Error::format("a primitive has no POSITION"))?)?;

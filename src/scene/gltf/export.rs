@@ -10,20 +10,21 @@ use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, Text
 use glam::{DVec3, Mat3, Quat, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-/// Constants of the specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
+/// Enumeration values of the glTF specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Distance of the cameras' near plane in metres: required by the format, but unused by a path tracer [convention].
+/// Distance of the cameras' near plane in metres. glTF requires one, but path tracers do not use it. [convention]
 const NEAR: f32 = 0.01;
 
 /// Encodes a scene as GLB, with one node per mesh, camera and light, and textures as embedded PNG.
 ///
-/// An emission texture brighter than 1 is scaled to a peak of 1, and `KHR_materials_emissive_strength` carries the
-/// factor; PNG stores it with 8 bits per channel. The distributions of luminaires are embedded as IES files
+/// An emission texture brighter than 1 is divided by its peak, and `KHR_materials_emissive_strength` carries the
+/// factor; PNG stores the texture with 8 bits per channel. The distributions of luminaires are embedded as IES files
 /// (`EXT_lights_ies`). Meshes without triangles and the environment are left out, because glTF cannot represent them.
+///
 /// Errors: those of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
 /// GiB.
 pub fn export(scene: &Scene) -> Result<Vec<u8>> {
@@ -46,7 +47,7 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     writer.into_glb(scene.origin)
 }
 
-/// An image as written: its texture, its encoding, and the divisor of its values.
+/// Identifies an image in the file: the index of its texture, its encoding, and the divisor of its values.
 type ImageKey = (usize, Encoding, f32);
 
 #[derive(Default)]
@@ -61,7 +62,8 @@ struct Writer {
     meshes: Vec<Value>,
     cameras: Vec<Value>,
     lights: Vec<Value>,
-    /// IES files of the scene's distributions written so far.
+    /// The IES files written so far, one per distribution; `profile_keys` holds the indices of these distributions in
+    /// the scene.
     profiles: Vec<Value>,
     profile_keys: Vec<usize>,
     nodes: Vec<Value>,
@@ -75,7 +77,8 @@ impl Writer {
         }
     }
 
-    /// Appends bytes, padded to the alignment of 4 that accessors require, and returns the index of their buffer view.
+    /// Appends bytes, padded to a multiple of 4 for the alignment of accessors, and returns the index of their new
+    /// buffer view.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> Result<usize> {
         let out_of_memory = |_| Error::new(ErrorKind::OutOfMemory, "could not allocate the GLB file");
         self.binary.try_reserve(bytes.len() + 3).map_err(out_of_memory)?;
@@ -119,7 +122,8 @@ impl Writer {
         if !mesh.normals.is_empty() {
             attributes.insert("NORMAL".into(), self.accessor(&mesh.normals, "VEC3", FLOAT, None)?.into());
         }
-        // Texture coordinate sets must be numbered without gaps: if only the second exists, write zeros as the first.
+        // glTF requires sets of texture coordinates to be numbered without gaps: if only the second exists, write
+        // zeros as the first.
         let [first, second] = &mesh.uvs;
         if !first.is_empty() {
             attributes.insert("TEXCOORD_0".into(), self.accessor(first, "VEC2", FLOAT, None)?.into());
@@ -180,7 +184,7 @@ impl Writer {
         Ok(())
     }
 
-    /// A luminaire as in `EXT_lights_ies`: its axis along -z of its node, C = 0 along x.
+    /// Writes a luminaire as a node with `EXT_lights_ies`. Its axis is -z of the node, and C = 0 is x of the node.
     fn luminaire(
         &mut self,
         scene: &Scene,
@@ -241,7 +245,7 @@ impl Writer {
             out["normalTexture"]["scale"] = material.normal_scale.into();
         }
 
-        // Scale the texture and the factor to a peak of 1; the strength carries the product of both scales.
+        // Scale the texture and the emission factor to peaks of 1; the strength carries the product of both scales.
         let mut extensions = Map::new();
         let mut emission = material.emission;
         if let Some(reference) = material.emission_texture {
@@ -270,7 +274,7 @@ impl Writer {
         Ok(out)
     }
 
-    /// A reference to a texture whose values are divided by `peak`.
+    /// Writes a reference to a texture whose values are divided by `peak`.
     fn texture(&mut self, scene: &Scene, reference: TextureRef, encoding: Encoding, peak: f32) -> Result<Value> {
         let key = (reference.texture, encoding, peak);
         let index = match self.image_keys.iter().position(|k| *k == key) {
@@ -288,14 +292,14 @@ impl Writer {
         Ok(info)
     }
 
-    /// Writes an image with its own texture and sampler; all three have the same index.
+    /// Writes an image with its own texture and sampler. All three have the same index in their lists.
     fn image(&mut self, scene: &Scene, key: ImageKey) -> Result<usize> {
         let (index, encoding, peak) = key;
         let texture = &scene.textures[index];
         let png = match encoding {
             Encoding::Srgb => io::encode_png(&texture.image, 1.0 / peak)?,
             Encoding::Linear => {
-                // The encoder applies the sRGB curve; apply its inverse first so that the bytes stay linear.
+                // The PNG encoder applies the sRGB curve. Apply its inverse first, so that the bytes stay linear.
                 let mut image = texture.image.clone();
                 let alpha = if image.channels == 4 { 3 } else { usize::MAX };
                 let channels = image.channels;
@@ -324,11 +328,12 @@ impl Writer {
         }
         let mut root = Map::new();
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "luxfer" }));
-        // glTF requires scenes to have nodes, but allows files without scenes.
+        // glTF requires a scene to have nodes, but it allows a file without scenes.
         if !self.nodes.is_empty() {
             let mut nodes: Vec<usize> = (0..self.nodes.len()).collect();
             if origin != DVec3::ZERO {
-                // Put everything under one node: its translation is in f64, and vertices stay near their origin.
+                // Put all nodes under one node with the origin as its translation. JSON holds that translation in f64,
+                // and vertices stay near zero.
                 let all = std::mem::take(&mut nodes);
                 nodes.push(all.len());
                 self.nodes.push(json!({ "name": "Origin", "translation": origin.to_array(), "children": all }));
@@ -368,7 +373,7 @@ impl Writer {
     }
 }
 
-/// Packs the two chunks into a GLB container (glTF 2.0, section 4.4).
+/// Packs the JSON chunk and the binary chunk into a GLB container (glTF 2.0, section 4.4).
 fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     let mut text = root.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -394,13 +399,13 @@ fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// A colour scaled to a peak of 1, and the scale.
+/// Splits a colour into a colour with a peak of 1 and the factor.
 fn split_peak(colour: Vec3) -> (Vec3, f32) {
     let peak = colour.max_element();
     if peak > 0.0 { (colour / peak, peak) } else { (Vec3::ZERO, 0.0) }
 }
 
-/// The offset, rotation and scale whose product is the transform.
+/// Decomposes a texture transform into offset, rotation in radians and scale. An error if it has shear.
 fn decompose(transform: Mat3) -> Result<(Vec2, f32, Vec2)> {
     let (first, second) = (transform.x_axis.truncate(), transform.y_axis.truncate());
     let rotation = (-first.y).atan2(first.x);

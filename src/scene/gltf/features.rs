@@ -1,4 +1,4 @@
-//! Extensions that are read, and the parts of a file that are not rendered.
+//! Lists the glTF extensions that are read, and finds the features of a file that are not rendered.
 
 use super::glossiness::is_convertible;
 use crate::scene::unrendered::{Unrendered, note};
@@ -7,11 +7,11 @@ use serde_json::Value;
 
 /// Measured luminaires as IES files.
 pub const IES: &str = "EXT_lights_ies";
-/// Many instances of one mesh.
+/// Many instances of one node's mesh.
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Primitives in Draco's compression.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
-/// Buffer views in meshoptimizer's compression, under its two names.
+/// Buffer views in meshoptimizer's compression, which has two extension names.
 pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
@@ -19,7 +19,7 @@ pub const WEBP: &str = "EXT_texture_webp";
 /// Materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Extensions that a file may require. Of a material with variants, the default variant is shown.
+/// Extensions that a file may require. Of a material with variants, only the default variant is read.
 pub const READ: [&str; 15] = [
     DRACO,
     IES,
@@ -38,13 +38,15 @@ pub const READ: [&str; 15] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions without an effect on the picture, or whose files also contain the picture in a form that is read.
+/// Extensions without an effect on the picture, and an extension for which a file also contains a fallback image in a
+/// format that this importer reads.
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
-/// A property of an extension, and its default value. With the default value the extension has no effect.
+/// A property of an extension, and the default value with which the extension has no effect.
 type Neutral = (&'static str, f64);
 
-/// Extensions of materials that are not rendered, with the missing effect and their neutral settings.
+/// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
+/// effect off if they have their default values.
 const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
@@ -60,7 +62,7 @@ const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
 ];
 
-/// The lists of objects in the JSON, and the word for one object of each list.
+/// The arrays of objects in the JSON, and the word for one object of each array.
 const LISTS: [(&str, &str); 10] = [
     ("materials", "material"),
     ("meshes", "mesh"),
@@ -74,7 +76,7 @@ const LISTS: [(&str, &str); 10] = [
     ("buffers", "buffer"),
 ];
 
-/// Everything in a file that is not rendered and can be seen in its JSON alone.
+/// Lists all features of a file that are not rendered and can be recognised from its JSON.
 pub fn unrendered(document: &Value) -> Vec<Unrendered> {
     let mut list = Vec::new();
     for (name, kind) in LISTS {
@@ -113,7 +115,7 @@ fn place(kind: &str, index: usize, object: &Value) -> String {
 /// Notes the extensions of an object that are not rendered.
 fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
     for (name, settings) in object.get("extensions").and_then(Value::as_object).into_iter().flatten() {
-        // A texture in another format has its own test.
+        // Skip Basis Universal textures: `texture` reports them if they lack an image in another format.
         if READ.contains(&name.as_str()) || INVISIBLE.contains(&name.as_str()) || name == BASISU {
             continue;
         }
@@ -125,13 +127,14 @@ fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> St
     }
 }
 
-/// Whether all settings have the default values, with which the extension has no effect.
+/// Whether all properties of an extension have their default values, so that the extension has no effect.
 fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
     let is = |value: &Value, wanted: f64| match value {
         Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),
         value => value.as_f64() == Some(wanted),
     };
-    // A texture is multiplied by its factor, so it has no effect if the default factor is 0.
+    // A texture is multiplied by its factor. With a default factor of 0 the texture has no effect; with a default
+    // factor of 1 it has an effect.
     let has_texture = || settings.as_object().is_some_and(|s| s.keys().any(|key| key.ends_with("Texture")));
     let is_factor = neutral.iter().any(|&(_, wanted)| wanted != 0.0);
     !neutral.is_empty()
@@ -139,7 +142,7 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         && !(is_factor && has_texture())
 }
 
-/// Notes a specular-glossiness material that cannot be converted.
+/// Notes a specular-glossiness material that cannot be converted to metallic-roughness.
 fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
     let settings = material.get("extensions").and_then(|e| e.get(GLOSSINESS));
     let settings = settings.and_then(|s| serde_json::from_value::<PbrSpecularGlossiness>(s.clone()).ok());
@@ -153,7 +156,7 @@ fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> 
     }
 }
 
-/// Textures in Basis Universal files.
+/// Textures in Basis Universal files, which are not read.
 const BASISU: &str = "KHR_texture_basisu";
 
 fn texture(list: &mut Vec<Unrendered>, texture: &Value, place: &dyn Fn() -> String) {
@@ -165,7 +168,7 @@ fn texture(list: &mut Vec<Unrendered>, texture: &Value, place: &dyn Fn() -> Stri
 
 fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
     for (_, primitive) in items(mesh, "primitives") {
-        // Points, lines, loops and strips of lines.
+        // Modes below 4 are points, lines, line loops and line strips.
         if primitive.get("mode").and_then(Value::as_f64).is_some_and(|mode| mode < 4.0) {
             note(list, "points and lines", "they are left out", place);
         }
@@ -174,13 +177,13 @@ fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
     weights(list, mesh, Some(mesh), place);
 }
 
-/// The mesh of a node.
+/// Returns the JSON of the mesh to which a node refers; `None` if the node has no mesh.
 fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     let index = node.get("mesh")?.as_f64()?;
     document.get("meshes")?.get(index as usize)
 }
 
-/// Notes morph targets that are mixed in at rest and change more than the shape.
+/// Notes morph targets of colours or texture coordinates with a weight other than 0: only shapes are mixed.
 fn weights(list: &mut Vec<Unrendered>, object: &Value, mesh: Option<&Value>, place: &dyn Fn() -> String) {
     let Some(mesh) = mesh else { return };
     let mixed = |(_, target): (&(usize, &Value), &Value)| {

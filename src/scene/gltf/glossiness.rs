@@ -1,13 +1,14 @@
-//! Materials of `KHR_materials_pbrSpecularGlossiness`, which older files have, as metallic-roughness.
+//! Converts specular-glossiness materials (`KHR_materials_pbrSpecularGlossiness`), which occur in older files, to
+//! metallic-roughness.
 //!
 //! The conversion is the one that Khronos published with the extension ("convert-between-workflows", Gary Hsu). It
-//! solves for the metalness that gives the brightness of both the diffuse and the specular colour. The base colour is a
-//! mixture of the two base colours that follow from the diffuse and from the specular colour. Textures are converted
-//! texel by texel, at the size of the larger texture.
+//! solves a quadratic equation for the metalness at which the material keeps the brightness of both its diffuse and
+//! its specular colour. The base colour is a mixture of two estimates, one from the diffuse colour and one from the
+//! specular colour. Textures are converted texel by texel, at the size of the larger texture.
 //!
 //! Not modelled: textures of one material with different texture coordinates. Such a material keeps its
-//! metallic-roughness values, and is listed as not rendered. If the textures are wrapped differently, the wrapping of
-//! the diffuse texture counts.
+//! metallic-roughness values and is listed as not rendered. If the two textures have different wrap modes, the wrap
+//! mode of the diffuse texture is used for both.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -22,7 +23,7 @@ const DIELECTRIC: f32 = 0.04;
 /// Lower bound of divisors. [rounding]
 const EPSILON: f32 = 1e-6;
 
-/// Whether both textures have the same coordinates.
+/// Whether the diffuse and the specular-glossiness texture use the same texture coordinates, or one of them is absent.
 pub fn is_convertible(settings: &PbrSpecularGlossiness) -> bool {
     match (&settings.diffuse_texture, &settings.specular_glossiness_texture) {
         (Some(a), Some(b)) => coordinates(a) == coordinates(b),
@@ -30,7 +31,7 @@ pub fn is_convertible(settings: &PbrSpecularGlossiness) -> bool {
     }
 }
 
-/// What the coordinates of a texture depend on.
+/// Returns the set of texture coordinates that a texture uses, and the numbers of its texture transform.
 fn coordinates(info: &texture::Info) -> (u32, Option<[f32; 5]>) {
     let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
     let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
@@ -41,7 +42,7 @@ fn coordinates(info: &texture::Info) -> (u32, Option<[f32; 5]>) {
     (set, numbers)
 }
 
-/// The base colour and the metalness of a diffuse and a specular colour.
+/// Converts a diffuse and a specular colour to a base colour and a metalness.
 pub fn convert(diffuse: Vec3, specular: Vec3) -> (Vec3, f32) {
     let rest = 1.0 - specular.max_element();
     let metallic = metalness(brightness(diffuse), brightness(specular), rest);
@@ -50,13 +51,14 @@ pub fn convert(diffuse: Vec3, specular: Vec3) -> (Vec3, f32) {
     (of_diffuse.lerp(of_specular, metallic * metallic).clamp(Vec3::ZERO, Vec3::ONE), metallic)
 }
 
-/// Perceived brightness, with the weights of the published conversion.
+/// Perceived brightness of a colour, with the weights of the published conversion.
 fn brightness(colour: Vec3) -> f32 {
     // [convention: ITU-R BT.601, luma]
     (colour * colour).dot(Vec3::new(0.299, 0.587, 0.114)).sqrt()
 }
 
-/// The root of the quadratic equation for the metalness that gives both brightnesses.
+/// Solves the quadratic equation for the metalness at which the material has the given diffuse and specular
+/// brightness. `rest` is 1 minus the largest channel of the specular colour.
 fn metalness(diffuse: f32, specular: f32, rest: f32) -> f32 {
     if specular < DIELECTRIC {
         return 0.0;
@@ -66,7 +68,7 @@ fn metalness(diffuse: f32, specular: f32, rest: f32) -> f32 {
     ((discriminant.sqrt() - b) / (2.0 * DIELECTRIC)).clamp(0.0, 1.0)
 }
 
-/// The colours of a material before the conversion.
+/// The factors and textures of a specular-glossiness material before the conversion.
 pub struct Colours<'a> {
     pub diffuse: Vec3,
     pub alpha: f32,
@@ -77,13 +79,13 @@ pub struct Colours<'a> {
 }
 
 impl Colours<'_> {
-    /// Width and height of the converted textures; `None` without textures.
+    /// Width and height of the converted textures; `None` if the material has no textures.
     pub fn size(&self) -> Option<[usize; 2]> {
         let sizes = [self.diffuse_texture, self.specular_texture].into_iter().flatten();
         sizes.map(|t| [t.image.width, t.image.height]).reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 
-    /// Images of the base colour with alpha, and of roughness (green) and metalness (blue).
+    /// Returns two images: the base colour with alpha, and the roughness (green) with the metalness (blue).
     pub fn images(&self, [width, height]: [usize; 2]) -> Result<[Image; 2]> {
         let (mut base, mut surface) = (Image::new(width, height, 4)?, Image::new(width, height, 3)?);
         let pixels = base.data.as_chunks_mut::<4>().0.iter_mut().zip(surface.data.as_chunks_mut::<3>().0);
@@ -112,7 +114,8 @@ mod tests {
         assert!(metallic < 1e-3 && (base - paint).abs().max_element() < 1e-3, "{base} {metallic}");
         let (base, metallic) = convert(Vec3::ZERO, gold);
         assert!(metallic > 0.999 && (base - gold).abs().max_element() < 1e-3, "{base} {metallic}");
-        // Between them the colours of both are kept: (1 - m) base (1 - 0.04) / (1 - max specular) is the diffuse one.
+        // Between the two extremes, the specular colour 0.04 (1 - m) + m · base and the diffuse colour (1 - m) · base,
+        // which is the given diffuse colour times (1 - max specular) / (1 - 0.04), are kept approximately.
         let (base, metallic) = convert(Vec3::splat(0.3), Vec3::splat(0.4));
         let diffuse = base * (1.0 - metallic);
         let specular = Vec3::splat(DIELECTRIC * (1.0 - metallic)) + base * metallic;

@@ -1,4 +1,4 @@
-//! Converts the nodes, meshes, cameras and lights of a file to world space.
+//! Converts the nodes, meshes, cameras and lights of a parsed glTF file to a [`Scene`] in world space.
 
 use super::container::{File, Folder, missing};
 use super::features::{IES, READ};
@@ -24,23 +24,24 @@ use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Maximum number of vertices, and of triangles, of all meshes including instances.
+/// Maximum number of vertices, and of triangles, of all meshes together. Each instance counts, and each morph target
+/// counts as vertices.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
-/// Maximum number of meshes: of primitives of all nodes and instances.
+/// Maximum number of meshes of a scene: primitives × instances, of all nodes.
 const MAX_MESHES: usize = 1 << 20;
 
-/// Reads a GLB or glTF file held in memory; external files it refers to are resolved relative to `base`.
+/// Reads a GLB or glTF file held in memory. External files are resolved relative to the folder `base`.
 ///
-/// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
-/// for unreadable external files, and errors of the budget.
+/// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features that this library lacks,
+/// `Io` for unreadable external files, and any error that the budget returns.
 pub fn import(bytes: &[u8], base: Option<&Path>, options: Options) -> Result<Scene> {
     let mut file = File::parse(bytes, Folder { path: base, is_open: options.is_open })?;
     if let Some(unknown) = file.root.extensions_required.iter().find(|e| !READ.contains(&e.as_str())) {
         let message = format!("the file requires the extension {unknown}; save it without that extension");
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
-    // Compressed data are decoded while the file is read.
+    // Decode the compressed buffer views; the memory for them is needed only until the scene is converted.
     let mut scene = None;
     options.budget.lend(file.packed_bytes()?, &mut || {
         file.unpack()?;
@@ -88,29 +89,29 @@ struct Importer<'a> {
     file: &'a File<'a>,
     budget: &'a dyn Budget,
     scene: Scene,
-    /// Created for the first primitive without a material.
+    /// Index of the default material, which is created for the first primitive without a material.
     default_material: Option<usize>,
-    /// Materials multiplied by a colour: the material, the colour and the product.
+    /// Copies of materials multiplied by a vertex colour: index of the original, the colour, and index of the copy.
     tinted: Vec<(usize, [f32; 4], usize)>,
-    /// Index of each IES file read so far; its distribution in the scene has the same position.
+    /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
-    /// The transform of each node, if the file has skins, whose joints are nodes.
+    /// The world transform of each node. Filled only if the file has skins, whose joints are nodes.
     nodes: Vec<Option<DMat4>>,
     vertices: u64,
     triangles: u64,
 }
 
-/// The transform and the pose with which a node shows its mesh.
+/// The transform and the pose of a node's mesh.
 #[derive(Clone, Copy)]
 struct Placement<'a> {
     transform: DMat4,
-    /// The skin, whose joints replace the transform.
+    /// The skin, if any. The transforms of its joints then replace `transform`.
     skin: Option<Index<Skin>>,
-    /// Weights of the morph targets.
+    /// Weights of the mesh's morph targets.
     weights: &'a [f32],
 }
 
-/// The vertices of a primitive in world space.
+/// The vertices of a primitive in world space, after morph targets and skinning.
 struct Posed {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -118,7 +119,8 @@ struct Posed {
 }
 
 impl Importer<'_> {
-    /// Visits every node of the default scene once, parents first, in file order.
+    /// Imports every node of the default scene, parents before children, in file order. An error if a node is reached
+    /// twice.
     fn nodes(&mut self, world: DMat4) -> Result<()> {
         let file = self.file;
         let mut visited = try_vec(file.root.nodes.len(), false)?;
@@ -174,7 +176,8 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// A luminaire with its axis along -z of its node and C = 0 along x; each IES file is read once.
+    /// Adds a luminaire whose axis is -z of its node and whose C = 0 direction is x of its node. Each IES profile is
+    /// read only once.
     fn luminaire(&mut self, reference: &Value, transform: DMat4) -> Result<()> {
         let extensions = self.file.root.extensions.as_ref();
         let profiles =
@@ -194,7 +197,7 @@ impl Importer<'_> {
         let multiplier = reference.get("multiplier").and_then(Value::as_f64).unwrap_or(1.0) as f32;
         let channel = |c: usize| reference.get("color").and_then(|v| v.get(c)?.as_f64()).unwrap_or(1.0) as f32;
         let axes = [DVec3::NEG_Z, DVec3::X].map(|axis| transform.transform_vector3(axis).normalize_or_zero());
-        // Restore the right angle, which nodes with shear destroy.
+        // Make `c0` perpendicular to the axis again: a node with shear destroys the right angle.
         let c0 = (axes[1] - axes[0] * axes[0].dot(axes[1])).normalize_or_zero();
         if axes[0] == DVec3::ZERO || c0 == DVec3::ZERO {
             return Err(Error::format("its node is scaled to zero"));
@@ -254,7 +257,8 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Reads positions and normals, applies morph targets and skin, and transforms them to world space.
+    /// Reads positions and normals, applies morph targets and the skin, and transforms positions and normals to world
+    /// space.
     fn pose(&self, vertices: &Vertices, primitive: &Primitive, placement: Placement) -> Result<Posed> {
         let targets = mixed(primitive, placement.weights);
         let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
@@ -271,7 +275,8 @@ impl Importer<'_> {
             None => map_indexed(positions, |_, p| point(whole, p))?,
         };
 
-        // A reflection reverses the winding and the normals.
+        // A reflection reverses the winding of triangles, which `triangles` undoes. It also negates the result of
+        // `cofactor`, which `side` undoes.
         let is_mirrored =
             skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
         let side = if is_mirrored { -1.0 } else { 1.0 };
@@ -290,8 +295,8 @@ impl Importer<'_> {
         Ok(Posed { positions, normals, is_mirrored })
     }
 
-    /// Counts the output of a primitive before allocating it, and the morph targets to mix: instances multiply the
-    /// contents of a small file.
+    /// Checks the vertices and triangles of a primitive, including morph targets, against the limits before they are
+    /// allocated. Instances let a small file produce huge meshes.
     fn reserve(
         &mut self,
         positions: Index<json::Accessor>,
@@ -329,8 +334,8 @@ impl Importer<'_> {
         })
     }
 
-    /// The material and the vertex colours of a primitive. A colour that all vertices share becomes part of the
-    /// material.
+    /// Returns the material and the vertex colours of a primitive. If all vertices share one colour, the material is a
+    /// copy multiplied by that colour, and there are no vertex colours.
     fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
         let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
@@ -364,7 +369,7 @@ impl Importer<'_> {
             axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to zero")))
         };
         let forward = axis(DVec3::NEG_Z)?;
-        // Non-uniform scaling shears the axes: orthogonalise `up`.
+        // Make `up` perpendicular to `forward` again: non-uniform scaling shears the axes.
         let up = axis(DVec3::Y)?;
         let up = (up - forward * forward.dot(up)).try_normalize();
         let up = up.ok_or_else(|| Error::format(format!("camera {name:?} has parallel axes")))?;
@@ -379,7 +384,7 @@ impl Importer<'_> {
     }
 }
 
-/// Both sets of texture coordinates of a primitive; a missing set is empty.
+/// Reads both sets of texture coordinates of a primitive. A set that the primitive lacks is empty.
 fn texture_coordinates(vertices: &Vertices, count: usize) -> Result<[Vec<Vec2>; 2]> {
     let mut uvs = [Vec::new(), Vec::new()];
     for (set, uv) in uvs.iter_mut().enumerate() {
@@ -390,7 +395,8 @@ fn texture_coordinates(vertices: &Vertices, count: usize) -> Result<[Vec<Vec2>; 
     Ok(uvs)
 }
 
-/// Forms the triangles of a primitive of any of the three modes; a mirrored pose reverses their winding.
+/// Returns the triangles of a primitive: a list, strip or fan of triangles. If `is_mirrored`, their winding is
+/// reversed.
 fn triangles(vertices: &Vertices, mode: Mode, count: usize, is_mirrored: bool) -> Result<Vec<[u32; 3]>> {
     let (mode, indices) = vertices.indices(mode, count)?;
     if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
@@ -410,7 +416,8 @@ fn map_indexed<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) 
     Ok(out)
 }
 
-/// The matrix that transforms normals: the inverse transpose up to scale, but finite for flat scalings.
+/// Returns the matrix that transforms normals: the inverse transpose times the determinant. Unlike the inverse it
+/// stays finite if the transform scales an axis to 0.
 fn cofactor(transform: DMat4) -> DMat3 {
     let linear = DMat3::from_mat4(transform);
     DMat3::from_cols(
@@ -430,14 +437,14 @@ fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {
             _ => [indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]],
         };
     }
-    // Drop degenerate triangles, which join the parts of strips.
+    // Drop the degenerate triangles with which strips connect their parts.
     if mode != Mode::Triangles {
         triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
     }
     Ok(triangles)
 }
 
-/// Replaces zero normals by the mean normal of the adjacent faces.
+/// Replaces each zero normal by the area-weighted mean normal of the faces at its vertex.
 fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) -> Result<()> {
     if !normals.contains(&Vec3::ZERO) {
         return Ok(());

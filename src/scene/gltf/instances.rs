@@ -1,4 +1,4 @@
-//! Transforms of nodes, and of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
+//! Computes the transforms of nodes, and of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
 
 use super::accessor;
 use super::container::File;
@@ -9,7 +9,7 @@ use glam::{DMat4, DQuat, DVec3, Vec3};
 use gltf::json::{self, Index};
 use serde_json::Value;
 
-/// The transform of a node within its parent, with its translation in f64.
+/// Returns the transform of a node relative to its parent, with the translation in f64.
 pub fn local_transform(file: &File, index: usize, node: &json::Node) -> DMat4 {
     let translation = file.translations.get(index).copied().unwrap_or_default();
     if let Some(matrix) = node.matrix {
@@ -21,14 +21,15 @@ pub fn local_transform(file: &File, index: usize, node: &json::Node) -> DMat4 {
     compose(translation, rotation, node.scale.unwrap_or([1.0; 3]))
 }
 
-/// Translation × rotation × scale; a rotation of zeros counts as the identity.
+/// Returns translation × rotation × scale. A quaternion of zeros counts as no rotation.
 fn compose(translation: DVec3, rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
     let rotation = DQuat::from_array(rotation.map(f64::from));
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, translation)
 }
 
-/// The transforms of all instances of a node's mesh: a single one, unless the node has `EXT_mesh_gpu_instancing`.
+/// Returns the world transforms of all instances of a node's mesh. `transform` is the node's own world transform,
+/// which is the only one unless the node has `EXT_mesh_gpu_instancing`.
 pub fn instances(file: &File, node: &json::Node, transform: DMat4) -> Result<Vec<DMat4>> {
     match node.extensions.as_ref().and_then(|e| e.others.get(INSTANCING)) {
         Some(stated) => read(file, stated, transform).map_err(|e| e.context(INSTANCING)),

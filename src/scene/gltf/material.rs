@@ -1,4 +1,4 @@
-//! Materials, textures and images of a file.
+//! Reads the materials of a glTF file, with their textures and images.
 
 use super::Budget;
 use super::container::{File, missing};
@@ -12,16 +12,17 @@ use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, extensions, material, texture};
 
-/// Location of an image's bytes. Exporters that do not share images often share their bytes.
+/// Identifies the encoded bytes of an image. Exporters often write several images that share one buffer view; their
+/// textures are decoded once.
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
     View(usize),
     Image(usize),
-    /// An image that was converted here from specular-glossiness; the number only tells such images apart.
+    /// An image that this file converted from specular-glossiness. The number only tells such images apart.
     Converted(usize),
 }
 
-/// A texture of the file.
+/// A texture as the file describes it, before its image is decoded.
 struct Stored<'a> {
     image: &'a json::Image,
     index: usize,
@@ -30,7 +31,7 @@ struct Stored<'a> {
     name: String,
 }
 
-/// The parts of a material that both workflows give.
+/// The properties of a material that both workflows (metallic-roughness and specular-glossiness) determine.
 #[derive(Default)]
 struct Surface {
     base_color: Vec3,
@@ -41,10 +42,10 @@ struct Surface {
     metallic_roughness_texture: Option<TextureRef>,
 }
 
-/// The properties by which two texture uses share one texture.
+/// Two uses of textures share one texture of the scene if they agree in image, encoding and wrap modes.
 type Key = (Source, Encoding, [Wrap; 2]);
 
-/// Reads materials in order and collects their textures.
+/// Reads materials one after another and collects their textures for the scene.
 pub struct Materials<'a> {
     file: &'a File<'a>,
     budget: &'a dyn Budget,
@@ -58,7 +59,7 @@ impl<'a> Materials<'a> {
         Self { file, budget, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
-    /// Reads a material, clamping factors that lie slightly outside their range, as some exporters write.
+    /// Reads a material. Factors slightly outside their range, as some exporters write them, are clamped.
     pub fn read(&mut self, index: usize, json: &material::Material) -> Result<Material> {
         let extensions = json.extensions.as_ref();
         let glossiness = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
@@ -68,7 +69,7 @@ impl<'a> Materials<'a> {
         };
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
-        // The extension allows 0 for surfaces that reflect everything; treat these as ordinary glass.
+        // An index of 0 means a surface that reflects everything; treat it as the default index, 1.5.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
@@ -109,7 +110,7 @@ impl<'a> Materials<'a> {
         })
     }
 
-    /// Converts `KHR_materials_pbrSpecularGlossiness` to metallic-roughness, with textures of its own.
+    /// Converts a specular-glossiness material to metallic-roughness, with new textures if it has textures.
     fn glossiness(&mut self, settings: &PbrSpecularGlossiness) -> Result<Surface> {
         let [r, g, b, alpha] = settings.diffuse_factor.0;
         let infos = [&settings.diffuse_texture, &settings.specular_glossiness_texture].map(Option::as_ref);
@@ -138,7 +139,7 @@ impl<'a> Materials<'a> {
             references.iter_mut().zip(colours.images(size)?.into_iter().zip(["base colour", "metallic-roughness"]))
         {
             *reference = Some(TextureRef { texture: self.textures.len(), ..place });
-            // No other use shares a converted texture.
+            // Give each converted texture a key of its own, so that no other use shares it.
             self.keys.push((Source::Converted(self.keys.len()), Encoding::Linear, wrap));
             self.textures.push(Texture { name: format!("Converted {name}"), image, wrap });
         }
@@ -147,7 +148,7 @@ impl<'a> Materials<'a> {
         Ok(Surface { base_color, alpha: 1.0, base_color_texture, metallic, roughness, metallic_roughness_texture })
     }
 
-    /// Decodes a texture for a conversion, without adding it to the scene.
+    /// Decodes a texture for a conversion, without adding it to the scene. `None` if it has no image.
     fn separate(&mut self, index: Index<texture::Texture>) -> Result<Option<Texture>> {
         let within = |e: Error| e.context(format_args!("texture {}", index.value()));
         let Some(stored) = self.stored(index).map_err(within)? else { return Ok(None) };
@@ -172,14 +173,15 @@ impl<'a> Materials<'a> {
         Ok(texture.map(|texture| TextureRef { texture, ..place }))
     }
 
-    /// The index of a texture in the scene, unless it has no image; decodes it at its first use.
+    /// Returns the index of a texture in the scene, and decodes the texture at its first use. `None` if it has no
+    /// image.
     fn texture(&mut self, index: Index<texture::Texture>, encoding: Encoding) -> Result<Option<usize>> {
         let Some(stored) = self.stored(index)? else { return Ok(None) };
         let key = (stored.source, encoding, stored.wrap);
         if let Some(known) = self.keys.iter().position(|k| *k == key) {
             return Ok(Some(known));
         }
-        // An image decoded with another encoding or wrapping becomes a separate texture.
+        // The same image with another encoding or wrap mode becomes a separate texture.
         let texture = self.load(&stored, encoding)?;
         self.textures.push(texture);
         self.keys.push(key);
@@ -219,7 +221,7 @@ impl<'a> Materials<'a> {
         Ok(Texture { name: stored.name.clone(), image: decoded, wrap: stored.wrap })
     }
 
-    /// Decodes an image after checking the size in its header against the budget.
+    /// Decodes an image, after checking the size in its header against the budget.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let mut image = None;
         self.budget.lend(io::working_bytes(bytes)?, &mut || {
@@ -236,7 +238,7 @@ impl<'a> Materials<'a> {
         io::decode(bytes, encoding)
     }
 
-    /// Counts the pixels and samples of a texture against the limits.
+    /// Checks the pixels and samples of a texture against the limits, together with those of earlier textures.
     fn count(&mut self, pixels: u64, samples: u64) -> Result<()> {
         self.pixels += pixels;
         if self.pixels > MAX_PIXELS {
@@ -251,7 +253,7 @@ fn transform(info: &texture::Info) -> Option<&extensions::texture::TextureTransf
     info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref())
 }
 
-/// The coordinates of a texture, which is to be filled in.
+/// Returns a texture reference with the set of texture coordinates and their transform; the caller sets the texture.
 fn place(uv_set: u32, transform: Option<&extensions::texture::TextureTransform>) -> Result<TextureRef> {
     let uv_set = transform.and_then(|t| t.tex_coord).unwrap_or(uv_set) as usize;
     if uv_set > 1 {
@@ -274,8 +276,9 @@ fn matrix(transform: &extensions::texture::TextureTransform) -> Mat3 {
     transform_matrix(transform.offset.0.into(), transform.rotation.0, transform.scale.0.into())
 }
 
-/// `translation × rotation × scale`; a positive angle rotates counter-clockwise with v running down, as in the prose
-/// of `KHR_texture_transform` and in renderers (the GLSL in its text rotates the other way).
+/// Returns `translation × rotation × scale`. A positive angle in radians rotates counter-clockwise in an image whose v
+/// axis runs down. This follows the prose of `KHR_texture_transform` and existing renderers; the GLSL code in the text
+/// of the extension rotates the other way.
 pub fn transform_matrix(offset: Vec2, rotation: f32, scale: Vec2) -> Mat3 {
     let (s, c) = rotation.sin_cos();
     Mat3::from_cols(Vec3::new(c, -s, 0.0) * scale.x, Vec3::new(s, c, 0.0) * scale.y, offset.extend(1.0))

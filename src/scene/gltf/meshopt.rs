@@ -1,6 +1,5 @@
-//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`, and `KHR_meshopt_compression` with the
-//! same settings), decoded by the crate
-//! meshoptimizer-rs.
+//! Reads buffer views in meshoptimizer's compression, decoded by the crate meshoptimizer-rs. The extensions
+//! `EXT_meshopt_compression` and `KHR_meshopt_compression` have the same settings.
 
 use super::features::MESHOPT;
 use crate::error::{Error, ErrorKind, Result};
@@ -10,13 +9,14 @@ use meshoptimizer_rs::codec::{BufferView, Filter, Mode};
 use meshoptimizer_rs::{Limits, Workspace};
 use serde_json::Value;
 
-/// Maximum ratio of decoded to encoded bytes: the attribute codec encodes a group of 64 equal bytes in one byte.
+/// Maximum ratio of decoded to encoded bytes. The attribute codec reaches it: it encodes a group of 64 equal bytes in
+/// one byte.
 const MAX_RATIO: u64 = 64;
 
-/// Decoded bytes that may exceed that ratio: one block.
+/// Decoded bytes allowed in addition to `MAX_RATIO`: one block of the codec.
 const BLOCK: u64 = 8192;
 
-/// A compressed buffer view.
+/// A compressed buffer view: the location of its encoded bytes, and how to decode them.
 pub struct Packed {
     pub buffer: usize,
     pub start: u64,
@@ -25,7 +25,7 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// The description of a view; `None` if it is not compressed.
+    /// Reads the compression settings of a buffer view; `None` if it is not compressed.
     pub fn of(view: &View) -> Option<Result<Self>> {
         let others = &view.extensions.as_ref()?.others;
         let (name, settings) = MESHOPT.iter().find_map(|name| Some((name, others.get(*name)?)))?;
@@ -39,7 +39,7 @@ impl Packed {
         let refused = |what: &str, e| Error::format(format!("its {what}: {e}"));
         let (mode, filter) = (text("mode", ""), text("filter", "NONE"));
         let mode = Mode::parse(mode).map_err(|_| Error::format(format!("its mode is {mode:?}")))?;
-        // The crate has no filter of colours, which the Khronos extension adds.
+        // The Khronos extension adds a filter for colours, which the crate lacks.
         let kind = if filter == "COLOR" { ErrorKind::Unsupported } else { ErrorKind::Format };
         let filter = Filter::parse(filter).map_err(|_| Error::new(kind, format!("its filter is {filter:?}")))?;
         let size = |key: &str| required(key).map(|n| usize::try_from(n).unwrap_or(usize::MAX));
@@ -62,7 +62,7 @@ impl Packed {
         Ok(packed)
     }
 
-    /// Size of the decoded data.
+    /// Size in bytes of the decoded data.
     pub fn bytes(&self) -> u64 {
         self.view.byte_length() as u64
     }
@@ -81,7 +81,7 @@ impl Packed {
     }
 }
 
-/// Whether a buffer is the fallback of compressed views, which need not have data.
+/// Whether a buffer is only the fallback for readers without this compression. A fallback need not have data.
 pub fn is_fallback(buffer: &Buffer) -> bool {
     let is = |name: &&str| buffer.extensions.as_ref()?.others.get(*name)?.get("fallback")?.as_bool();
     MESHOPT.iter().any(|name| is(name) == Some(true))

@@ -1,25 +1,28 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants`
-//! (the default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
-//! `KHR_meshopt_compression`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_pbrSpecularGlossiness` (converted), `_unlit` (read as
+//! an ordinary material), `_variants` (the default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`,
+//! `EXT_meshopt_compression`, `KHR_meshopt_compression`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and
+//! `EXT_lights_ies` (type C).
 //!
-//! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
-//! targets mixed by their weights and its skin bent by the joints at rest. A vertex colour that all vertices share
-//! becomes part of the material. Not imported: animation, morph targets of colours and texture coordinates, tangents
-//! (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets of
-//! texture coordinates, and material properties of other extensions such as `KHR_materials_specular`, `_clearcoat`,
-//! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. Visible
-//! parts of the file that are not rendered are listed in [`Scene::unrendered`].
+//! Import: every combination of node, instance and primitive becomes one mesh in world space, named after its node.
+//! Morph targets are mixed by their weights, and skins follow their joints at rest. A vertex colour that all vertices
+//! share becomes part of the material.
 //!
-//! The positions of a scene far from the origin are relative to [`Scene::origin`], which is subtracted in f64.
+//! Not imported: animation, morph targets of colours and texture coordinates, tangents (the renderer derives them),
+//! occlusion textures, points and lines, orthographic cameras, more than two sets of texture coordinates, and the
+//! properties of other material extensions such as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. An
+//! extension not listed above is an error if the file requires it, and is ignored otherwise. [`Scene::unrendered`]
+//! lists the visible features of the file that are not rendered.
 //!
-//! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
-//! it.
+//! If a scene lies far from the origin, the importer subtracts [`Scene::origin`] from its positions, in f64.
 //!
-//! Files are not trusted: the crate `gltf` parses the JSON, but its validation indexes out of bounds in places. Every
-//! index, range and count is therefore checked here before use, and the memory that a small file can cause to be
+//! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot
+//! represent it.
+//!
+//! Files are not trusted. The crate `gltf` parses the JSON, but its own validation indexes out of bounds in places.
+//! Every index, range and count is therefore checked here before use, and the memory that a small file can cause to be
 //! allocated is bounded.
 
 mod accessor;
@@ -48,12 +51,12 @@ use crate::error::Result;
 use crate::image::io;
 use std::path::Path;
 
-/// The memory that an import may take; an error aborts it.
+/// Limits the memory of an import. An error from either method aborts the import.
 pub trait Budget {
-    /// Called with the size in bytes of each mesh and texture before allocation.
+    /// Called before each mesh and each texture is allocated, with its size in bytes.
     fn keep(&self, bytes: u64) -> Result<()>;
 
-    /// Runs work that needs this many bytes of memory until it is done.
+    /// Runs `work`, which needs `bytes` of temporary memory while it runs.
     fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()>;
 }
 
@@ -72,15 +75,15 @@ impl Budget for Unlimited {
     }
 }
 
-/// How a file is read.
+/// Settings of an import.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     pub budget: &'a dyn Budget,
-    /// Length in metres of a unit of the file's coordinates, positive and finite.
+    /// Length in metres of one unit of the file's coordinates, positive and finite.
     pub unit: f64,
-    /// Whether the file may name files outside its folder.
+    /// Whether the file may refer to external files outside its folder.
     pub is_open: bool,
-    /// Whether the positions of a scene far from the origin keep the origin of the file.
+    /// Whether positions stay relative to the file's origin even if the scene lies far from it.
     pub keep_origin: bool,
 }
 
@@ -90,7 +93,7 @@ impl Default for Options<'_> {
     }
 }
 
-/// Reads a `.glb` or `.gltf` file; external files are resolved relative to its folder.
+/// Reads a `.glb` or `.gltf` file. External files are resolved relative to its folder.
 pub fn load(path: &Path, options: Options) -> Result<Scene> {
     import(&io::read_file(path)?, path.parent(), options).map_err(|e| e.context(path.display()))
 }

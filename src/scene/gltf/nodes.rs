@@ -1,11 +1,11 @@
-//! The root nodes of a file.
+//! Finds the root nodes of a glTF file, at which an import starts.
 
 use super::container::{File, missing};
 use crate::error::{Error, Result};
 use crate::image::{try_collect, try_vec};
 use gltf::json::Root;
 
-/// The root nodes: the nodes of the default scene, else of the first scene, else all nodes without a parent.
+/// Returns the root nodes: those of the default scene, else of the first scene, else all nodes without a parent.
 pub fn roots(file: &File) -> Result<Vec<usize>> {
     let root = &file.root;
     let number = root.scene.map_or(0, |s| s.value());
@@ -22,7 +22,7 @@ pub fn roots(file: &File) -> Result<Vec<usize>> {
     }
 }
 
-/// All nodes without a parent.
+/// Returns all nodes without a parent.
 pub fn parentless(root: &Root) -> Result<Vec<usize>> {
     let mut is_child = try_vec(root.nodes.len(), false)?;
     for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {

@@ -1,8 +1,8 @@
-//! The origin of a scene that lies far from the origin of its file.
+//! Chooses a new origin for a scene that lies far from the origin of its file.
 //!
-//! A file places a building on a national grid by the translations of nodes, which JSON holds in f64, over vertices in
-//! f32 near their own origins. Vertices in world space would be rounded to metres at 10,000 km. The importer therefore
-//! subtracts an origin in f64, before it rounds.
+//! A file places a building on a national grid by the translations of nodes, which JSON holds in f64; the vertices are
+//! in f32 near the origins of their nodes. If vertices were transformed to world space in f32, they would be rounded
+//! to metres at 10,000 km. The importer therefore subtracts the new origin in f64 before it rounds.
 
 use super::container::File;
 use super::instances::instances;
@@ -14,21 +14,22 @@ use glam::{DMat4, DVec3};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
-/// Coordinates up to this distance in metres keep their origin: f32 resolves 0.015 mm there. Origins are multiples of
-/// it. [convention]
+/// A scene within this distance in metres of the origin of its file keeps that origin: `f32` resolves 0.015 mm there.
+/// New origins are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
-/// A scene is far from the origin beyond this multiple of its own extent. [convention]
+/// A scene counts as far from the origin if its distance exceeds this multiple of its own extent. [convention]
 const FAR: f64 = 4.0;
 
-/// Number of corners of bounding boxes after which further objects are not looked at: they would change the origin
+/// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
-/// Number of corners from which the place of the scene is computed; sampling may take up to twice as many. They are few
-/// enough for the reserve of memory. [convention]
+/// The collected corners are thinned out to between this number and twice this number of corners, which fit into the
+/// library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
-/// Where the coordinates of a file's scene should start, in the metres of `world`; zero for scenes near the origin.
+/// Returns the new origin of the scene, in metres in the space into which `world` transforms the file; zero if the
+/// scene lies near the file's origin.
 pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     let mut corners = Vec::new();
     for (node, transform) in file.root.nodes.iter().zip(node_transforms(file, world)?) {
@@ -36,7 +37,7 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
         if corners.len() >= MAX_CORNERS {
             break;
         }
-        // A broken list of instances is reported where the meshes are read.
+        // Ignore a broken list of instances here: the error is reported when the meshes are read.
         for transform in instances(file, node, transform).unwrap_or_default() {
             for [low, high] in mesh.primitives.iter().map(|primitive| bounds(file, primitive)) {
                 for corner in [low, high].map(|corner| transform.transform_point3(corner)) {
@@ -52,7 +53,8 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
 }
 
-/// The bounds of a primitive that its file states; the origin of its node if it states none in metres.
+/// Returns the corners of a primitive's bounding box in the coordinates of its node, as its accessor states them. Both
+/// corners are zero if the accessor states no bounds, or if its integers are normalised.
 fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);

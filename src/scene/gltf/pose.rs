@@ -1,5 +1,5 @@
-//! Meshes at rest: shapes mixed from morph targets, and skins bent by joints where the nodes of the file put them
-//! (glTF 2.0, sections 3.7.2.2 and 3.7.3).
+//! Poses meshes at rest: mixes shapes from morph targets, and deforms skins by their joints, whose poses come from the
+//! nodes of the file (glTF 2.0, sections 3.7.2.2 and 3.7.3).
 
 use super::container::{File, missing};
 use super::instances::local_transform;
@@ -12,10 +12,10 @@ use gltf::json::mesh::{MorphTarget, Primitive, Semantic};
 use gltf::json::skin::Skin;
 use gltf::json::{Accessor, Index};
 
-/// Maximum number of sets of joints of a vertex: JOINTS_0 to JOINTS_3, 16 joints.
+/// Maximum number of attribute sets with joints per vertex: JOINTS_0 to JOINTS_3, four joints each.
 const MAX_SETS: u32 = 4;
 
-/// The transforms to the world of all nodes of a file; `None` for nodes that are their own ancestors.
+/// Returns the world transform of each node; `None` for a node in or below a cycle of nodes.
 pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> {
     let all = &file.root.nodes;
     let mut placed = try_vec(all.len(), None)?;
@@ -31,16 +31,16 @@ pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> 
     Ok(placed)
 }
 
-/// The skinning of a primitive: the transforms of the joints, and the weights of each vertex.
+/// The skinning of a primitive: the transforms of the joints, and each vertex's joints with their weights.
 pub struct Skinning {
-    /// The transform of each joint from the space of the mesh in the bind pose to world space.
+    /// For each joint, the transform from the space of the mesh in the bind pose to world space.
     joints: Vec<DMat4>,
-    /// Indices of joints and their weights, for each vertex.
+    /// The attribute sets: for each vertex, the indices of four joints and their weights.
     sets: Vec<(Vec<[f32; 4]>, Vec<[f32; 4]>)>,
 }
 
 impl Skinning {
-    /// Reads the joints and weights of `count` vertices; `None` if they have no joints.
+    /// Reads the joints and weights of `count` vertices; `None` if the primitive has no joints.
     pub fn read(
         file: &File,
         vertices: &Vertices,
@@ -66,7 +66,7 @@ impl Skinning {
         Ok(Some(skinning))
     }
 
-    /// The joints that move a vertex, with their weights.
+    /// Iterates over the joints that move a vertex, with their weights, which are not 0.
     fn influences(&self, vertex: usize) -> impl Iterator<Item = (usize, f64)> {
         let set = move |(joints, weights): &(Vec<[f32; 4]>, Vec<[f32; 4]>)| {
             let (joints, weights) = (joints[vertex], weights[vertex]);
@@ -82,14 +82,14 @@ impl Skinning {
         }
     }
 
-    /// Whether joints reflect most of the vertices.
+    /// Whether the joints mirror the majority of the `count` vertices.
     pub fn is_mirrored(&self, count: usize) -> bool {
         let is_possible = self.joints.iter().any(|joint| joint.determinant() < 0.0);
         is_possible && (0..count).map(|i| self.transform(i).determinant().signum()).sum::<f64>() < 0.0
     }
 
-    /// The transform of a vertex: the mean of its joints' transforms, weighted by the joints' weights; if all weights
-    /// are 0, the transform of its first joint.
+    /// Returns the transform of a vertex: the mean of its joints' transforms, weighted by the weights of the joints.
+    /// If all weights are 0, it is the transform of the vertex's first joint.
     pub fn transform(&self, vertex: usize) -> DMat4 {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
         for (joint, weight) in self.influences(vertex) {
@@ -104,7 +104,7 @@ impl Skinning {
     }
 }
 
-/// The transforms of a skin's joints, each after its inverse bind matrix.
+/// Returns for each joint of a skin its world transform times its inverse bind matrix.
 fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec<DMat4>> {
     let root = &file.root;
     let skin = root.get(skin).ok_or_else(|| missing("skin", skin.value(), root.skins.len()))?;
@@ -128,13 +128,13 @@ fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec
     Ok(out)
 }
 
-/// The morph targets of a primitive that are mixed in, with their weights.
+/// Iterates over the morph targets of a primitive, each with its weight; targets with a weight of 0 are skipped.
 pub fn mixed<'a>(primitive: &'a Primitive, weights: &'a [f32]) -> impl Iterator<Item = (&'a MorphTarget, f32)> + Clone {
     let targets = primitive.targets.iter().flatten();
     targets.zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
 }
 
-/// Adds the displacements of morph targets to the values of one attribute.
+/// Adds the weighted displacements of morph targets to the values of one vertex attribute.
 pub fn mix<'a>(
     file: &File,
     targets: impl Iterator<Item = (&'a MorphTarget, f32)>,

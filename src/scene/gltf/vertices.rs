@@ -1,4 +1,4 @@
-//! The attributes of a primitive's vertices: from accessors, or from the stream of a compressed primitive.
+//! Reads the vertex attributes of a primitive, from accessors or from a Draco stream.
 
 use super::container::File;
 use super::draco::Decoded;
@@ -24,7 +24,8 @@ impl<'a> Vertices<'a> {
         self.primitive.attributes.get(&Checked::Valid(semantic.clone())).copied()
     }
 
-    /// The values of an attribute; `None` if the primitive lacks it. Normalised integers are scaled.
+    /// Returns the values of an attribute, with normalised integers scaled to floats; `None` if the primitive lacks
+    /// the attribute.
     pub fn vectors<const N: usize>(&self, semantic: &Semantic) -> Result<Option<Vec<[f32; N]>>> {
         let Some(index) = self.accessor(semantic) else { return Ok(None) };
         if let Some(values) = self.decoded.as_ref().and_then(|decoded| decoded.vectors(self.file, semantic, index)) {
@@ -33,7 +34,7 @@ impl<'a> Vertices<'a> {
         accessor::vectors(self.file, index).map(Some)
     }
 
-    /// As `vectors`, with an error if the number of values is not the number of vertices.
+    /// Like `vectors`, but returns an error unless there is one value for each of the `count` vertices.
     pub fn checked<const N: usize>(&self, semantic: &Semantic, count: usize) -> Result<Option<Vec<[f32; N]>>> {
         let values = self.vectors(semantic)?;
         match values.as_ref().map(Vec::len) {
@@ -45,7 +46,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// The colours of the vertices; alpha is 1 where the file has none.
+    /// Returns the colours of the vertices with alpha, which is 1 if the file has no alpha; `None` without colours.
     pub fn colours(&self, count: usize) -> Result<Option<Vec<[f32; 4]>>> {
         let semantic = Semantic::Colors(0);
         let Some(index) = self.accessor(&semantic) else { return Ok(None) };
@@ -56,10 +57,10 @@ impl<'a> Vertices<'a> {
         colours.map(|colours| try_collect(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]))).transpose()
     }
 
-    /// The indices, and the mode in which they form triangles.
+    /// Returns the vertex indices, and the primitive mode by which they form triangles.
     pub fn indices(&self, mode: Mode, count: usize) -> Result<(Mode, Vec<u32>)> {
         match (&self.decoded, self.primitive.indices) {
-            // A stream has whole triangles, whatever the mode.
+            // A Draco stream always holds separate triangles, whatever the mode of the primitive.
             (Some(decoded), _) => Ok((Mode::Triangles, decoded.indices()?)),
             (None, Some(index)) => Ok((mode, accessor::indices(self.file, index)?)),
             (None, None) => Ok((mode, try_collect(0..count as u32)?)),

@@ -1,8 +1,10 @@
-//! Objects and materials of a scene as candidates for the surface with the lights: their area, height and direction,
-//! and how much each resembles a ceiling.
+//! Lists the objects and materials of a scene as candidates for the surface that will carry the lights: their area,
+//! height and direction, and how much each resembles a ceiling.
 //!
-//! A ceiling is level, lies high in the scene and covers much of its plan. The score is the product of these three
-//! shares; only its order has a meaning. Each triangle is read once, so that large scenes are listed quickly.
+//! A ceiling is level, lies high in the scene and covers much of the scene's floor plan. The score is the product of
+//! three shares: the share of the area that is level, the share of the scene's floor plan that the level area covers,
+//! and the square of the area's height relative to the scene's height. Only the order of scores has a meaning. Each
+//! triangle is read once, so that large scenes are listed quickly.
 //!
 //! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
 //! side.
@@ -12,14 +14,14 @@ use crate::image::{try_collect, try_push, try_vec, try_with_capacity};
 use crate::scene::Scene;
 use glam::{DVec2, DVec3};
 
-/// Cosine of 15 degrees: triangles that are inclined less are level. [convention]
+/// Cosine of 15 degrees: triangles inclined by less than this angle count as level. [convention]
 const LEVEL: f64 = 0.965_925_826;
 
-/// A name that contains a word for a ceiling raises a score by this share of the distance from the score to 1.
+/// If a name contains a word for a ceiling, this share of the distance between the score and 1 is added to the score.
 /// [convention]
 const NAMED: f64 = 0.5;
 
-/// Words for a ceiling, in lower case, in the languages of modelling programs.
+/// Words for a ceiling in lower case, in several languages.
 const NAMES: [&str; 8] = ["ceiling", "decke", "plafond", "soffitto", "techo", "teto", "天井", "потолок"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,34 +32,34 @@ pub enum Kind {
     Material,
 }
 
-/// An object or a material.
+/// An object or a material of the scene, with the measurements that indicate how likely it is to be the ceiling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub kind: Kind,
     pub name: String,
-    /// Index of the object's first mesh, or of the material.
+    /// Index of the object's first mesh, or index of the material.
     pub index: usize,
     pub triangles: usize,
-    /// In m².
+    /// Area of all triangles in m².
     pub area: f64,
-    /// Area in m² of the triangles that are level, on either side.
+    /// Area in m² of the level triangles, whether they face up or down.
     pub level_area: f64,
-    /// Lowest and highest point, in metres.
+    /// Heights of the lowest and the highest point in metres.
     pub low: f64,
     pub high: f64,
-    /// Mean height in metres of the level triangles, or of all triangles if none is level.
+    /// Area-weighted mean height in metres of the level triangles, or of all triangles if none is level.
     pub height: f64,
-    /// Mean normal of the front sides, weighted by area; 0 if the normals cancel.
+    /// Unit mean of the triangles' normals, weighted by area; 0 if the normals cancel.
     pub normal: DVec3,
-    /// Resemblance to a ceiling, in `[0, 1]`.
+    /// Resemblance to a ceiling, in `[0, 1]`; see the module documentation.
     pub score: f64,
-    /// The reason for the score, as text.
+    /// The reason for the score, as text for the user.
     pub reason: String,
 }
 
-/// All objects, and all materials in use, the likeliest ceilings first. Triangles without an area do not count.
+/// Lists all objects, and all materials in use, the most likely ceiling first. Triangles without an area do not count.
 pub fn candidates(scene: &Scene) -> Result<Vec<Candidate>> {
-    // Measure each mesh once; objects and materials are sums of meshes.
+    // Measure each mesh once; the measurements of objects and materials are sums over meshes.
     let sums = try_collect(scene.meshes.iter().map(|mesh| {
         let corners = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(|p| p.as_dvec3()));
         corners.fold(Sums::default(), |mut sums, corners| {
@@ -68,7 +70,7 @@ pub fn candidates(scene: &Scene) -> Result<Vec<Candidate>> {
     let mut whole = Sums::default();
     sums.iter().for_each(|mesh| whole.add(mesh));
 
-    // Meshes of one name are one object.
+    // Meshes with the same name form one object.
     let mut order = try_collect(0..scene.meshes.len())?;
     order.sort_by_key(|&i| (&scene.meshes[i].name, i));
     let mut list = try_with_capacity(0)?;
@@ -92,16 +94,16 @@ pub fn candidates(scene: &Scene) -> Result<Vec<Candidate>> {
     Ok(list)
 }
 
-/// Sums over triangles.
+/// Sums over the triangles of a mesh, an object or a material.
 #[derive(Clone)]
 struct Sums {
     triangles: usize,
     area: f64,
     level_area: f64,
-    /// Heights of the centres of triangles, times their areas.
+    /// Sum of the triangles' areas times the heights of their centres.
     moment: f64,
     level_moment: f64,
-    /// Half of the cross products of the sides of triangles: their normals, as long as their areas.
+    /// Sum of the area vectors of triangles: their normals, each as long as the triangle's area.
     area_vector: DVec3,
     low: DVec3,
     high: DVec3,
@@ -167,7 +169,7 @@ impl Sums {
             share(self.level_area, plan),
             share(self.height() - scene.low.y, size.y),
         ];
-        // Square the share of the height: a surface at half the height is hardly a ceiling.
+        // Square the relative height, because a surface at half the height is hardly a ceiling.
         let score = level * cover * above * above;
         let lower = name.to_lowercase();
         let is_named = NAMES.iter().any(|word| lower.contains(word));
@@ -210,7 +212,7 @@ mod tests {
     use crate::scene::{Material, Mesh};
     use glam::Vec3;
 
-    /// A room of 6 x 4 x 3 m: floor, ceiling in two meshes, a wall and a desk.
+    /// A room of 6 x 4 x 3 m with a floor, a ceiling in two meshes, a wall and a desk.
     fn room() -> Scene {
         let sheet = |name: &str, corner: Vec3, u: Vec3, v: Vec3, material: usize| Mesh {
             name: name.into(),
@@ -251,7 +253,8 @@ mod tests {
         assert_eq!(slab.normal, DVec3::NEG_Y);
         let words = "24.0 of its 24.0 m² are level, at 3.00 m, which is 100 % of the scene's height, and cover 100 % of its plan";
         assert_eq!(slab.reason, words);
-        // A material of ceiling and wall: the height is that of its level triangles alone.
+        // If the ceiling and a wall share a material, the height of the material is the height of its level triangles
+        // alone.
         let plaster = &list[1];
         assert_eq!((plaster.index, plaster.area, plaster.level_area, plaster.height), (1, 42.0, 24.0, 3.0));
         let find = |name: &str| list.iter().find(|c| c.name == name).unwrap();

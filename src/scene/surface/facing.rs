@@ -1,4 +1,5 @@
-//! Selects the plane, and the side of it, that faces the room.
+//! Selects, among the planes of an object, the plane that faces the room, and the side of the plane on which the room
+//! lies.
 
 use super::patch::Patch;
 use crate::error::{Error, Result};
@@ -6,20 +7,21 @@ use crate::rng::Rng;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
-/// Rays cast from each side of each plane.
+/// Number of rays cast from each side of each plane.
 const RAYS: usize = 128;
-/// Triangles per bounding box.
+/// Number of triangles in one bounding box.
 const CHUNK: usize = 64;
-/// Weight of the share of cameras in front of a side [origin not recorded].
+/// Weight of the cameras: the score of a side is multiplied by 1 plus this weight times the share of cameras in front
+/// of the side. [origin not recorded]
 const CAMERA_WEIGHT: f64 = 4.0;
 
-/// The plane that faces the room, and its unit normal into the room.
+/// Returns the index of the plane that faces the room, and its unit normal into the room.
 ///
 /// A side faces the room if rays leaving it travel far, relative to the size of the plane, and then hit a surface.
-/// Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once. The score of a side is its area
-/// times the mean of `min(1, distance / √area)`, where a ray that hits nothing counts 0; the share of cameras in front
-/// of the side raises its score. In an otherwise empty scene all scores are 0, and the side is chosen from which the
-/// triangles run counter-clockwise.
+/// (Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once.) The score of a side is the
+/// product of its area, the mean of `min(1, distance / √area)` over the rays, where a ray that hits nothing counts 0,
+/// and a factor for the cameras in front of the side. In an otherwise empty scene all scores are 0, and the result is
+/// the front side of the first plane.
 pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let chunks = chunks(scene);
     let mut best: Option<(f64, usize, DVec3)> = None;
@@ -36,7 +38,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     best.map(|(_, i, normal)| (i, normal)).ok_or_else(|| Error::degenerate("the surface has no area"))
 }
 
-/// The plane's normal on the side towards which most of its area is wound.
+/// Returns the normal on the front side of the plane: the side from which most of its area is wound counter-clockwise.
 fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     let signed: f64 = patch
         .triangles
@@ -49,15 +51,16 @@ fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     if signed < 0.0 { -patch.normal } else { patch.normal }
 }
 
-/// The share of the cameras in front of the plane.
+/// Share of the scene's cameras that are in front of the plane.
 fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
     let in_front = scene.cameras.iter().filter(|c| (c.position.as_dvec3() - patch.centre).dot(normal) > 0.0).count();
     in_front as f64 / scene.cameras.len().max(1) as f64
 }
 
-/// Visibility of the scene from one side of a plane, in `[0, 1]`.
+/// Returns how far one can see from one side of a plane, in `[0, 1]`: the mean of `min(1, distance / √area)` over
+/// [`RAYS`] rays.
 fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
-    // Prefix sums of areas, to sample triangles in proportion to area.
+    // Accumulate the areas of the triangles, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());
     let mut sum = 0.0;
     for &(mesh, triangle) in &patch.triangles {
@@ -80,7 +83,7 @@ fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> 
         let (radius2, angle) = (rng.next_f64(), std::f64::consts::TAU * rng.next_f64());
         let (s, t) = angle.sin_cos();
         let direction = (u * t + v * s) * radius2.sqrt() + normal * (1.0 - radius2).sqrt();
-        // Start beyond the plane's own triangles, which lie within four tolerances of each other.
+        // Start beyond the plane's own triangles, which differ in height by up to four tolerances.
         let start = point + normal * (4.0 * patch.tolerance);
         if let Some(distance) = nearest(scene, chunks, start.as_vec3(), direction.as_vec3()) {
             seen += (f64::from(distance) / scale).min(1.0);
@@ -89,7 +92,7 @@ fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> 
     seen / RAYS as f64
 }
 
-/// A run of triangles of one mesh with its bounding box; neighbours in a file are mostly neighbours in space.
+/// Consecutive triangles of one mesh with their bounding box. Neighbours in a file are mostly neighbours in space.
 struct Chunk {
     mesh: usize,
     triangles: std::ops::Range<usize>,
@@ -113,12 +116,12 @@ fn chunks(scene: &Scene) -> Vec<Chunk> {
     out
 }
 
-/// Distance to the nearest triangle along a ray.
+/// Returns the distance to the nearest triangle along a ray; `None` if the ray hits nothing.
 fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Option<f32> {
     let inverse = direction.recip();
     let mut closest = f32::INFINITY;
     for chunk in chunks {
-        // Slab test; `max` and `min` ignore the NaN of a ray inside a face of the box.
+        // Slab test. `max` and `min` ignore the NaN that arises if the ray lies in the plane of a face.
         let (a, b) = ((chunk.low - origin) * inverse, (chunk.high - origin) * inverse);
         let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
         if near > far || near > closest {
@@ -134,7 +137,7 @@ fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Op
     closest.is_finite().then_some(closest)
 }
 
-/// Ray-triangle test of Möller and Trumbore (1997), two-sided.
+/// Two-sided ray-triangle test of Möller and Trumbore (1997). Returns the distance of the hit.
 fn hit(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let p = direction.cross(ac);

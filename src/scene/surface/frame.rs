@@ -1,26 +1,26 @@
-//! The bounding rectangle of a planar patch, with axes independent of how its triangles are stored.
+//! Fits the bounding rectangle of a planar patch, with axes that do not depend on how its triangles are stored.
 
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Axes within 1° of a world axis snap to it [convention].
+/// Cosine of 1°: axes within this angle of the aligned axes snap to them. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
-/// The rectangle along the world axes is preferred unless another has an area smaller by this share [origin not
-/// recorded].
+/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
+/// recorded]
 const MIN_SAVING: f64 = 1e-3;
-/// Planes at more than 45° to the horizontal are walls [convention].
+/// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct Frame {
-    /// The point with u = v = 0.
+    /// The corner with u = v = 0.
     pub origin: DVec3,
     pub u: DVec3,
     pub v: DVec3,
     pub size: DVec2,
 }
 
-/// The smallest bounding rectangle of points in the plane through `centre` with the unit `normal`, which points at the
-/// viewer: u runs to the viewer's right, v down.
+/// Fits the smallest bounding rectangle of points in the plane through `centre`. The unit `normal` points at the
+/// viewer, to whom u runs right and v runs down.
 pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     let upright = upright(normal);
     let turned = smallest(points, centre, upright, normal);
@@ -30,10 +30,10 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     if aligned { aligned_frame } else { turned_frame }
 }
 
-/// The direction of u along the world axes.
+/// Returns the direction of u that is aligned with the world axes.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
-        // On a wall, v is as close to straight down as possible; u = normal × v.
+        // On a wall, v points down as far as possible, and u = normal × v.
         let down = DVec3::NEG_Y - normal * DVec3::NEG_Y.dot(normal);
         normal.cross(down)
     } else {
@@ -42,12 +42,12 @@ fn upright(normal: DVec3) -> DVec3 {
     candidate.normalize_or(normal.any_orthonormal_vector())
 }
 
-/// v for a given u, such that `u × v = -normal`.
+/// Returns the v axis that corresponds to `u`: `u × v = -normal`.
 fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
     u.cross(normal)
 }
 
-/// The bounding rectangle with its sides along a given u.
+/// Returns the bounding rectangle with sides along `u` and along the corresponding v axis.
 pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -59,8 +59,8 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame 
     Frame { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
 }
 
-/// Direction of u of the rectangle of minimum area, rotated from `upright` by at most 45°. One side of that rectangle
-/// lies along an edge of the convex hull (Freeman and Shapira 1975).
+/// Returns the direction of u of the bounding rectangle of minimum area, which differs from `upright` by at most 45°.
+/// One side of that rectangle lies along an edge of the convex hull (Freeman and Shapira 1975).
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);
     let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));
@@ -79,7 +79,7 @@ fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> D
             best = (area, edge);
         }
     }
-    // Of the four directions along the sides, take the one nearest to upright.
+    // Of the four directions along the sides of the rectangle, take the one nearest to `upright`.
     let edge = best.1;
     let turns = [edge, edge.perp(), -edge, -edge.perp()];
     let nearest = turns.into_iter().fold(edge, |a, b| if b.x > a.x + 1e-12 { b } else { a });
@@ -103,7 +103,7 @@ mod tests {
             let slack = if degrees == 0.5 { 0.06 } else { 1e-9 };
             let (long, short) = (frame.size.max_element(), frame.size.min_element());
             assert!((long - 3.0).abs() < slack && (short - 2.0).abs() < slack, "{degrees}: {}", frame.size);
-            // Half a degree snaps to the world axes.
+            // A rectangle rotated by half a degree snaps to the world axes; larger rotations do not.
             assert!((degrees > 1.0) != (frame.u == DVec3::X), "{degrees}: {}", frame.u);
             assert!(frame.u.x >= WALL - 1e-9);
         }
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn frames_are_oriented_as_seen_from_the_room() {
         let square = |u: DVec3, v: DVec3| [DVec3::ZERO, u, u + v, v];
-        // A ceiling, a floor, and two walls.
+        // Expected axes u and v for a ceiling, a floor and two walls.
         for (normal, u, v) in [
             (DVec3::NEG_Y, DVec3::X, DVec3::NEG_Z),
             (DVec3::Y, DVec3::X, DVec3::Z),

@@ -1,13 +1,13 @@
-//! Target surfaces: a planar patch selected by name, and an emissive texture mapped onto it.
+//! Finds target surfaces, planar patches selected by name, and maps emissive textures onto them.
 //!
-//! The paper (section 7) maps the light texture onto a surface the user picks. Real ceilings are rarely single
+//! The paper (section 7) maps the light texture onto a surface that the user picks. Real ceilings are rarely single
 //! rectangles: they are slabs with two sides and edges, or single sheets wound either way. [`find`] collects the
-//! triangles of the named object, groups them into planes ([`patch`](self)), selects the plane and the side from which
-//! most of the room is visible, and fits a rectangle in that plane. [`place`] splits off the patch and maps a texture
-//! onto the rectangle.
+//! triangles of the named object, groups them into planes, selects the plane and the side from which most of the room
+//! is visible, and fits a rectangle in that plane. [`place`] makes the patch a separate mesh and maps a texture onto
+//! the rectangle.
 //!
-//! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area
-//! that slopes away from it.
+//! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area of
+//! the remaining, sloped triangles.
 
 mod candidates;
 mod facing;
@@ -26,33 +26,34 @@ use crate::error::{Error, Result};
 use crate::image::try_collect;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-/// A planar patch of the scene with its own frame.
+/// A planar patch of the scene, with the frame of its bounding rectangle.
 ///
 /// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored: `u ×
-/// v = -normal`. On walls v points down as far as possible. On floors and ceilings u points along +x as far as
-/// possible: a ceiling appears as to a person who faces -z and looks up.
+/// v = -normal`. On walls, v points down as far as possible. On floors and ceilings, u points along +x as far as
+/// possible. A person who faces -z and looks up thus sees a ceiling's texture upright.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// (mesh, triangle) of every triangle of the patch, in ascending order.
+    /// (mesh, triangle) indices of every triangle of the patch, in ascending order.
     pub triangles: Vec<(usize, usize)>,
-    /// Corner of the bounding rectangle with u = v = 0.
+    /// The corner of the bounding rectangle with u = v = 0.
     pub origin: Vec3,
     /// Unit directions of u and v; `u × v` points away from the room.
     pub u_axis: Vec3,
     pub v_axis: Vec3,
-    /// Unit normal into the room; this side will emit.
+    /// Unit normal into the room. The side it points from will emit.
     pub normal: Vec3,
-    /// Extent along u and v in metres.
+    /// Extent of the bounding rectangle along u and v in metres.
     pub size: Vec2,
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area in m² of the other named triangles that slope from this plane by 5 to 75 degrees, as in a vault; they get
-    /// no light.
+    /// Area in m² of the named object's other triangles that are inclined to this plane by 5 to 75 degrees, as in a
+    /// vault. They get no light texture.
     pub bent: f32,
 }
 
 impl Surface {
-    /// The patch with its axes rotated by an angle from u towards v, and its bounding rectangle along these axes.
+    /// Returns the patch with its axes rotated by `angle` in radians from u towards v, and with the bounding rectangle
+    /// along these axes.
     pub fn turned(&self, scene: &Scene, angle: f64) -> Result<Self> {
         let turn = DVec2::from_angle(angle);
         let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
@@ -71,11 +72,11 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
     try_collect(triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())))
 }
 
-/// Finds the planar patch that faces the room, of the object or material with the given name.
+/// Finds the planar patch that faces the room, among the triangles of the object or material with the given name.
 ///
-/// Object names are tried first, then material names: exact matches, then case-insensitive ones, then substrings of a
-/// single name. The scene must be valid. Errors: `NotFound`, listing the existing names; `Degenerate` if the object
-/// has no area.
+/// Object names are tried before material names. Either may match exactly, else case-insensitively, else as a
+/// substring that only one name contains. The scene must be valid. Errors: `NotFound`, listing the existing names;
+/// `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =
@@ -83,7 +84,8 @@ pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     from_list(scene, &triangles).map_err(|e| e.context(format_args!("surface {name:?}")))
 }
 
-/// The planar patch that faces the room among the given (mesh, triangle) pairs; other triangles are left out.
+/// Finds the planar patch that faces the room among the given (mesh, triangle) pairs. The patch need not contain all
+/// of these triangles.
 ///
 /// Errors: `InvalidArgument` if a pair is not in the scene; `Degenerate` if the triangles have no area.
 pub fn from_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
@@ -106,7 +108,7 @@ fn check_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<()> {
 }
 
 fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
-    // Group the triangles into planes; choose the plane, and the side of it, from which most of the room is visible.
+    // Group the triangles into planes. Choose the plane, and the side of it, from which most of the room is visible.
     let patches = patch::planes(scene, triangles)?;
     let (chosen, normal) = facing::facing(scene, &patches)?;
     let chosen = &patches[chosen];

@@ -1,4 +1,4 @@
-//! Lookup of objects and materials by name.
+//! Finds the meshes of an object or a material by name.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Scene;
@@ -6,7 +6,8 @@ use crate::scene::Scene;
 /// Maximum number of names that an error message lists.
 const LISTED: usize = 10;
 
-/// The meshes of the object, or else of the material, with the given name. Meshes without triangles are ignored.
+/// Returns the meshes of the object with the given name, or else of the material. Meshes without triangles are
+/// ignored.
 pub fn find(scene: &Scene, name: &str) -> Result<Vec<usize>> {
     let objects: Vec<(usize, &str)> = scene
         .meshes
@@ -50,13 +51,13 @@ fn not_found(name: &str, why: &str, names: &[&str]) -> Error {
     Error::new(ErrorKind::NotFound, format!("{name:?} {why}; {hint}"))
 }
 
-/// The distinct non-empty names, in order of appearance.
+/// Returns the distinct non-empty names in order of appearance.
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen = std::collections::HashSet::new();
     names.filter(|n| !n.is_empty() && seen.insert(*n)).collect()
 }
 
-/// Sorts names by the share of letter pairs in common with the wanted name (Dice 1945).
+/// Sorts names by their similarity to the wanted name: the share of common letter pairs (Dice 1945).
 fn closest<'a>(wanted: &str, mut names: Vec<&'a str>) -> Vec<&'a str> {
     let pairs = |text: &str| -> Vec<(char, char)> { text.chars().zip(text.chars().skip(1)).collect() };
     let target = pairs(wanted);

@@ -1,4 +1,4 @@
-//! Groups triangles into planes.
+//! Groups the triangles of an object into planes.
 
 use crate::error::{Error, Result};
 use crate::image::try_collect;
@@ -6,49 +6,52 @@ use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Maximum angle between a triangle and its plane: 2° [origin not recorded].
+/// Cosine of 2°, the maximum angle between the normals of a triangle and of its plane. [origin not recorded]
 const COS_ANGLE: f64 = 0.999_390_827;
-/// Maximum distance of the corners from the plane, relative to the diagonal of the object [origin not recorded].
+/// Tolerance of planes, relative to the diagonal of the object's bounding box: corners lie within twice this distance
+/// of their plane. [origin not recorded]
 const OFFSET: f64 = 5e-4;
-/// Side of a cell in the grid of directions: the angle of [`COS_ANGLE`] [convention].
+/// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;
-/// Maximum number of directions examined, largest area first.
+/// Maximum number of directions along which planes are searched, in order of falling area.
 const DIRECTIONS: usize = 32;
-/// Maximum number of planes returned, and the minimum area of a plane relative to the largest [origin not recorded].
+/// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane. [origin not
+/// recorded]
 const PLANES: usize = 16;
 const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab
-/// [convention: luxfer_surface].
+/// Cosines of 75 and 5 degrees, between which a triangle is sloped: steeper triangles are the edges of a slab, flatter
+/// triangles belong to the plane. [convention: luxfer_surface]
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
-/// Coplanar triangles.
+/// Triangles that lie in one plane, within tolerances.
 pub struct Patch {
     pub triangles: Vec<(usize, usize)>,
-    /// Unit normal; its sign has no meaning yet.
+    /// Unit normal of the plane, with an arbitrary sign.
     pub normal: DVec3,
-    /// Centroid.
+    /// Centroid of the triangles.
     pub centre: DVec3,
-    /// Area in m².
+    /// Area of the triangles in m².
     pub area: f64,
-    /// Maximum distance of corners from the plane, in metres.
+    /// Tolerance in metres: the corners lie within twice this distance of the plane.
     pub tolerance: f64,
 }
 
 #[derive(Clone, Copy)]
 struct Facet {
     id: (usize, usize),
-    /// A normal vector whose length is the area.
+    /// The triangle's normal, as long as its area.
     area_vector: DVec3,
     area: f64,
     centre: DVec3,
     corners: [DVec3; 3],
 }
 
-/// The planes among the triangles, largest first; small ones are left out.
+/// Returns the planes of the triangles, largest first, without small planes.
 ///
-/// Normals are compared without sign, since sheets may be wound either way. Directions are accumulated in the cells of
-/// a grid, weighted by area. Along the directions of the heaviest cells, planes are found by their offsets.
+/// First the directions of the normals are accumulated in the cells of a grid, weighted by area. Their signs are
+/// ignored, since sheets may be wound either way. Then, along the direction of each heavy cell, planes are found by
+/// their offsets.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
@@ -59,7 +62,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     }
     let tolerance = OFFSET * (high - low).length();
 
-    // Accumulate the area in each cell of directions, combining opposite directions.
+    // Accumulate the area of each direction in the cells of a grid; opposite directions count as one.
     let mut cells: BTreeMap<[i32; 3], (f64, DVec3)> = BTreeMap::new();
     for f in &facets {
         let direction = unsigned(f.area_vector / f.area);
@@ -92,13 +95,13 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     Ok(patches)
 }
 
-/// Area of the triangles that slope from a plane, on either side.
+/// Area in m² of the triangles inclined to the plane of `normal` by 5 to 75 degrees, on either side.
 pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
     let slopes = |f: &Facet| {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
         SLOPED[0] < cosine && cosine < SLOPED[1]
     };
-    // `sum` would start at -0.
+    // Use `fold`, because `sum` starts at -0.
     triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).fold(0.0, |sum, f| sum + f.area)
 }
 
@@ -110,14 +113,15 @@ fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
     (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
 }
 
-/// The direction or its opposite, chosen by a fixed rule.
+/// Returns the direction or its opposite, whichever has a positive leading component.
 fn unsigned(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     let leading = direction.to_array().into_iter().find(|c| c.abs() > 0.5 * largest).unwrap_or(1.0);
     direction * leading.signum()
 }
 
-/// The unassigned facets of the plane of largest area perpendicular to a direction.
+/// Returns the unassigned facets of the plane with the largest area among the planes perpendicular to `direction`;
+/// `None` if no facet is left.
 fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -> Option<Vec<usize>> {
     let mut offsets: Vec<(f64, usize)> = facets
         .iter()
@@ -127,7 +131,7 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         .collect();
     offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 
-    // Slide a window of twice the tolerance over the sorted offsets.
+    // Slide a window of twice the tolerance over the sorted offsets and keep the window of largest area.
     let (mut first, mut area) = (0, 0.0);
     let mut best = (0.0, 0..0);
     for last in 0..offsets.len() {
@@ -145,7 +149,7 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         return None;
     }
 
-    // Refine membership by the plane's own normal and offset: the cell's direction is only approximate.
+    // Select the facets again by the normal and offset of this plane: the given direction is only approximate.
     let members: Vec<usize> = window.iter().map(|w| w.1).collect();
     let plane = gather(facets, &members, tolerance);
     let belongs = |f: &Facet| {

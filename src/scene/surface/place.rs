@@ -1,4 +1,4 @@
-//! Maps a light texture onto a surface.
+//! Maps a light texture onto a surface of the scene.
 
 use super::{Surface, check_triangles};
 use crate::error::{Error, Result};
@@ -6,21 +6,23 @@ use crate::image::Image;
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
-/// The mesh and material that now emit.
+/// The mesh and material that emit after [`place`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Index of the mesh that now holds the patch.
+    /// Index of the new mesh that holds the patch.
     pub mesh: usize,
-    /// Index of its material, whose `emission` scales the texture.
+    /// Index of the material of that mesh. Its `emission` scales the texture.
     pub material: usize,
 }
 
 /// Maps an emissive texture onto the bounding rectangle of a surface. The patch becomes a separate mesh with a second
-/// set of texture coordinates and a copy of its material that emits `strength × texture` (cd/m²).
+/// set of texture coordinates and a copy of its material that emits `strength × texture` in cd/m².
 ///
-/// The front of the patch faces the room, and only the front emits. The original meshes keep their index and their
-/// other triangles. A patch that spans several meshes takes the material of the mesh with the largest share. Errors:
-/// `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
+/// The front of the patch faces the room, and only the front emits. The original meshes keep their indices and their
+/// other triangles. A patch that spans several meshes takes the material of the mesh with the largest share of its
+/// area.
+///
+/// Errors: `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
     check_triangles(scene, &surface.triangles)?;
     if !strength.is_finite() || strength.min_element() < 0.0 {
@@ -54,7 +56,7 @@ pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec
     Ok(Placed { mesh: scene.meshes.len() - 1, material: scene.materials.len() - 1 })
 }
 
-/// The mesh with the largest share of the surface's area.
+/// Returns the mesh that holds the largest share of the surface's area.
 fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     let mut areas = vec![0.0f64; scene.meshes.len()];
     for &(mesh, triangle) in &surface.triangles {
@@ -65,7 +67,7 @@ fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     if area > 0.0 { Ok(mesh) } else { Err(Error::argument("surface has no triangles with an area; find it again")) }
 }
 
-/// Moves the surface's triangles into a separate flat mesh.
+/// Moves the surface's triangles out of their meshes into a new flat mesh.
 fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     let mut patch = Mesh::default();
     let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
@@ -77,7 +79,7 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
         if (b - a).cross(c - a).dot(surface.normal) < 0.0 {
             corners.swap(1, 2);
         }
-        // Vertices are not shared: the patch is flat, and a ceiling has few triangles.
+        // Do not share vertices: the patch is flat-shaded, and a ceiling has few triangles.
         let first = patch.positions.len() as u32;
         patch.triangles.push([first, first + 1, first + 2]);
         for i in corners {
@@ -93,7 +95,7 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
             }
         }
     }
-    // Remove the triangles from their meshes.
+    // Remove the triangles from the meshes they came from.
     let mut leaving = surface.triangles.clone();
     leaving.sort_unstable();
     leaving.dedup();
@@ -111,8 +113,8 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     patch
 }
 
-/// Adds a horizontal sheet of diffuse white on top of the scene's bounding box, for models without a ceiling, and
-/// returns the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no extent.
+/// Adds a horizontal sheet of diffuse white on top of the scene's bounding box, for models without a ceiling. Returns
+/// the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no horizontal extent.
 pub fn cover(scene: &mut Scene, name: &str) -> Result<usize> {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in &scene.meshes {

@@ -3,7 +3,7 @@ use crate::error::ErrorKind;
 use crate::image::Image;
 use crate::scene::{Camera, Material, Mesh};
 
-/// A parallelogram of two triangles.
+/// A flat quadrilateral of two triangles.
 fn quad(name: &str, corners: [[f32; 3]; 4]) -> Mesh {
     Mesh {
         name: name.into(),
@@ -28,7 +28,7 @@ fn shell() -> Scene {
     Scene { meshes, materials, ..Scene::default() }
 }
 
-/// A closed box with outward faces.
+/// A closed box whose faces point outwards.
 fn slab(name: &str, low: Vec3, high: Vec3) -> Mesh {
     let at = |i: usize| {
         let pick = |bit: usize, a: f32, b: f32| if i & bit != 0 { b } else { a };
@@ -73,7 +73,7 @@ fn the_side_of_a_slab_that_faces_the_room_is_chosen() {
         let mut scene = shell();
         scene.meshes.push(slab("Lid", Vec3::new(0., 3., 0.), Vec3::new(6., 3. + thickness, 4.)));
         assert_is_lid(&find(&scene, "lid").unwrap(), 3.0);
-        // The floor as a slab: the upper side faces the room.
+        // With the floor as a slab, its upper side faces the room.
         scene.meshes[4] = slab("Floor", Vec3::new(0., -thickness, 0.), Vec3::new(6., 0., 4.));
         let floor = find(&scene, "Floor").unwrap();
         assert!((floor.normal - Vec3::Y).length() < 1e-6 && floor.origin.y.abs() < 1e-6);
@@ -141,7 +141,7 @@ fn degenerate_and_foreign_input_is_an_error() {
 
 #[test]
 fn one_plane_of_many_small_triangles_is_one_patch() {
-    // A vault with a flat crown between two curved flanks, 24 × 24 cells.
+    // A vault of 24 × 24 cells, with a flat crown between two curved flanks.
     let n = 24;
     let mut vault = Mesh { name: "Vault".into(), ..Mesh::default() };
     for j in 0..=n {
@@ -162,7 +162,7 @@ fn one_plane_of_many_small_triangles_is_one_patch() {
     let surface = find(&scene, "Vault").unwrap();
     assert!((surface.normal - Vec3::NEG_Y).length() < 1e-3);
     assert!((surface.size.y - 4.0).abs() < 1e-3 && surface.size.x >= 3.0 && surface.size.x <= 3.6, "{}", surface.size);
-    // Each flank has six strips with slopes 0.075, 0.225, ...; the first slopes by 4.3 degrees, below the limit.
+    // Each flank has six strips with slopes 0.075, 0.225, ... The first slopes by 4.3 degrees, below the limit of 5.
     let strip = |k: i32| 4.0 * 0.25 * f64::hypot(1.0, 0.075 * f64::from(2 * k + 1));
     let flanks: f64 = 2.0 * (1..6).map(strip).sum::<f64>();
     assert!((f64::from(surface.bent) - flanks).abs() < 1e-3, "{} of {flanks}", surface.bent);
@@ -191,10 +191,10 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
             assert!((back - mesh.positions[i]).length() < 1e-5);
         }
     }
-    // The patch is found again by its own name and by the original name.
+    // The patch is found by its own name and by the original name.
     assert_eq!(find(&scene, "Lid (lights)").unwrap().size, surface.size);
 
-    // A sheet loses all triangles but keeps its index, and its name leads to the patch.
+    // A sheet loses all triangles but keeps its mesh index, and its name now finds the patch.
     let mut scene = shell();
     let index = cover(&mut scene, "Lid").unwrap();
     let surface = find(&scene, "Lid").unwrap();

@@ -1,5 +1,5 @@
-//! The area of the room's surface that each pixel shows. On this surface, lamps of one kind have the same area and the
-//! same shape at any distance.
+//! Computes the area of the room's surface that each pixel shows. Measured on this surface, lamps of one kind have
+//! equal areas and equal shapes at any distance from the camera.
 
 use crate::error::Result;
 use crate::exec;
@@ -9,14 +9,14 @@ use crate::job::Job;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// The part of a face of the room that each pixel shows, in the unit of the positions. The face goes on beyond its
-/// edges: pixels of other faces show the part of its extension that lies on their rays.
+/// The part of a face of the room that each pixel shows, in the unit of the positions. The face is extended beyond its
+/// edges: a pixel that shows another face counts with the part of the extension that its ray meets.
 pub struct Footprint {
-    /// Infinite where a pixel's ray does not meet the face.
+    /// Area that each pixel shows; infinite where the pixel's ray does not meet the face.
     pub area: Vec<f32>,
-    /// Coordinates along the face.
+    /// Coordinates of each pixel on the face, along two room axes.
     pub at: Vec<[f32; 2]>,
-    /// Whether a pixel shows the face itself: its normal is within half a right angle of the face's normal.
+    /// Whether a pixel shows the face itself: its normal deviates by less than 45 degrees from the face's normal.
     pub is_on_face: Vec<bool>,
 }
 
@@ -24,11 +24,12 @@ pub struct Footprint {
 const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
-    /// Computes areas by the cross product of the differences of positions along rows and columns. Coordinates run
-    /// along the two room axes that are farthest from the normal of the face, which lies at `offset` along its normal.
+    /// Computes the footprints of all pixels on the face with the given normal and distance along its normal. The area
+    /// is the cross product of the position differences along rows and columns. The coordinates run along the two room
+    /// axes that are farthest from the normal.
     pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
-        // The point where the ray through a pixel meets the face.
+        // The point where the ray through a pixel meets the face or its extension.
         let position = |x: usize, y: usize| {
             let p = Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
             let depth = p.dot(normal) * offset.signum();
@@ -63,7 +64,7 @@ mod tests {
     use crate::features::CHANNELS;
     use crate::job::Monitor;
 
-    /// A plane, whose pixels right of a column are hidden by things half as far away.
+    /// An inclined plane. From the given column on, objects at half the distance hide it.
     fn inclined(across: Vec3, down: Vec3, column: usize) -> (Image, (Vec3, f32)) {
         let normal = down.cross(across).normalize();
         let features = Image::from_fn(6, 5, |x, y| {

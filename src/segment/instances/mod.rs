@@ -1,21 +1,20 @@
 //! Finds lamps as compact regions of the photo with a sharp contour, brighter than the plane around them. The paper's
-//! classifier of single pixels (§4.2) cannot tell a lamp from a bright wall. A region can be told by its contour, size
-//! and surroundings.
+//! classifier of single pixels (§4.2) cannot distinguish a lamp from a bright wall. The contour, size and surroundings
+//! of a whole region can.
 //!
 //! ```text
 //! features ─▶ brightness ─▶ component tree ─▶ regions ─▶ painted ─▶ similar ─▶ mask, confidence, doubtful places
 //! strokes ──────────────────────────────────────────────────┘
 //! ```
-//! 1. [`tree`]: the connected regions above every level of brightness, each inside another.
-//! 2. [`regions`]: their size, in the photo and on the plane ([`footprint`]), shape, colour and the contrast along
-//!    their contour.
-//! 3. [`painted`]: for each positive stroke, the regions that cover it with the sharpest contours; without such strokes
-//!    the regions most like lamps ([`proposed`]).
-//! 4. [`similar`]: regions without a stroke that look like the painted ones and lie on the plane.
-//! 5. [`soft`]: confidence that falls to one half on each region's contour, between pixels.
+//! 1. [`tree`] builds the component tree: the connected regions above every level of brightness, nested in each other.
+//! 2. [`regions`] measures them: size in the photo and on the plane ([`footprint`]), shape, colour, and the contrast
+//!    along the contour.
+//! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it. Without
+//!    positive strokes, [`proposed`] chooses the regions most like lamps.
+//! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.
+//! 5. [`soft`] computes the confidence, which falls to one half on each region's contour, between pixels.
 //!
-//! Not modelled: lamps darker than the plane they light, such as the body of a lamp that shines upwards; lamps behind a
-//! grid.
+//! Not modelled: lamps darker than the plane that they light, such as the housing of an uplight; lamps behind a grid.
 
 mod footprint;
 mod painted;
@@ -43,26 +42,26 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// Share of the strokes' pixels that are ignored as too dark when the lamps' least brightness is taken: hurried strokes
-/// run over a lamp's edge. [judged on 28 photos]
+/// The least brightness of the lamps is determined without this share of the strokes' pixels, the darkest ones:
+/// hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
-/// Quantile of the strokes' L* that stands for white. [judged on 44 photos]
+/// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
-/// Lower bound of the L* that stands for white, the L* of a luminance of 1e-5. Strokes that are darker lie on black and
-/// mark no lamp. [convention]
+/// Lower bound of the L* that is taken for white; it corresponds to a luminance of 1e-5. Darker strokes lie on black
+/// and mark no lamp. [convention]
 const MIN_WHITE: f32 = 0.01;
-/// How far below the lamps' least brightness contours are sought, as a share of it. [judged on 28 photos]
+/// Contours are sought at values of L* down to `1 - DEPTH` times the least L* of the lamps. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
 
-/// Smallest contrast in L* between a region and the ring of pixels around it; a region with less is noise on a
+/// Minimum contrast in L* between a region and the ring of pixels around it. A region with less contrast is noise on a
 /// surface. [judged on 44 photos]
 const MIN_CONTRAST: f64 = 3.0;
 
-/// Expected share of wrong pixels in a lamp with a stroke, and in a lamp without a stroke. [judged on 28 photos]
+/// Expected share of wrong pixels in a lamp with a stroke, and in one without. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
-/// Finds the lamps that the positive strokes paint, and regions like them. The first three channels of the features are
-/// CIELAB.
+/// Finds the lamps under the positive strokes, and regions that look like them. The first three channels of the
+/// features are CIELAB.
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
@@ -83,15 +82,15 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
-    // Take the brightness of lamps from the pixels of the strokes or, without strokes, from the brightest pixels of the
-    // plane.
+    // Take the brightness of lamps from the pixels under the strokes or, without strokes, from the brightest pixels of
+    // the plane.
     let unpainted = input.region.filter(|_| is_proposed);
     let brightest = unpainted.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
     let examples = brightest.as_ref().map_or(&paint.positive[..], std::slice::from_ref);
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
-    // In a room laid out as a box, the features tell how large the regions are on its surface.
+    // In a room laid out as a box, measure the regions on the surface of the room.
     let normal = match unpainted {
         Some(plane) => face::laid_out_under(input.features, plane),
         None => face::laid_out(input),
@@ -121,7 +120,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     Ok(Segmentation { is_proposed, ..found })
 }
 
-/// Keeps the nodes that are brighter than the ring around them; the others are noise on a surface.
+/// Keeps the nodes that are brighter than the ring around them; the other nodes are noise on a surface.
 fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     let nobody = try_vec(search.tree.node_of.len(), false)?;
     let mut kept = Vec::new();
@@ -134,7 +133,7 @@ fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     Ok(kept)
 }
 
-/// L* of the strokes' brightest pixels: a quantile, so that a few highlights do not set it.
+/// A high quantile of L* under the strokes. Unlike the maximum, it does not depend on a few highlights.
 fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     let pixels = examples.iter().flatten();
     let mut lightness = try_collect(pixels.map(|&p| features.data[p as usize * features.channels]))?;
@@ -143,7 +142,7 @@ fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     Ok(white.max(MIN_WHITE))
 }
 
-/// The level below which no contour is sought.
+/// The level of brightness below which no contour is sought.
 fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> u16 {
     let mut lightness: Vec<f32> = Vec::new();
     for stroke in examples {
@@ -173,8 +172,8 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
 
-    // Compute the expected number of wrong pixels as a share of the pixels of the plane, or of the photo without a
-    // plane.
+    // Divide the expected number of wrong pixels by the number of pixels of the plane or, without a plane, of the
+    // photo.
     let area = |nodes: &[u32]| nodes.iter().map(|&n| regions.area[n as usize]).sum::<f64>();
     let wrong = ERRORS[0] * area(painted) + ERRORS[1] * area(&similar.found) + 0.5 * area(&similar.doubtful);
     let looked_at = plane.map_or(mask.data.len(), |p| p.data.iter().filter(|v| **v > 0.5).count());

@@ -1,30 +1,32 @@
-//! Finds the regions that strokes paint: for each stroke, the disjoint nodes of the tree that cover it with the
-//! sharpest contours.
+//! Finds the regions under the strokes: for each stroke, the disjoint tree nodes with the sharpest contours that cover
+//! the stroke.
 
 use super::regions::Regions;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// A region of more than this share of the image is a wall or a ceiling, not a lamp. [judged on 28 photos]
+/// Maximum share of the image that a lamp may cover; a larger region is a wall or a ceiling. [judged on 28 photos]
 const MAX_AREA: f64 = 0.3;
-/// Minimum number of pixels of a region; smaller regions are noise. [judged on 28 photos]
+/// Minimum number of pixels of a lamp; smaller regions are noise. [judged on 28 photos]
 pub const MIN_AREA: f64 = 6.0;
-/// Minimum share of a stroke that a region must cover; a smaller share is the stroke's edge. [judged on 28 photos]
+/// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
+/// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// Ratio of a region's length to that of its stroke at which the region's gain is halved. [judged on 28 photos]
+/// A region this many times as long as its stroke gets half the gain. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Exponent of the covered share of the stroke in a region's gain. Above 1, one region has a larger gain than its parts
-/// of equal contrast. [judged on 44 photos]
+/// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
+/// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.
+/// [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
-/// Exponent of the purity in a region's gain: negative strokes inside a region all but rule it out.
-/// [judged on 28 photos]
+/// Exponent of the purity in a region's gain. Purity is the share of positive pixels among the painted pixels of the
+/// region. The power all but rules out regions with many negative pixels. [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
-/// Minimum contrast of a region, relative to the sharpest region of the same stroke; regions below it are fragments.
-/// [judged on 28 photos]
+/// Minimum contrast of a region, relative to the region with the sharpest contour under the same stroke. Regions below
+/// it are fragments. [judged on 28 photos]
 const MIN_CONTRAST: f64 = 0.4;
 
-/// The pixels that the strokes of each class cover; the later stroke counts.
+/// The pixels under the strokes of each class. A pixel under several strokes belongs to the last one.
 pub struct Paint<'a> {
     pub width: usize,
     /// Pixels of each positive stroke.
@@ -33,7 +35,7 @@ pub struct Paint<'a> {
     pub negatives: &'a [f64],
 }
 
-/// The nodes that the positive strokes paint, in ascending order, without nodes that lie inside others of them.
+/// Finds the nodes under the positive strokes, in ascending order, without nodes inside other found nodes.
 pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     let mut is_chosen = try_vec(tree.len(), false)?;
     let mut covered = try_vec(tree.len(), 0f64)?;
@@ -45,15 +47,16 @@ pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     Ok((1..tree.len() as u32).filter(|&n| is_chosen[n as usize] && is_outermost(tree, &is_chosen, n)).collect())
 }
 
-/// Whether no node around the given one is chosen.
+/// Whether no ancestor of the given node is chosen.
 pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
     !tree.ancestors(node).skip(1).any(|n| is_chosen[n as usize])
 }
 
-/// The disjoint nodes with the largest sum of gains. The gain of a node is its contrast, times factors for the share of
-/// the stroke that it covers, for its purity and for its length. `covered` is zero before and after.
+/// Finds the disjoint nodes with the largest sum of gains. The gain of a node is its contrast, times factors for the
+/// share of the stroke that it holds, for its purity and for its length. `covered` holds zeros before and after the
+/// call.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
-    // The nodes around the stroke's pixels, parents first, with how many of these pixels they hold.
+    // Collect the nodes that hold pixels of the stroke, parents first, and count these pixels in `covered`.
     let mut nodes = Vec::new();
     for &p in stroke {
         for node in tree.ancestors(tree.node_of[p as usize]) {
@@ -77,7 +80,7 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
         regions.contrast(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
     };
 
-    // From the leaves to the root, find whether a node gains more than the best nodes inside it.
+    // From the leaves to the root, test whether a node gains at least as much as the best disjoint nodes inside it.
     let mut best = vec![0.0; nodes.len()];
     let mut inside = vec![0.0; nodes.len()];
     let mut is_better = vec![false; nodes.len()];
@@ -91,7 +94,7 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
     }
     nodes.iter().for_each(|&n| covered[n as usize] = 0.0);
 
-    // From the root to the leaves, choose the first such node on each path.
+    // From the root to the leaves, choose the first node on each path that passed this test.
     let mut chosen = Vec::new();
     let mut is_within = vec![false; nodes.len()];
     for (k, &node) in nodes.iter().enumerate() {

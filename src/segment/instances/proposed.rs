@@ -1,9 +1,8 @@
-//! Proposes lamps if no stroke lies on one: takes the regions of the plane that are most like lamps, in place of
-//! painted ones.
+//! Proposes lamps if no positive stroke lies on one: chooses the regions of the plane that are most like lamps.
 //!
-//! Lamps are among the brightest regions on their plane, compact, and sharply bounded. Of the regions with these
-//! properties, the one of the highest worth, which is mostly the sharpness of its contour, is a lamp. Regions of nearly
-//! the same worth are lamps too.
+//! Lamps are compact regions with sharp contours among the brightest regions on their plane. Regions with these
+//! properties are ranked by worth, which is the contrast along the contour times a small power of the area. The region
+//! of highest worth is taken for a lamp, and so are regions of nearly equal worth.
 
 use super::painted::MIN_AREA;
 use super::similar::Search;
@@ -12,24 +11,25 @@ use super::tree::Disjoint;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_vec};
 
-/// Share of the plane's pixels that count as its brightest pixels. [bench photos:nostrokes]
+/// Share of the plane's pixels that count as the brightest ones. [bench photos:nostrokes]
 const BRIGHTEST: f64 = 0.002;
-/// Minimum mean L* of a lamp, if the brightest pixels have an L* of 100. [bench photos:nostrokes]
+/// Minimum mean L* of a lamp, on a scale where the plane's brightest pixels have an L* of 100.
+/// [bench photos:nostrokes]
 const MIN_LIGHTNESS: f64 = 80.0;
 /// Minimum contrast between a lamp and the ring around it, in L*. [bench photos:nostrokes]
 const MIN_RING: f64 = 10.0;
-/// Minimum solidity of a lamp. [bench photos:nostrokes]
+/// Minimum solidity of a lamp (see `Regions::solidity`). [bench photos:nostrokes]
 const MIN_SOLIDITY: f64 = 0.75;
 /// Maximum share of the plane that a lamp may cover. [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
 /// Minimum share of the ring around a lamp that must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
-/// Minimum worth of a lamp, relative to the best one. [bench photos:nostrokes]
+/// Minimum worth of a lamp, relative to the lamp of highest worth. [bench photos:nostrokes]
 const NEARLY_BEST: f64 = 0.4;
-/// Exponent of the area in the worth of a region. [bench photos:nostrokes]
+/// Exponent of a region's area in its worth. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;
 
-/// The brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
+/// Returns the brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
 pub fn brightest(features: &Image, plane: &Image) -> Result<Vec<u32>> {
     let mut pixels = try_collect((0..plane.data.len() as u32).filter(|&p| plane.data[p as usize] > 0.5))?;
     if pixels.is_empty() {
@@ -42,7 +42,8 @@ pub fn brightest(features: &Image, plane: &Image) -> Result<Vec<u32>> {
     Ok(pixels)
 }
 
-/// The regions that are most like lamps, none inside another. Errors: there is no such region (`Degenerate`).
+/// Finds the regions that are most like lamps; none lies inside another. Errors: there is no such region
+/// (`Degenerate`).
 pub fn find(search: &Search) -> Result<Vec<u32>> {
     let Search { tree, regions, photo, plane, negatives } = *search;
     let plane_area = plane.map_or(tree.node_of.len(), |p| p.data.iter().filter(|v| **v > 0.5).count()) as f64;
@@ -57,7 +58,8 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         (1..tree.len()).filter(is_compact).map(|node| (node as u32, worth(node))).collect();
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
 
-    // Take the best region first. Regions inside or around a chosen region belong to it.
+    // Take candidates in the order of worth. Regions inside or around a chosen region belong to that region, so skip
+    // them.
     let nobody = try_vec(tree.node_of.len(), false)?;
     let mut chosen = Disjoint::new(tree)?;
     let mut lamps: Vec<u32> = Vec::new();

@@ -1,4 +1,4 @@
-//! The properties of the tree's regions: size and shape by their moments, mean colour, and the contrast along their
+//! Measures the regions of the component tree: size and shape through moments, mean colour, and the contrast along the
 //! contour.
 
 use super::footprint::Footprint;
@@ -8,55 +8,54 @@ use crate::exec;
 use crate::image::{Image, pyramid, try_vec};
 use crate::job::Job;
 
-/// Standard deviation of the blur before regions are formed, in pixels: noise of single pixels then forms no region.
-/// [convention]
+/// Standard deviation of the blur of L* before the tree is built, in pixels. It keeps noise of single pixels from
+/// forming regions. [convention]
 const SMOOTHING: f32 = 0.6;
-/// Standard deviation of the blur before the differences that give the contrast of contours, in pixels.
-/// [convention: Canny]
+/// Standard deviation of the blur of L* before its gradient is computed, in pixels. [convention: Canny]
 const GRADIENT_SMOOTHING: f32 = 1.0;
-/// Levels per unit of L*, up to L* = 100: as many as an 8-bit photo has. [convention]
+/// Brightness levels per unit of L*, up to L* = 100: about as many as an 8-bit photo has. [convention]
 const LEVELS_PER_L: f32 = 2.55;
-/// Levels per doubling of L* above 100, which only photos with a range beyond white have. [convention]
+/// Brightness levels per doubling of L* above 100. Only photos with values above white reach them. [convention]
 const LEVELS_PER_DOUBLING: f32 = 32.0;
 /// The highest level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 
-/// The brightness and colour of the photo, prepared for the tree.
+/// The brightness and colour of the photo, prepared for the component tree.
 pub struct Brightness {
     pub width: usize,
     pub height: usize,
     /// CIELAB, as in the features.
     pub lab: Vec<[f32; 3]>,
-    /// L*, a little smoothed.
+    /// L* after a slight blur.
     pub smooth: Image,
-    /// The level of each pixel: a monotone function of `smooth`.
+    /// The brightness level of each pixel: a monotone function of `smooth`.
     pub levels: Vec<u16>,
     /// Magnitude of the gradient of L*, in L* per pixel.
     pub gradient: Vec<f32>,
 }
 
-/// The L* below which it is linear in luminance, and its slope there. [convention: CIE 15]
+/// L* below this value is linear in luminance, with this slope (luminance 0 to 1). [convention: CIE 15]
 const LINEAR_L: f32 = 8.0;
 const SLOPE: f32 = 24389.0 / 27.0;
 
-/// The luminance of an L*, relative to white.
+/// The luminance that belongs to an L*, relative to white.
 fn luminance(l: f32) -> f32 {
     if l > LINEAR_L { ((l + 16.0) / 116.0).powi(3) } else { l.max(0.0) / SLOPE }
 }
 
-/// The L* of a luminance.
+/// The L* that belongs to a luminance relative to white.
 fn lightness(y: f32) -> f32 {
     if y > LINEAR_L / SLOPE { 116.0 * y.cbrt() - 16.0 } else { y * SLOPE }
 }
 
-/// The level of an L*.
+/// The brightness level of an L*, not rounded.
 pub fn level(l: f32) -> f32 {
     let above = if l > 100.0 { LEVELS_PER_DOUBLING * (l / 100.0).log2() } else { 0.0 };
     (l.clamp(0.0, 100.0) * LEVELS_PER_L + above).min(MAX_LEVEL)
 }
 
 impl Brightness {
-    /// The photo as if it were exposed so that an L* of `white` were 100.
+    /// Scales the photo's exposure so that an L* of `white` becomes 100, and computes its brightness.
     pub fn new(features: &Image, white: f32, job: Job) -> Result<Self> {
         let gain = 1.0 / luminance(white);
         let (width, height) = (features.width, features.height);
@@ -65,7 +64,7 @@ impl Brightness {
         let pixels = features.data.chunks_exact(features.channels);
         for ((pixel, lab), l) in pixels.zip(&mut lab).zip(&mut l.data) {
             *l = lightness(gain * luminance(pixel[0]));
-            // Above black, a* and b* are in proportion to L* + 16.
+            // At equal chromaticity, a* and b* are proportional to L* + 16 (not in the darkest colours).
             let chroma = (*l + 16.0) / (pixel[0] + 16.0);
             *lab = [*l, pixel[1] * chroma, pixel[2] * chroma];
         }
@@ -88,17 +87,18 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node on the surface of the room. Each pixel is weighted by the area that it shows.
+/// Sums over the pixels of each node, measured on the surface of the room: each pixel is weighted by the area that it
+/// shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
-    /// Number of pixels that show the face itself, not its extension.
+    /// Number of pixels that show the face itself, not its extension beyond the edges.
     pub on_face: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
     uu: Vec<f64>,
     vv: Vec<f64>,
     uv: Vec<f64>,
-    /// Sums of squares of the pixels' areas.
+    /// Sums of the squared areas of the pixels.
     squares: Vec<f64>,
 }
 
@@ -118,7 +118,7 @@ impl OnSurface {
         let shown = footprint.area.iter().zip(&footprint.at).zip(&footprint.is_on_face);
         for (&node, ((&area, at), &is_on_face)) in tree.node_of.iter().zip(shown) {
             let (node, area, [u, v]) = (node as usize, f64::from(area), at.map(f64::from));
-            // The shape of the root is not needed.
+            // The shape of the root is not needed: the root is the whole image.
             if node != 0 {
                 sums.area[node] += area;
                 sums.on_face[node] += f64::from(is_on_face);
@@ -135,8 +135,8 @@ impl OnSurface {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in one row along a side of the face: across the row, their centres differ by less than a
-    /// share of their width.
+    /// Whether two nodes lie in a row parallel to a side of the face: their centres, measured across the row, differ
+    /// by at most `share` times the width of the wider node.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);
@@ -150,30 +150,30 @@ impl OnSurface {
         near(&self.u, &self.uu) || near(&self.v, &self.vv)
     }
 
-    /// Ratio of the axes of the ellipse with the same second moments, at least 1.
+    /// Aspect of a node on the surface: the ratio of the axes of the ellipse with equal second moments, at least 1.
     pub fn aspect(&self, node: usize) -> f64 {
         let area = self.area[node].max(f64::MIN_POSITIVE);
         let mean = |sums: &[f64]| sums[node] / area;
         let (u, v) = (mean(&self.u), mean(&self.v));
         let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
-        // Each pixel adds a variance of its own: a twelfth of its area, on average.
+        // Add the variance within a pixel: a twelfth of the pixel's area, on average.
         let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
         long / short.max(f64::MIN_POSITIVE)
     }
 }
 
-/// Lengths of the axes of the ellipse with second moments xx, yy and xy, the long one first. `pixel` is added to xx and
-/// yy.
+/// Lengths of the axes of the ellipse with the second moments xx, yy and xy, the long one first. `pixel`, the variance
+/// within a pixel, is added to xx and yy.
 fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
 }
 
-/// Sums over the pixels of each node, and over its contour.
+/// Sums over the pixels of each node, and over the pixel edges along its contour.
 pub struct Regions {
-    /// In pixels.
+    /// Area of each node in pixels.
     pub area: Vec<f64>,
-    /// Sums on the surface of the room, if it was laid out.
+    /// Sums on the surface of the room; `None` if the room has no box layout.
     pub surface: Option<OnSurface>,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -216,7 +216,7 @@ impl Regions {
         for x in 0..photo.width {
             let i = y * photo.width + x;
             let node = tree.node_of[i] as usize;
-            // The shape of the root is not needed, but its pixels border on the contours of other nodes.
+            // The shape of the root is not needed, but its pixels lie along the contours of other nodes.
             if node != 0 {
                 let (u, v) = (x as f64, y as f64);
                 self.area[node] += 1.0;
@@ -236,8 +236,9 @@ impl Regions {
         }
     }
 
-    /// Two neighbours at different levels lie on the contour of every node that holds the brighter, but not the darker
-    /// pixel.
+    /// Adds the edge between two neighbouring pixels to the contours of all nodes that contain the brighter pixel but
+    /// not the darker one. The sums go to the smallest node of the brighter pixel and are subtracted at the smallest
+    /// node of the darker pixel, so they cancel in common ancestors when `Tree::accumulate` adds up the nodes.
     fn add_edge(&mut self, tree: &Tree, photo: &Brightness, i: usize, j: usize) {
         let (a, b) = (tree.node_of[i] as usize, tree.node_of[j] as usize);
         if a == b || photo.levels[i] == photo.levels[j] {
@@ -251,7 +252,8 @@ impl Regions {
         self.contour_length[dark] -= 1.0;
     }
 
-    /// Mean gradient across the contour, in L* per pixel: high at sharp edges, low on arbitrary level lines.
+    /// Mean gradient across the contour, in L* per pixel: high at sharp edges, low where the contour is an arbitrary
+    /// level line.
     pub fn contrast(&self, node: usize) -> f64 {
         if self.contour_length[node] > 0.0 { self.contour_gradient[node] / self.contour_length[node] } else { 0.0 }
     }
@@ -264,17 +266,17 @@ impl Regions {
         [self.x[node] / self.area[node], self.y[node] / self.area[node]]
     }
 
-    /// Lengths of the axes of the ellipse with the same second moments, in pixels, the long one first.
+    /// Lengths of the axes of the ellipse with equal second moments, in pixels, the long axis first.
     pub fn axes(&self, node: usize) -> [f64; 2] {
         let area = self.area[node];
         let [u, v] = self.centre(node);
         let [xx, yy, xy] = [self.xx[node] / area - u * u, self.yy[node] / area - v * v, self.xy[node] / area - u * v];
-        // Each pixel adds a variance of its own: a twelfth of the square of its side.
+        // Add the variance within a pixel: a twelfth of its squared side.
         ellipse([xx, yy, xy], 1.0 / 12.0)
     }
 
-    /// Ratio of the area to that of the ellipse with the same second moments: 1 for an ellipse, 0.95 for a rectangle,
-    /// less for a ring or a branched shape.
+    /// Area divided by the area of the ellipse with equal second moments: 1 for an ellipse, 0.95 for a rectangle, less
+    /// for a ring or a branched shape.
     pub fn solidity(&self, node: usize) -> f64 {
         let [long, short] = self.axes(node);
         self.area[node] / (std::f64::consts::FRAC_PI_4 * long * short)

@@ -1,112 +1,136 @@
-//! Finds regions without a stroke that look like the painted lamps: as bright, of the same colour, as sharp against the
-//! plane around them, of similar size and shape. Regions that almost meet these criteria are reported as doubtful.
+//! Finds regions without a stroke that look like the painted lamps, the regions under the user's positive strokes:
+//! similar in brightness, colour, size, shape, and in sharpness against the plane around them. Regions that almost
+//! meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
 use super::surroundings::{self, Bounds, Surroundings};
 use super::tree::{Disjoint, Tree};
 use crate::error::Result;
-use crate::image::{Image, try_vec};
+use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
 use std::ops::RangeInclusive;
 
-/// Maximum difference in L* by which a lamp may be darker than the darkest painted lamp. [judged on 28 photos]
+/// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// Maximum distance in a* and b* from the nearest painted lamp. [judged on 28 photos]
+/// Maximum distance of a lamp's colour from that of the nearest lamp under a stroke, in a* and b*.
+/// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along the contour, relative to the median of the painted lamps: distant lamps are small and
-/// blurred. [judged on 28 photos]
+/// Minimum contrast along a lamp's contour, relative to the median of the lamps under the strokes. It is below 1
+/// because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast to the ring around a lamp, relative to the median of the painted lamps. [judged on 28 photos]
+/// Minimum contrast to the ring of pixels around a lamp, relative to the median of the lamps under the strokes.
+/// [judged on 28 photos]
 const RING: f64 = 0.5;
-/// Minimum solidity, relative to the least solid painted lamp. [judged on 28 photos]
+/// Minimum solidity (see `Regions::solidity`), relative to the least solid lamp under a stroke. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
-/// Minimum area, relative to the smallest painted lamp: at three times the distance, a lamp in a ceiling is a third as
-/// wide and, foreshortened, a ninth as high. [convention]
+/// Minimum area, relative to the smallest lamp under a stroke: at three times the distance, a lamp in a ceiling is a
+/// third as wide and, foreshortened, a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Maximum area, relative to the largest painted lamp, if the room's size is not known. [judged on 28 photos]
+/// Maximum area in pixels, relative to the largest lamp under a stroke, if the room has no box layout.
+/// [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// Maximum factor between the area of a lamp on the plane and the areas of the painted lamps: bloom and blur enlarge
-/// distant lamps. [judged on 44 photos]
+/// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
+/// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// Maximum factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin
-/// lamps, and lengthens distant lamps along the line of sight. [bench photos:tune]
+/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind, if it reaches
+/// this share of their minimum area, this likeness, and if this share of the ring around it lies on the plane.
+/// [bench photos:tune, photos:real]
+const SMALLER_KIND: f64 = 0.25;
+const SURE: f64 = 1.2;
+const SURELY_ON_PLANE: f64 = 0.9;
+/// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the lamps under the
+/// strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant
+/// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Minimum size of a painted lamp whose area and shape on the plane are used, as a share of the pixels of the largest
-/// painted lamp. [judged on 44 photos]
+/// Area and shape on the plane are taken from lamps under the strokes with at least this share of the pixels of the
+/// largest one. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth, relative to the broadest painted lamp, if the room's size is not known. [judged on 28 photos]
+/// Maximum breadth in pixels, relative to the broadest lamp under a stroke, if the room has no box layout.
+/// [judged on 28 photos]
 const BROADER: f64 = 1.5;
-/// Minimum area on the plane of a lamp that the photo's border cuts, as a share of the minimum area of a whole lamp.
+/// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
 /// Minimum share of the ring around a lamp that must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// Ranges of the ratios of a region's area and aspect to those of a lamp, within which a region off the plane is a lamp
-/// too: blur enlarges distant lamps. [bench photos:tune]
+/// A region off the plane counts as a lamp only if the ratio of its area to that of a known lamp, and the ratio of the
+/// aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
-/// Maximum offset of lamps across their row, as a share of a lamp's width. [bench photos:tune]
+/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
+/// [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Maximum ratio of the axes of a round lamp: round lamps are often scattered, others lie in rows. [bench photos:tune]
+/// Maximum aspect of a round lamp. Round lamps are often scattered, other lamps lie in rows. [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum difference in CIELAB between the ring of a region off the plane and the ring of a painted lamp, up to which
-/// the region's surroundings count as plane. [bench photos:tune]
+/// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
+/// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Exponent of the area in the order of candidates: of nested regions with almost equally sharp contours, the largest
-/// comes first. [judged on 44 photos]
+/// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
+/// tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Minimum likeness of a doubtful region, where 1 is the likeness that is required of a lamp. [judged on 28 photos]
+/// Minimum likeness of a doubtful region; a lamp must have a likeness of 1. [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
-/// Variance of the blur of a photo together with the smoothing of the gradient, in square pixels. [judged on 44 photos]
+/// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
-/// Share of a lamp's contrast that blur leaves: the value at the centre of a disc of the lamp's area after a Gaussian
-/// blur.
+/// Share of a lamp's contrast that is left after blur: the value at the centre of a disc with the lamp's area, after a
+/// Gaussian blur.
 fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
 }
 
-/// Regions without strokes.
+/// Regions that no stroke touches but that resemble the lamps under the strokes.
 #[derive(Default)]
 pub struct Similar {
     pub found: Vec<u32>,
-    /// Regions on the plane that are somewhat less like the painted lamps than is required of a lamp.
+    /// Regions on the plane whose likeness to the lamps under the strokes is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions beyond the plane that would be like the painted lamps if the plane continued there.
+    /// Regions off the plane that would count as lamps if the plane continued there.
     pub beyond: Vec<u32>,
 }
 
-/// The properties required of a lamp, taken from the painted lamps.
+/// The size and aspect of a region, compared with those of the lamps under the strokes.
+#[derive(Clone, Copy, PartialEq)]
+enum Size {
+    /// Like a lamp under a stroke, or like such a lamp cut by the photo's border.
+    Painted,
+    /// Smaller than the lamps under the strokes, as a lamp of another kind may be.
+    Smaller,
+    Other,
+}
+
+/// The limits that a lamp must meet, derived from the lamps under the strokes.
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// Present if the room was laid out.
+    /// Limits on the surface of the room; `None` if the room has no box layout.
     surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
     min_solidity: f64,
     colours: Vec<[f64; 3]>,
-    /// Colours of the rings around them.
+    /// Median colours of the rings of pixels around the lamps under the strokes.
     rings: Vec<[f64; 3]>,
-    /// Minimum contrast along the contour and to the ring, for a lamp so large that blur does not matter.
+    /// Minimum contrast along the contour, and minimum contrast to the ring, for a lamp so large that blur does not
+    /// reduce them.
     contour: f64,
     ring: f64,
 }
 
 impl Model {
-    /// Whether a ring has the colour of a ring around a painted lamp.
+    /// Whether a ring has about the colour of the ring around one of the lamps under the strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
     }
 }
 
-/// Ranges of the area and the aspect of lamps on the surface of the room.
+/// Ranges `[min, max]` of the area and the aspect of lamps on the surface of the room.
 struct OnSurface {
     area: [f64; 2],
     aspect: [f64; 2],
@@ -117,41 +141,26 @@ pub struct Search<'a> {
     pub regions: &'a Regions,
     pub photo: &'a Brightness,
     pub plane: Option<&'a Image>,
-    /// Number of pixels under negative strokes in the region of each node.
+    /// Number of pixels under negative strokes in each node.
     pub negatives: &'a [f64],
 }
 
 impl Search<'_> {
-    /// Finds regions that are like the `painted` ones, without these.
+    /// Finds regions that are like the `painted` ones. The result does not include the painted regions themselves.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
-        let Self { tree, regions, photo, .. } = *self;
+        let Self { tree, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
         for &node in painted {
             tree.pixels(node).iter().for_each(|&p| taken[p as usize] = true);
         }
         let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
 
-        // Rate all nodes except those around or inside the painted ones.
         let mut chosen = Disjoint::new(tree)?;
         painted.iter().for_each(|&node| chosen.choose(node));
-        let mut is_painted = try_vec(tree.len(), false)?;
-        painted.iter().for_each(|&n| is_painted[n as usize] = true);
-        let mut candidates = Vec::new();
-        for node in 1..tree.len() {
-            is_painted[node] |= is_painted[tree.parent[node] as usize];
-            let likeness = match is_painted[node] || chosen.is_around(node as u32) {
-                true => 0.0,
-                false => self.likeness(&model, node),
-            };
-            if likeness >= NEARLY {
-                candidates.push((node as u32, likeness, regions.contrast(node) * regions.area[node].powf(AREA_POWER)));
-            }
-        }
-
-        // Take the sharpest contour first. Regions inside or around a region that was taken belong to it.
-        candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        let candidates = self.candidates(&model, painted, &chosen)?;
         let mut similar = Similar::default();
-        for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
+        let mut smaller = Vec::new();
+        for (k, &(node, likeness)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
                 job.check()?;
             }
@@ -160,6 +169,13 @@ impl Search<'_> {
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
+            if self.size(&model, node as usize) == Size::Smaller {
+                if likeness >= SURE && ring.on_plane >= SURELY_ON_PLANE {
+                    try_push(&mut smaller, node)?;
+                    chosen.choose(node);
+                }
+                continue;
+            }
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
             let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
@@ -178,7 +194,36 @@ impl Search<'_> {
                 chosen.choose(node);
             }
         }
+
+        // A single small bright thing may be anything: lamps of a smaller kind are at least two of equal size and shape.
+        for &node in &smaller {
+            if self.like_ones(smaller.iter().filter(|other| **other != node), node as usize).next().is_some() {
+                try_push(&mut similar.found, node)?;
+            }
+        }
         Ok(similar)
+    }
+
+    /// Returns the nodes that may be lamps, each with its likeness, the sharpest contours first. Nodes that contain a
+    /// painted node or lie inside one are left out.
+    fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
+        let Self { tree, regions, .. } = *self;
+        let mut is_painted = try_vec(tree.len(), false)?;
+        painted.iter().for_each(|&n| is_painted[n as usize] = true);
+        let mut candidates = Vec::new();
+        for node in 1..tree.len() {
+            is_painted[node] |= is_painted[tree.parent[node] as usize];
+            if is_painted[node] || chosen.is_around(node as u32) {
+                continue;
+            }
+            let likeness = self.likeness(model, node);
+            if likeness >= NEARLY {
+                let rank = regions.contrast(node) * regions.area[node].powf(AREA_POWER);
+                try_push(&mut candidates, (node as u32, likeness, rank))?;
+            }
+        }
+        candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        try_collect(candidates.into_iter().map(|(node, likeness, _)| (node, likeness)))
     }
 
     fn model(&self, painted: &[u32]) -> Result<Option<Model>> {
@@ -220,25 +265,33 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size of a lamp. The size is measured on the plane if the room was laid out, else in the
-    /// photo. A lamp that the border of the photo cuts may be much smaller.
-    fn has_size(&self, model: &Model, node: usize) -> bool {
+    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the plane if the
+    /// room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
+    fn size(&self, model: &Model, node: usize) -> Size {
         let regions = self.regions;
         let area = regions.area[node];
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
-            return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+            let is_like =
+                (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+            return if is_like { Size::Painted } else { Size::Other };
         };
-        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
-        if surface.area[node] > on_surface.area[1] {
-            return false;
+        let [min, max] = on_surface.area;
+        let shown = surface.area[node];
+        if area < model.min_area || shown > max || shown < min * SMALLER_KIND.min(CUT) {
+            return Size::Other;
         }
-        let is_whole = surface.area[node] >= on_surface.area[0]
-            && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
-        area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
+        let has_aspect = (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
+        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
+        match has_aspect {
+            true if shown >= min => Size::Painted,
+            _ if shown >= CUT * min && is_cut() => Size::Painted,
+            true if shown >= SMALLER_KIND * min && !is_cut() => Size::Smaller,
+            _ => Size::Other,
+        }
     }
 
-    /// The lamps whose size and shape are nearly those of a node, both measured on the face of a room that was laid
-    /// out.
+    /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
+    /// the room has no box layout.
     fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
         let alike = self.regions.surface.as_ref();
         lamps.filter(move |&&lamp| {
@@ -249,14 +302,14 @@ impl Search<'_> {
         })
     }
 
-    /// Whether some lamp has nearly the size and shape of a node, and the node is round or lies in a row with that
-    /// lamp: round lamps are often scattered, others lie in rows.
+    /// Whether a lamp has nearly the size and shape of a node, and the node is round or in a row with that lamp. Round
+    /// lamps are often scattered, other lamps lie in rows.
     fn is_like_one<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
         self.like_ones(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
     }
 
-    /// Whether a node continues a row of lamps of its size and shape.
+    /// Whether a node lies in a row with a lamp of nearly its size and shape.
     fn continues_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         self.like_ones(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
     }
@@ -265,19 +318,19 @@ impl Search<'_> {
         self.regions.surface.as_ref().is_some_and(|surface| surface.are_in_row(node, lamp as usize, IN_ROW))
     }
 
-    /// Whether a node lies on the face of the room that holds the lamps.
+    /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
     fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
 
-    /// How much a node is like the painted lamps, apart from its surroundings. The likeness is at least 1 if the node
-    /// is like them in all respects. Below 1 it is the least of the likenesses in brightness, colour and contrast. It
-    /// is 0 if size, shape or negative strokes rule the node out.
+    /// Likeness of a node to the lamps under the strokes, apart from its surroundings: the least of its likenesses in
+    /// brightness, colour and contour contrast. A value of at least 1 means that the node meets all limits. The
+    /// likeness is 0 if size, shape or negative strokes rule the node out.
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || self.negatives[node] > 0.0 {
+        if self.size(model, node) == Size::Other || self.negatives[node] > 0.0 {
             return 0.0;
         }
         let sharpness = sharpness(area);
@@ -287,10 +340,10 @@ impl Search<'_> {
         }
         let [l, a, b] = regions.colour(node);
         let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
-        // Blur darkens small lamps.
+        // Lower the limit for small lamps, because blur darkens them.
         let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
         let lightness = l / min_lightness.max(1.0);
-        // A shortfall below the minimum lightness counts tenfold: L* is a narrow scale at its top.
+        // A relative shortfall below the minimum L* counts tenfold, because bright colours differ little in L*.
         let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
         contour.min(lightness).min(CHROMA / chroma.max(1e-3)).max(0.0)
     }

@@ -1,4 +1,4 @@
-//! The confidence of a region. It is one half on the region's contour, which therefore lies between pixels.
+//! Computes the confidence of a region. It is one half on the region's contour, which may run between pixels.
 
 use super::regions::Brightness;
 use super::similar::Search;
@@ -6,27 +6,28 @@ use super::surroundings::Bounds;
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
-/// Distance from a region over which confidence falls to 0, in pixels.
+/// Distance from a region beyond which its confidence is 0, in pixels.
 /// [convention: the reach of bilinear sampling, twice]
 const REACH: u8 = 2;
-/// Minimum confidence of pixels in a region, and maximum confidence of pixels around it: above one half is the region
-/// itself. [rounding]
+/// Minimum confidence of pixels in a region, and maximum confidence of pixels around it, so that a threshold of one
+/// half gives exactly the region. [rounding]
 const INSIDE: f32 = 0.501;
 const OUTSIDE: f32 = 0.499;
 
-/// Maximum size of a hole that belongs to its region, as a share of the region: bars, screws and leading before a lamp,
-/// but not the inside of a ring. [judged on 44 photos]
+/// Holes of at most this share of their region are filled: bars, screws and leading in front of a lamp, but not the
+/// inside of a ring. [judged on 44 photos]
 const HOLE: f64 = 0.05;
 
-/// Adds the confidence of a node. It rises across the contour as the brightness does, by about one over a pixel.
-/// Outside the region, only pixels of the plane get a confidence.
+/// Writes the confidence of a node's region to the image `confidence`; where regions overlap, the maximum counts.
+/// Across the contour, the confidence follows the brightness and rises from 0 to 1 within about one pixel. Outside the
+/// region, only pixels of the plane get a confidence.
 pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
     let Search { tree, regions, photo, plane, .. } = *search;
     let filled = filled(tree.pixels(node), photo)?;
     let pixels = filled.as_slice();
     let bounds = Bounds::of(pixels, photo, REACH.into());
     let distance = bounds.distance(pixels, photo.width)?;
-    // The lightness of the region's dimmest pixel.
+    // The contour lies at the lightness of the region's dimmest pixel.
     let contour = contour_lightness(tree.pixels(node), photo);
     let slope = 1.0 / (regions.contrast(node as usize) as f32).max(1.0);
     for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
@@ -45,7 +46,7 @@ fn contour_lightness(pixels: &[u32], photo: &Brightness) -> f32 {
     pixels.iter().map(|&p| photo.smooth.data[p as usize]).fold(f32::INFINITY, f32::min)
 }
 
-/// The pixels of a region and of its small holes.
+/// Returns the pixels of a region and of its small holes.
 fn filled(pixels: &[u32], photo: &Brightness) -> Result<Vec<u32>> {
     let bounds = Bounds::of(pixels, photo, 1);
     let [across, down] = bounds.size();
@@ -58,7 +59,7 @@ fn filled(pixels: &[u32], photo: &Brightness) -> Result<Vec<u32>> {
         if label[start] != OPEN {
             continue;
         }
-        // Flood one connected part outside the region; it is a hole unless it reaches the border of the bounds.
+        // Flood one connected part outside the region. It is a hole unless it reaches the border of the bounding box.
         hole.clear();
         try_push(&mut hole, start as u32)?;
         label[start] = WALKED;

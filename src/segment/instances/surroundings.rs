@@ -1,27 +1,27 @@
-//! The pixels of a region and of the ring around it.
+//! Compares a region of the photo with the ring of pixels around it.
 
 use super::regions::Brightness;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::image::{Image, try_push, try_vec};
 
-/// Distance of the ring from the region, in pixels: the blurred edge lies between. [convention]
+/// Number of pixels between the region and its ring; the blurred edge lies there. [convention]
 const GAP: isize = 1;
 /// Width of the ring in pixels. [convention]
 const RING: isize = 3;
 
-/// Comparison of a region with the ring around it.
+/// The result of comparing a region with the ring of pixels around it.
 pub struct Surroundings {
     /// Mean L* of the region, minus the median L* of its ring.
     pub contrast: f64,
     /// Share of the ring that lies on the plane; 1 if no plane is given.
     pub on_plane: f64,
-    /// Medians of the ring's L*, a* and b*, each on its own.
+    /// The median L*, a* and b* of the ring, each computed separately.
     pub colour: [f64; 3],
 }
 
-/// Compares a node with the ring around its pixels. The ring leaves out `taken` pixels and pixels as bright as the node
-/// itself: they belong to other regions, such as panes side by side. `None` if no pixel is left.
+/// Compares a node with the ring around its pixels. The ring leaves out `taken` pixels, and pixels as bright as the
+/// node itself, which belong to other regions such as neighbouring panes. `None` if the ring has no pixel left.
 pub fn around(
     node: u32,
     tree: &Tree,
@@ -66,7 +66,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounding box of pixels, wider by `margin` as far as the image goes.
+    /// The bounding box of pixels, enlarged by `margin` on each side and clipped to the image.
     pub fn of(pixels: &[u32], photo: &Brightness, margin: isize) -> Self {
         let (mut x0, mut y0, mut x1, mut y1) = (photo.width, photo.height, 0, 0);
         for &p in pixels {
@@ -92,19 +92,19 @@ impl Bounds {
         [self.x1 - self.x0, self.y1 - self.y0]
     }
 
-    /// The index within the rectangle of a pixel of the image.
+    /// The index within the rectangle that belongs to a pixel index of the image; `width` is the image's width.
     pub fn index(&self, pixel: u32, width: usize) -> usize {
         (pixel as usize / width - self.y0) * (self.x1 - self.x0) + pixel as usize % width - self.x0
     }
 
-    /// The index within the image of the rectangle's `k`-th pixel.
+    /// The pixel index in the image that belongs to the rectangle's index `k`; `width` is the image's width.
     pub fn pixel(&self, k: usize, width: usize) -> usize {
         let across = self.x1 - self.x0;
         (self.y0 + k / across) * width + self.x0 + k % across
     }
 
-    /// Distance of each pixel of the rectangle from the given pixels, in steps along rows and columns, up to 255 (two
-    /// passes, Rosenfeld and Pfaltz 1966).
+    /// Distance of each pixel of the rectangle from the nearest of the given pixels, in steps along rows and columns,
+    /// up to 255 (two passes, Rosenfeld and Pfaltz 1966).
     pub fn distance(&self, pixels: &[u32], width: usize) -> Result<Vec<u8>> {
         let [across, down] = self.size();
         let mut distance = try_vec(across * down, u8::MAX)?;

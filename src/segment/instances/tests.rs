@@ -1,4 +1,4 @@
-//! Lamps among brighter, larger and other things, on a made photo whose lamps are known.
+//! Tests of lamp detection on a synthetic photo with known lamps, a window and noise.
 
 use crate::error::ErrorKind;
 use crate::features::CHANNELS;
@@ -21,12 +21,12 @@ fn is_in(r: [usize; 4], x: usize, y: usize) -> bool {
     (r[0]..r[2]).contains(&x) && (r[1]..r[3]).contains(&y)
 }
 
-/// Features of a photo: a ceiling that is washed bright towards one side, dark walls below, a little noise.
+/// Features of a photo with noise: a ceiling that grows brighter to the right, and dark walls below.
 fn features() -> Image {
     features_with(&LAMPS)
 }
 
-/// The same with other lamps. The ceiling faces the camera: all its pixels show equal areas.
+/// The features with other lamps. The ceiling faces the camera, so all its pixels show equal areas.
 fn features_with(lamps: &[[usize; 4]]) -> Image {
     let mut image = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
     for (i, pixel) in image.data.chunks_exact_mut(CHANNELS).enumerate() {
@@ -63,7 +63,8 @@ fn segment_in(features: &Image, strokes: &[Stroke], region: Option<&Image>) -> S
     run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job()).unwrap()
 }
 
-/// Which of the rectangles are in the mask, each by most of its pixels; and how many pixels of the mask lie elsewhere.
+/// Returns for each rectangle of `LAMPS` whether most of its pixels are in the mask, and the number of mask pixels
+/// away from all lamps.
 fn found(mask: &Image) -> (Vec<bool>, usize) {
     let share = |r: &[usize; 4]| {
         let pixels = (r[1]..r[3]).flat_map(|y| (r[0]..r[2]).map(move |x| (x, y)));
@@ -114,9 +115,24 @@ fn a_lamp_that_the_border_cuts_may_be_of_any_size_and_a_thing_inside_may_not() {
 }
 
 #[test]
+fn smaller_lamps_that_are_equal_are_found_without_a_stroke_and_a_single_small_thing_is_not() {
+    let ceiling = ceiling();
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
+    // Downlights with an eighth of the painted lamp's area.
+    let small = [[95, 50, 103, 57], [205, 50, 213, 57]];
+    for count in 0..=2 {
+        let features = features_with(&[&LAMPS[..], &small[..count]].concat());
+        let mask = segment_in(&features, &strokes, Some(&ceiling)).mask;
+        for (k, [x, y, ..]) in small.into_iter().enumerate() {
+            assert_eq!(mask.pixel(x + 4, y + 3)[0] > 0.5, count == 2, "downlight {k} of {count}");
+        }
+    }
+}
+
+#[test]
 fn things_of_another_shape_are_no_lamps() {
     let ceiling = ceiling();
-    // A bright strip of a lamp's area, twelve times as long for its width.
+    // A bright strip with the area of a lamp, but 30 times as long as wide.
     let strip = [60, 100, 180, 104];
     let features = features_with(&[&LAMPS[..], &[strip]].concat());
     let mask = segment_in(&features, &[stroke(true, &[[30.0, 26.0], [50.0, 26.0]])], Some(&ceiling)).mask;
@@ -131,7 +147,7 @@ fn confidence_is_one_half_on_the_contour() {
         assert_eq!(*mask > 0.5, *confidence > 0.5);
         assert!((0.0..=1.0).contains(confidence));
     }
-    // Across the lamp's left side at x = 20: within half a pixel of it.
+    // The 0.5 level across the left side of the lamp must lie within half a pixel of x = 20.
     let row = |x: usize| segmented.confidence.pixel(x, 26)[0];
     let x = (15..25).find(|&x| row(x) <= 0.5 && row(x + 1) > 0.5).unwrap();
     let crossing = x as f32 + 0.5 + (0.5 - row(x)) / (row(x + 1) - row(x));
@@ -154,7 +170,7 @@ fn strokes_without_a_lamp_are_an_error_and_dark_ones_mark_nothing_large() {
     let error = run(&input, &params, Monitor::default().job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Degenerate);
     assert!(error.message.contains("no positive stroke"), "{}", error.message);
-    // A stroke on the dark wall.
+    // A stroke on the dark wall marks no large region.
     let mask = segment(&[stroke(true, &[[40.0, 170.0], [60.0, 170.0]])], None).mask;
     assert!(mask.data.iter().sum::<f32>() < 0.1 * mask.data.len() as f32);
 }
@@ -186,7 +202,7 @@ fn whole_images_of_one_brightness_and_of_noise_end_well() {
 
 #[test]
 fn panes_side_by_side_are_found_and_a_stroke_of_the_plane_across_them_does_no_harm() {
-    // Panes of 15 x 15 pixels with bars of 2 between them.
+    // Panes of 15 x 15 pixels, separated by bars of 2 pixels.
     let is_pane = |x: usize, y: usize| {
         (60..196).contains(&x) && (20..88).contains(&y) && (x - 60) % 17 < 15 && (y - 20) % 17 < 15
     };
@@ -203,14 +219,15 @@ fn panes_side_by_side_are_found_and_a_stroke_of_the_plane_across_them_does_no_ha
     let input = Input { features: &features, strokes: &strokes, region: Some(&ceiling) };
     let params = Params { subject: Subject::Lamps, ..Params::default() };
     let mask = run(&input, &params, Monitor::default().job()).unwrap().mask;
-    // The blur before regions are formed takes the four corner pixels of each of the 32 panes, and nothing else.
+    // The blur before the tree is built removes the four corner pixels of each of the 32 panes, and changes no other
+    // pixel.
     let wrong = (0..WIDTH * 120).filter(|i| (mask.data[*i] > 0.5) != is_pane(i % WIDTH, i / WIDTH)).count();
     assert!(wrong <= 4 * 32, "{wrong}");
 }
 
 #[test]
 fn lamps_much_smaller_on_the_plane_than_the_painted_ones_are_not_like_them() {
-    // The photo's size says little: the right half shows the plane from ten times as near.
+    // Lamps on the right have the painted lamps' size in the photo, but the plane is ten times as near there.
     let mut features = features();
     for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
         let (x, y) = ((i % WIDTH) as f32, (i / WIDTH) as f32);
@@ -230,11 +247,11 @@ fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
     let lamps = segment(&[], Some(&ceiling));
     assert!(lamps.is_proposed);
     assert_eq!(found(&lamps.mask), (vec![true; LAMPS.len()], 0));
-    // A negative stroke takes one out.
+    // A negative stroke removes one proposed lamp.
     let not = stroke(false, &[[40.0, 22.0], [40.0, 30.0]]);
     let corrected = segment(std::slice::from_ref(&not), Some(&ceiling));
     assert_eq!(found(&corrected.mask), (vec![false, true, true, true, true], 0));
-    // With a stroke on a lamp nothing is proposed.
+    // With a positive stroke on a lamp, the mask is not a proposal.
     assert!(!segment(&[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling)).is_proposed);
 }
 
@@ -253,14 +270,14 @@ fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
 
 #[test]
 fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
-    // The plane is cut off short of the second row, as by a wall that is laid out too near.
+    // The plane's mask ends above the second row of lamps, as if the layout had placed a wall too near.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
     let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
     let lamps = segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&cut));
     let columns = |s: &Stroke| s.pixels.iter().map(|p| *p as usize % WIDTH).collect::<Vec<_>>();
     assert_eq!(lamps.beyond.len(), 1, "{:?}", lamps.beyond.iter().map(columns).collect::<Vec<_>>());
     assert!(columns(&lamps.beyond[0]).iter().all(|x| (20..63).contains(x)));
-    // On the whole plane it is a lamp as the others.
+    // If the mask covers the whole plane, that lamp does not lie beyond it.
     assert!(
         segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling()))
             .beyond

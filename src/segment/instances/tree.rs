@@ -1,21 +1,21 @@
-//! The component tree of a photo's brightness: for every level, the connected regions that are at least that bright,
-//! each inside the region that it grows into at the next lower level (Salembier et al. 1998; built by union-find,
-//! Berger et al. 2007).
+//! The component tree of a photo's brightness (Salembier et al. 1998), built by union-find (Berger et al. 2007). Its
+//! nodes are the connected regions of pixels at or above each level. The parent of a region is the region that it
+//! grows into at the next lower level.
 //!
-//! Nodes are numbered from the root on, parents before children. The root is the whole image.
+//! Nodes are numbered from the root, parents before children. The root is the whole image.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
 pub struct Tree {
-    /// Parent of each node; the root's is itself.
+    /// Parent of each node; the root is its own parent.
     pub parent: Vec<u32>,
-    /// The smallest node that holds each pixel.
+    /// For each pixel, the smallest node that contains it.
     pub node_of: Vec<u32>,
-    /// All pixels, ordered so that the pixels of each node stand side by side.
+    /// All pixels, sorted so that the pixels of each node, children included, are contiguous.
     pixels: Vec<u32>,
-    /// Where the pixels of each node begin and end.
+    /// For each node, begin and end of its pixels in `pixels`.
     range: Vec<[u32; 2]>,
 }
 
@@ -23,13 +23,14 @@ pub struct Tree {
 const UNSEEN: u32 = u32::MAX;
 
 impl Tree {
-    /// The tree of the pixels above `floor`; the rest belongs to the root alone. Neighbours share a side.
+    /// Builds the tree of the pixels above level `floor`; all other pixels belong to the root only. Pixels that share
+    /// a side are neighbours.
     pub fn new(levels: &[u16], floor: u16, width: usize, job: Job) -> Result<Self> {
         let order = sorted(levels, floor)?;
         let mut parent = try_vec(levels.len(), UNSEEN)?;
         let mut set = try_vec(levels.len(), UNSEEN)?;
 
-        // From bright to dark, each pixel joins the regions beside it.
+        // From bright to dark, merge each pixel with the regions beside it.
         for (k, &p) in order.iter().enumerate().rev() {
             if k % (1 << 16) == 0 {
                 job.check()?;
@@ -55,7 +56,8 @@ impl Tree {
             }
         }
 
-        // From dark to bright, redirect parents to the pixel that represents a node: its first pixel in this order.
+        // From dark to bright, redirect parents to the pixel that represents a node: the node's first pixel in this
+        // order.
         for &p in &order {
             let up = parent[p as usize] as usize;
             if levels[parent[up] as usize] == levels[up] {
@@ -65,7 +67,7 @@ impl Tree {
         Self::numbered(levels, &order, &parent)
     }
 
-    /// Numbers the nodes, and sorts the pixels by them.
+    /// Numbers the nodes, and sorts the pixels by node.
     fn numbered(levels: &[u16], order: &[u32], parents: &[u32]) -> Result<Self> {
         let (mut parent, mut own) = (vec![0u32], vec![0u32]);
         let mut node_of = try_vec(levels.len(), 0u32)?;
@@ -82,7 +84,7 @@ impl Tree {
         }
         own[0] = (levels.len() - order.len()) as u32;
 
-        // A node's own pixels come first, then those of its children, one child after the other.
+        // Lay out the pixels: a node's own pixels first, then the pixels of its children, one child after the other.
         let mut count = try_collect(own.iter().copied())?;
         for node in (1..count.len()).rev() {
             count[parent[node] as usize] += count[node];
@@ -108,14 +110,14 @@ impl Tree {
         self.parent.len()
     }
 
-    /// Adds the value of each node to all nodes around it.
+    /// Adds the value of each node to all its ancestors, so that each value becomes the sum over a subtree.
     pub fn accumulate(&self, values: &mut [f64]) {
         for node in (1..self.len()).rev() {
             values[self.parent[node] as usize] += values[node];
         }
     }
 
-    /// The node and all nodes around it, except the root.
+    /// Iterates over a node and its ancestors, without the root.
     pub fn ancestors(&self, node: u32) -> impl Iterator<Item = u32> {
         std::iter::successors(Some(node), |&n| Some(self.parent[n as usize])).take_while(|&n| n != 0)
     }
@@ -127,11 +129,11 @@ impl Tree {
     }
 }
 
-/// Nodes that were chosen, none inside another.
+/// A set of chosen nodes of which none lies inside another.
 pub struct Disjoint<'a> {
     tree: &'a Tree,
     is_chosen: Vec<bool>,
-    /// Whether a node is chosen, or around a chosen one.
+    /// Whether a node is chosen or is an ancestor of a chosen node.
     is_around: Vec<bool>,
 }
 
@@ -144,7 +146,7 @@ impl<'a> Disjoint<'a> {
         self.is_around[node as usize]
     }
 
-    /// Whether a node is neither around a chosen one nor inside one.
+    /// Whether a node is neither an ancestor nor a descendant of a chosen node, nor chosen itself.
     pub fn admits(&self, node: u32) -> bool {
         !self.is_around(node) && !self.tree.ancestors(node).any(|n| self.is_chosen[n as usize])
     }
@@ -155,7 +157,7 @@ impl<'a> Disjoint<'a> {
     }
 }
 
-/// The pixels above `floor` by level, then by place: a counting sort.
+/// Sorts the pixels above `floor` by level, then by index (counting sort).
 fn sorted(levels: &[u16], floor: u16) -> Result<Vec<u32>> {
     let top = levels.iter().copied().max().unwrap_or(0) as usize;
     let mut next = try_vec(top + 2, 0usize)?;
@@ -169,7 +171,7 @@ fn sorted(levels: &[u16], floor: u16) -> Result<Vec<u32>> {
     Ok(order)
 }
 
-/// The representative of a set, with path halving.
+/// Finds the representative of a set in the union-find forest, with path halving.
 fn find(set: &mut [u32], mut p: u32) -> u32 {
     while set[p as usize] != p {
         let up = set[set[p as usize] as usize];
@@ -215,7 +217,7 @@ mod tests {
             let level = by_tree.iter().map(|&p| levels[p as usize]).min().unwrap();
             by_tree.sort_unstable();
             assert!(by_tree.iter().all(|&p| tree.ancestors(tree.node_of[p as usize]).any(|n| n == node)));
-            // By definition: the pixels that a walk over pixels of the level and above reaches.
+            // By definition, a node consists of the pixels that a walk over pixels at or above its level reaches.
             let at_level = *by_tree.iter().find(|&&p| levels[p as usize] == level).unwrap();
             assert_eq!(by_tree, walk(&levels, level, at_level, width));
         }

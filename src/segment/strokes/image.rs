@@ -1,4 +1,4 @@
-//! Strokes as a picture of the photo's size: green = plane, red = not plane, yellow = light, blue = not light.
+//! Reads strokes from a picture of the photo's size: green = plane, red = not plane, yellow = light, blue = not light.
 
 use super::{Kind, Stroke, StrokeSet};
 use crate::error::{Error, Result};
@@ -10,15 +10,15 @@ const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::Light, [1.0, 1.0, 0.0]),
     (Kind::NotLight, [0.0, 0.0, 1.0]),
 ];
-/// Largest difference from a colour in any sRGB channel. It allows for JPEG and soft brushes, and no pixel can match
-/// two colours.
+/// Largest deviation from a stroke colour in any sRGB channel, in `[0, 1]`. It allows for JPEG artefacts and soft
+/// brushes; two stroke colours are too far apart for a pixel to match both.
 const TOLERANCE: f32 = 0.3;
-/// Components of fewer pixels are specks of compression, not strokes.
+/// Minimum number of pixels of a stroke; smaller components are compression artefacts.
 const SPECK: usize = 4;
 
-/// Strokes from their colours: (0, 255, 0) plane, (255, 0, 0) not plane, (255, 255, 0) light, (0, 0, 255) not light.
-/// Pixels of other colours, and pixels that are more than half transparent, are unpainted. Connected pixels of one
-/// colour are one stroke. The image holds linear values, as `image::io` decodes them.
+/// Reads strokes from an image by colour: (0, 255, 0) plane, (255, 0, 0) not plane, (255, 255, 0) light, (0, 0, 255)
+/// not light. Pixels of other colours, and pixels that are more than half transparent, are unpainted. Connected pixels
+/// of one colour form a stroke. The image holds linear values, as `image::io` decodes them.
 pub fn from_image(image: &Image) -> Result<StrokeSet> {
     if image.channels < 3 {
         return Err(Error::argument(format!(
@@ -36,7 +36,7 @@ pub fn from_image(image: &Image) -> Result<StrokeSet> {
     };
     let kinds = try_collect(image.data.chunks_exact(image.channels).map(kind_of))?;
 
-    // Connected components, over all eight neighbours.
+    // Collect the connected components of each class, over all eight neighbours.
     let (width, height) = (image.width, image.height);
     let mut is_taken = try_vec(kinds.len(), false)?;
     let mut set = StrokeSet::default();

@@ -1,4 +1,4 @@
-//! The strokes that a user paints: pixels as examples of a class.
+//! The strokes that a user paints as examples: pixels that belong, or do not belong, to the plane or the lights.
 
 mod image;
 mod text;
@@ -10,11 +10,12 @@ use crate::error::{Error, Result, check_range};
 use crate::image::{Image, make_room, try_collect};
 use glam::DVec2;
 
-/// Share of the pixels under light strokes that are taken to be darker than a lamp: hurried strokes run over its edge.
+/// Quantile of L* under the positive light strokes. Pixels of plane strokes that are at least as bright count as lamp.
+/// The quantile ignores the darkest quarter, because hurried strokes run over the edges of lamps.
 /// [judged on 36 photos]
 const LIT: f64 = 0.25;
 
-/// One stroke of the brush: the pixels that it covers (`y * width + x`), and the class of which they are examples.
+/// One brush stroke: the pixels that it covers (`y * width + x`), and whether they are positive or negative examples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     pub pixels: Vec<u32>,
@@ -22,8 +23,8 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// The pixels of a `width × height` image whose centres lie within `radius` pixels (> 0, at most 4096) of a
-    /// polyline. One point makes a dot. A stroke entirely off the image has no pixels.
+    /// Returns the pixels of a `width × height` image whose centres lie within `radius` pixels of a polyline. `radius`
+    /// lies in `[1e-3, 4096]`. One point makes a dot. A stroke entirely off the image has no pixels.
     pub fn polyline(points: &[DVec2], radius: f64, positive: bool, width: usize, height: usize) -> Result<Self> {
         check_range("stroke radius", radius, 1e-3, 4096.0)?;
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
@@ -32,7 +33,7 @@ impl Stroke {
         let mut pixels = Vec::new();
         let ends = points.iter().zip(points.iter().skip(1).chain(points.last()));
         for (&a, &b) in ends {
-            // All pixels of the piece's bounding box, clipped to the image.
+            // Test all pixels of the piece's bounding box, clipped to the image.
             let clip = |v: f64, size: usize| v.clamp(0.0, size as f64) as usize;
             let (low, high) = (a.min(b) - radius, a.max(b) + radius);
             for y in clip(low.y.floor(), height)..clip(high.y.ceil(), height) {
@@ -41,7 +42,7 @@ impl Stroke {
                     let along = b - a;
                     let t = if along == DVec2::ZERO { 0.0 } else { (p - a).dot(along) / along.length_squared() };
                     if p.distance(a + along * t.clamp(0.0, 1.0)) <= radius {
-                        // Pieces may overlap completely: remove duplicates before allocating more memory.
+                        // Pieces may overlap completely, so remove duplicates before the list grows.
                         if pixels.len() == pixels.capacity() {
                             pixels.sort_unstable();
                             pixels.dedup();
@@ -59,31 +60,32 @@ impl Stroke {
     }
 }
 
-/// The strokes of both phases.
+/// The strokes for both phases of the segmentation: the plane, then the lights on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrokeSet {
-    /// Positive: on the plane that holds the lights. Negative: elsewhere.
+    /// Positive strokes lie on the plane that holds the lights, negative strokes elsewhere.
     pub plane: Vec<Stroke>,
-    /// Positive: lights. Negative: the plane beside them.
+    /// Positive strokes lie on lights, negative strokes on the plane beside them.
     pub lights: Vec<Stroke>,
 }
 
 impl StrokeSet {
-    /// The examples of the first phase. Lights lie in the plane, so their positive strokes are also positive examples
-    /// of the plane; without them, bright lamps would be cut out of a dark ceiling. Negative strokes of the lights are
-    /// left out, because they say nothing about the plane.
+    /// Returns the examples for the first phase, which finds the plane: the plane strokes and the positive light
+    /// strokes. Lights lie in the plane; without their strokes, bright lamps would be cut out of a dark ceiling.
+    /// Negative light strokes are left out, because they do not say whether a pixel lies on the plane.
     pub fn plane_examples(&self) -> Vec<Stroke> {
         self.plane_strokes().cloned().collect()
     }
 
-    /// The strokes of [`Self::plane_examples`], one by one and not copied.
+    /// Iterates over the strokes of [`Self::plane_examples`] without copying them.
     pub fn plane_strokes(&self) -> impl Iterator<Item = &Stroke> {
         self.plane.iter().chain(self.lights.iter().filter(|s| s.positive))
     }
 
-    /// The examples of the second phase. Strokes of the plane become negative examples, but two kinds of their pixels
-    /// are left out: pixels that a stroke of the lights covers, and pixels of positive strokes that are as bright as
-    /// the strokes of the lights, because the stroke runs over a lamp there. `features` holds L* in its first channel.
+    /// Returns the examples for the second phase, which finds the lights: the light strokes, and the plane strokes as
+    /// negative examples. Plane strokes lose the pixels that a light stroke also covers. Positive plane strokes also
+    /// lose their pixels that are as bright as the light strokes, because the stroke runs over a lamp there. The first
+    /// channel of `features` is L*.
     pub fn light_examples(&self, features: &Image) -> Result<Vec<Stroke>> {
         let mut of_lights = try_collect(self.lights.iter().flat_map(|s| s.pixels.iter().copied()))?;
         of_lights.sort_unstable();
@@ -104,7 +106,7 @@ impl StrokeSet {
     }
 }
 
-/// The classes of strokes, as the file formats name them.
+/// The kinds of strokes in the file formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Plane,

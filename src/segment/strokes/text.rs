@@ -1,4 +1,4 @@
-//! Strokes as text, one to a line:
+//! Reads strokes from a text file with one stroke per line:
 //!
 //! ```text
 //! # what       radius  x y of each point, in pixels from the top left corner
@@ -12,7 +12,7 @@ use super::{Kind, Stroke, StrokeSet};
 use crate::error::{Error, Result};
 use glam::DVec2;
 
-/// Reads strokes for a photo of this size. Errors name the line.
+/// Reads the strokes for a photo of the given size. Errors name the line.
 pub fn parse(text: &str, width: usize, height: usize) -> Result<StrokeSet> {
     let mut set = StrokeSet::default();
     for (index, line) in text.lines().enumerate() {

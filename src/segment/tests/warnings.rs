@@ -1,4 +1,4 @@
-//! Each warning about a mask that deserves it, and no warning about a good one.
+//! Tests that each warning about masks is raised for a bad mask, and that a good mask raises none.
 
 use super::*;
 use crate::job::Monitor;
@@ -8,7 +8,8 @@ use crate::segment::{Input, Params, run};
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
-/// One feature: bright above, dark below, and a strange face at the right of the bright half.
+/// A photo with one feature: about 1 in the upper half, 0 in the lower half, and `strange` at the right of the upper
+/// half.
 fn photo(strange: f32) -> Image {
     Image::from_fn(WIDTH, HEIGHT, |x, y| {
         let noise = 0.05 * Rng::new(3, &[x as u64, y as u64]).normal() as f32;
@@ -58,12 +59,12 @@ fn a_face_unlike_every_stroke_raises_a_warning_with_a_place_on_it() {
     let warnings = mask.warnings();
     assert!(codes(warnings.clone()).contains(&Code::Unseen), "{warnings:?}");
     let unseen = warnings.into_iter().find(|w| w.code == Code::Unseen).unwrap();
-    // The strange face is three eighths of the mask.
+    // The strange area covers three eighths of the mask.
     assert!((unseen.severity - 0.375).abs() < 0.02, "{unseen:?}");
     let place = unseen.place.unwrap();
     assert!(place.x > 100.0 && place.y < 60.0, "{place}");
 
-    // The stroke that is asked for, there, settles it.
+    // Another stroke at the suggested place removes the warning.
     let more = [strokes(), vec![stroke(true, place.to_array(), (place + DVec2::splat(1.0)).to_array())]].concat();
     assert!(!codes(segmented(&photo(6.0), &more).warnings()).contains(&Code::Unseen));
 }
@@ -85,7 +86,7 @@ fn classes_that_look_alike_raise_warnings() {
     assert!(codes(mask.warnings()).contains(&Code::UncertainMask), "{:?}", mask.warnings());
     let missed = mask.missed(strokes().iter()).unwrap();
     assert_eq!(missed.code, Code::MissedStrokes);
-    // The place is a pixel of a stroke on the wrong side.
+    // The suggested place is a pixel of a stroke that the mask assigns to the wrong class.
     let place = missed.place.unwrap();
     let pixel = place.y as usize * WIDTH + place.x as usize;
     let is_there = |s: &Stroke| s.pixels.contains(&(pixel as u32)) && s.positive != (mask.mask.data[pixel] > 0.5);
@@ -109,7 +110,7 @@ fn lights_over_most_of_the_plane_raise_a_warning() {
     assert_eq!(almost_all_lit(&lights(20), &plane), None);
     let raised = almost_all_lit(&lights(45), &plane).unwrap();
     assert_eq!((raised.code, raised.severity), (Code::AlmostAllLit, 0.75));
-    // Masks of two photos are not compared, and an empty plane has no lights.
+    // Masks of different sizes are not compared, and a plane without pixels raises no warning.
     assert_eq!(almost_all_lit(&Image::from_fn(9, 9, |_, _| [1.0]).unwrap(), &plane), None);
     assert_eq!(almost_all_lit(&lights(45), &Image::new(WIDTH, HEIGHT, 1).unwrap()), None);
 }
@@ -123,19 +124,19 @@ fn painted_lamps_no_brighter_than_the_plane_raise_a_warning_with_a_place_on_the_
     assert_eq!(dim_lamps(&ramp, &plane, &[lamp(100.0), lamp(120.0)]), None);
     let dim = dim_lamps(&ramp, &plane, &[lamp(100.0), lamp(40.0)]).unwrap();
     assert_eq!(dim.code, Code::DimLamps);
-    // All of the plane is darker than one lamp, half of it than the other.
+    // The whole plane is darker than one lamp, and half of the plane is darker than the other.
     assert!((dim.severity - 0.75).abs() < 0.01, "{dim:?}");
     assert!((dim.place.unwrap().x - 40.0).abs() < 4.0, "{dim:?}");
-    // Equal lightness tells nothing: one half.
+    // At equal lightness the probability is one half.
     let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [7.0]).unwrap();
     assert_eq!(dim_lamps(&flat, &plane, &[lamp(100.0)]).unwrap().severity, 0.5);
-    // Negative strokes of the lights are plane as well, and alone where strokes of the plane run over lamps.
+    // Strokes marked "not light" count as plane. They count alone if plane strokes run over lamps.
     let beside = |x: f64| stroke(false, [x, 5.0], [x, 9.0]);
     assert!(dim_lamps(&ramp, &[], &[lamp(100.0), beside(140.0)]).is_some());
     let over = [stroke(true, [80.0, 15.0], [140.0, 15.0])];
     assert!(dim_lamps(&ramp, &over, &[lamp(100.0)]).is_some());
     assert_eq!(dim_lamps(&ramp, &over, &[lamp(100.0), beside(60.0)]), None);
-    // Without any plane there is nothing to compare.
+    // Without plane pixels there is no comparison.
     assert_eq!(dim_lamps(&ramp, &[], &[lamp(100.0)]), None);
 }
 

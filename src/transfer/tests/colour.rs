@@ -1,4 +1,4 @@
-//! What the target is where the photo is clipped, against what it was before.
+//! Tests the target colour of clipped photos against the colour before clipping.
 
 use super::*;
 use crate::exec::Pool;
@@ -27,7 +27,7 @@ fn clip(photo: &Image) -> Image {
 
 #[test]
 fn a_clipped_channel_follows_from_the_others() {
-    // A warm plane that gets brighter to one side, and a cool stripe that is dark.
+    // A warm plane that grows brighter to one side, and a dark, cool stripe.
     let plane = Image::from_fn(100, 20, |x, y| {
         let light = 0.2 + 0.016 * x as f32;
         if y == 7 { [0.02, 0.02, 0.03] } else { [light, 0.7 * light, 0.4 * light] }
@@ -39,27 +39,28 @@ fn a_clipped_channel_follows_from_the_others() {
     let off = |colour: Vec3| (colour / mean(&truth) - 1.0).abs();
     assert!(off(found.colour).max_element() < 0.02, "{found:?} {}", mean(&truth));
     assert!(off(mean(&photo)).x > 0.1);
-    // What is brighter than white somewhere is not clipped at it.
+    // A photo with values above white is not clipped, so its mean is exact.
     assert!((whole(&truth).colour - mean(&truth)).abs().max_element() < 1e-5);
-    // Red is white everywhere: no less is all that can be said.
+    // Red is white everywhere, so its target is a lower bound.
     let bright = Image::from_fn(8, 8, |x, _| [1.0, 0.5 + 0.01 * x as f32, 0.3]).unwrap();
     let found = whole(&bright);
     assert_eq!(found.constraint, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);
     assert!((found.colour - mean(&bright)).abs().max_element() < 1e-6);
-    // All of it is white, or a few pixels without a hint are.
+    // In a photo that is entirely white, all targets are lower bounds. If only a few pixels are white, the targets are
+    // exact.
     let white = Image::from_fn(8, 8, |_, _| [1.0; 3]).unwrap();
     assert_eq!(whole(&white), Target { colour: Vec3::ONE, constraint: [Constraint::AtLeast; 3] });
     let spark = Image::from_fn(8, 8, |x, y| [if x + y == 0 { 1.0 } else { 0.5 }; 3]).unwrap();
     assert_eq!(whole(&spark).constraint, EXACTLY);
 }
 
-/// A room whose warm light is known, photographed so that red and green are clipped on parts of its ceiling: the light is recovered, which it is not
-/// if clipped pixels count as they are.
+/// Recovers the known warm light of a room from a photo in which red and green are clipped on parts of the ceiling.
+/// Without estimates for the clipped pixels, the light must not be recovered.
 #[test]
 fn known_light_is_recovered_from_a_clipped_photo() {
     let (size, high) = (4.0, 2.5);
     let (x, y, z) = (Vec3::X * size, Vec3::Y * high, Vec3::Z * size);
-    // Without gloss, which the mean of a target leaves out.
+    // Use materials without gloss, which the mean colour of a target does not include.
     let matt = |albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse("matt", albedo) };
     let lamp = Material { emission: Vec3::new(1000.0, 900.0, 700.0), ..matt(Vec3::ZERO) };
     let side = |corner, u, v, material| Mesh::parallelogram(corner, u, v, material);
@@ -78,14 +79,15 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     };
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
-    // From below the picture is all of the ceiling and nothing else.
+    // Seen from below, the picture shows all of the ceiling and nothing else.
     const SIDE: usize = 80;
     let eye = Vec3::new(size / 2.0, 0.3, size / 2.0);
     let fov = 2.0 * (size / 2.0 / (high - eye.y)).atan();
     let camera = Camera { up: Vec3::Z, ..Camera::look_at(eye, eye + Vec3::Y, fov) };
     let params = render::Params { width: SIDE, height: SIDE, samples: 100, ..render::Params::default() };
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
-    // So bright that the least of its channels just is not clipped: where all are, nothing can be known.
+    // Expose the photo so that blue, the weakest channel, is just not clipped: where all channels are clipped, nothing
+    // is known.
     let of_channel = |c: usize| film.beauty.data.iter().skip(c).step_by(3).copied();
     let white = 1.02 * of_channel(2).fold(0.0, f32::max);
     let clipped = of_channel(0).filter(|v| *v > white).count();
@@ -105,7 +107,8 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
     assert!(off(&recovered) < 0.02 && off(&as_it_is) > 3.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
 
-    // Exposed so that all of red is white and nothing else is: the lamp keeps its colour where it may.
+    // Expose the photo so that all of red is clipped and no other channel: with a lower bound for red, the lamp keeps
+    // its colour.
     let white = 0.9 * of_channel(0).fold(f32::INFINITY, f32::min);
     let colour = (mean(&film.beauty) / white).with_x(1.0);
     let least = solve(colour, white, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);

@@ -1,4 +1,4 @@
-//! Compressed geometry: primitives in Draco streams, and buffer views of meshoptimizer.
+//! Tests of compressed geometry: primitives in Draco streams, and buffer views of meshoptimizer.
 
 use super::features::add_floats;
 use super::*;
@@ -10,10 +10,11 @@ use meshoptimizer_rs::codec::{
     IndexEncoding, VertexEncoding, encode_index_buffer, encode_index_sequence, encode_vertex_buffer,
 };
 
-/// Vertices along each side of a test grid.
+/// Number of vertices along each side of the test grid.
 const SIDE: usize = 12;
 
-/// Positions, texture coordinates and triangles of a wavy grid, its numbers multiples of 1/128.
+/// Positions, texture coordinates and triangles of a wavy grid. All numbers are multiples of 1/128, so that no codec
+/// rounds them.
 fn grid() -> (Vec<[f32; 3]>, Vec<[f32; 2]>, Vec<[u32; 3]>) {
     let vertex = |i: usize| (i % SIDE, i / SIDE);
     let positions = (0..SIDE * SIDE).map(|i| {
@@ -55,7 +56,7 @@ fn draco(method: i32) -> Vec<u8> {
     out.data().to_vec()
 }
 
-/// Adds a buffer and a view of all of it; returns the index of the view.
+/// Adds a buffer and a buffer view that covers it; returns the index of the view.
 fn add_view(file: &mut Value, bytes: &[u8]) -> usize {
     let padded =
         bytes.iter().copied().chain(std::iter::repeat_n(0, bytes.len().wrapping_neg() % 4)).collect::<Vec<_>>();
@@ -66,7 +67,7 @@ fn add_view(file: &mut Value, bytes: &[u8]) -> usize {
     view
 }
 
-/// A file whose primitive is in a Draco stream.
+/// A file whose primitive is in a Draco stream, changed by `edit`.
 fn draco_file(stream: &[u8], edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     let (positions, _, triangles) = grid();
     triangle_file(|f| {
@@ -88,8 +89,8 @@ fn draco_file(stream: &[u8], edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     })
 }
 
-/// The corners of all triangles with their texture coordinates, sorted, so that meshes of different order compare
-/// equal.
+/// Describes each triangle by the positions and texture coordinates of its corners and sorts the descriptions. Meshes
+/// that differ only in the order of their triangles compare equal.
 fn soup(mesh: &Mesh) -> Vec<String> {
     let corner = |&i: &u32| format!("{:?} {:?}", mesh.positions[i as usize], mesh.uvs[0][i as usize]);
     let triangle = |t: &[u32; 3]| {
@@ -147,7 +148,7 @@ fn defects_of_draco_streams_are_errors() {
         let error = import(&draco_file(&stream, edit), None).map(|_| ()).expect_err(message);
         assert!(error.kind == ErrorKind::Format && error.message.contains(message), "{message}: {error}");
     }
-    // If the accessors hold the data too, the stream is not decoded.
+    // If the accessors also hold the data uncompressed, the stream is not decoded.
     let plain = draco_file(&stream[..8], |f| {
         let (positions, uvs, triangles) = grid();
         *f.pointer_mut(settings).unwrap() = json!({ "bufferView": 0, "attributes": {} });
@@ -160,7 +161,7 @@ fn defects_of_draco_streams_are_errors() {
         f["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": positions, "TEXCOORD_0": uvs });
     });
     assert_eq!(soup(&import(&plain, None).unwrap().meshes[0]), expected());
-    // Arbitrary corruption ends with a scene or an error.
+    // A corrupt stream gives a valid scene or an error.
     for round in 0..3000u64 {
         let mut rng = Rng::new(7, &[round]);
         let mut broken = stream.clone();
@@ -175,7 +176,7 @@ fn defects_of_draco_streams_are_errors() {
     }
 }
 
-/// A file whose positions and indices are in buffer views of meshoptimizer.
+/// A file whose vertex attributes and indices are in compressed buffer views of meshoptimizer.
 fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     let (positions, uvs, triangles) = grid();
     let (version, mut workspace) = (VertexEncoding::new(0, 2).unwrap(), Workspace::default());
@@ -197,7 +198,7 @@ fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
             let settings = json!({
                 "buffer": buffer, "byteLength": stream.len(), "byteStride": stride, "count": count, "mode": mode,
             });
-            // The view refers to a buffer without data.
+            // The view itself refers to a fallback buffer without data.
             let view = json!({ "buffer": 1, "byteLength": count * stride, "extensions": { "EXT_meshopt_compression": settings } });
             let views = f["bufferViews"].as_array_mut().unwrap();
             views.push(view);
@@ -207,7 +208,7 @@ fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
         let (positions, uvs) =
             (add(&positions, "ATTRIBUTES", SIDE * SIDE, 12), add(&uvs, "ATTRIBUTES", SIDE * SIDE, 8));
         let indices_view = add(&packed, mode, indices.len(), 4);
-        // The buffer without data goes between the others.
+        // Add the fallback buffer without data, and let the views refer to it.
         let length = SIDE * SIDE * 20 + 4 * indices.len();
         let fallback =
             json!({ "byteLength": length, "extensions": { "EXT_meshopt_compression": { "fallback": true } } });
@@ -234,7 +235,7 @@ fn buffer_views_of_meshoptimizer_are_decoded() {
         let scene = import(&meshopt_file(sequence, |_| ()), None).unwrap();
         assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
         assert_eq!(soup(&scene.meshes[0]), expected(), "sequence {sequence}");
-        // The same under the name of the Khronos extension.
+        // Read the same file with the name of the Khronos extension.
         let file = String::from_utf8(meshopt_file(sequence, |_| ())).unwrap();
         let scene = import(file.replace("EXT_meshopt", "KHR_meshopt").as_bytes(), None).unwrap();
         assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
@@ -244,7 +245,7 @@ fn buffer_views_of_meshoptimizer_are_decoded() {
 
 #[test]
 fn defects_of_meshoptimizer_views_are_errors() {
-    /// Changes the settings of the positions' view.
+    /// Returns the compression settings of the buffer view of the positions.
     fn settings(file: &mut Value) -> &mut Value {
         let view = file["accessors"][0]["bufferView"].as_u64().unwrap() as usize;
         &mut file["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]

@@ -1,8 +1,8 @@
-//! Valid files in unusual forms, features that are read, and reports of features that are not.
+//! Tests of valid files in unusual forms, of features that are read, and of reports on features that are not rendered.
 
 use super::*;
 
-/// Statements of a file's features that are not rendered.
+/// Imports a file and returns the messages about its features that are not rendered.
 fn unrendered(edit: impl FnOnce(&mut Value)) -> Vec<String> {
     import(&triangle_file(edit), None).unwrap().unrendered.iter().map(ToString::to_string).collect()
 }
@@ -30,7 +30,8 @@ fn only_gltf_2_is_read() {
     }
 }
 
-/// Changes of a file that keep its picture, with their names.
+/// Unusual but valid forms of a file: the name of each form, and an edit that gives the file this form without
+/// changing the picture.
 fn unusual_forms() -> [(&'static str, fn(&mut Value)); 10] {
     [
         ("extras of any type", |f| {
@@ -98,12 +99,12 @@ fn valid_files_in_unusual_forms_are_read() {
         let expected = usize::from(name == "a channel without node");
         assert_eq!(scene.unrendered.len(), expected, "{name}: {:?}", scene.unrendered);
     }
-    // A scene without nodes is empty.
+    // A scene without nodes gives an empty scene.
     let empty = import(&triangle_file(|f| f["scenes"] = json!([{ "name": "Empty" }])), None).unwrap();
     assert!(empty.meshes.is_empty());
 }
 
-/// Extensions of materials that are not rendered.
+/// The material extensions that are not rendered.
 const UNRENDERED_MATERIALS: [&str; 8] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -167,7 +168,7 @@ fn specular_and_glossiness_become_metallic_and_rough() {
     let with = |edit: &dyn Fn(&mut Value)| {
         let file = triangle_file(|f| {
             f["extensionsRequired"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
-            // A PNG of one pixel, (0, 0, 0).
+            // A PNG of one pixel of the colour (0, 0, 0).
             let uri = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC";
             f["images"] = json!([{ "uri": uri }]);
             f["textures"] = json!([{ "source": 0 }]);
@@ -185,7 +186,7 @@ fn specular_and_glossiness_become_metallic_and_rough() {
     assert!(metal.metallic > 0.99 && metal.roughness == 0.25 && metal.alpha == 0.5, "{metal:?}");
     assert!(scene.unrendered.is_empty() && scene.textures.is_empty());
 
-    // With a texture, base colour, roughness and metalness are textures too, and come back from a file that is written.
+    // With a texture, base colour, roughness and metalness become textures too, and they survive an export and import.
     let scene = with(&|settings| settings["diffuseTexture"] = json!({ "index": 0, "texCoord": 1 }));
     let metal = &scene.materials[0];
     assert_eq!((metal.base_color, metal.metallic, metal.roughness, metal.alpha), (Vec3::ONE, 1.0, 1.0, 1.0));
@@ -195,7 +196,7 @@ fn specular_and_glossiness_become_metallic_and_rough() {
     assert_eq!(scene.textures[1].image.data[1], 0.25);
     assert_eq!(import(&export(&scene).unwrap(), None).unwrap().textures.len(), 2);
 
-    // Textures with different coordinates are not converted.
+    // A material whose two textures have different coordinates is not converted.
     let scene = with(&|settings| {
         settings["diffuseTexture"] = json!({ "index": 0, "texCoord": 1 });
         settings["specularGlossinessTexture"] = json!({ "index": 0 });
@@ -225,7 +226,7 @@ fn extensions_that_are_required_are_rendered_or_refused_by_name() {
     }
 }
 
-/// Adds an accessor of floats in a buffer of its own; returns its index.
+/// Adds an accessor of floats in a buffer of its own; returns the index of the accessor.
 pub fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
     let raw: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -274,7 +275,7 @@ fn instances_are_meshes_of_their_own() {
     }
     let error = import(&file(true), None).unwrap_err();
     assert!(error.message.contains("different counts"), "{error}");
-    // Millions of instances from a small file, whose accessor has no data.
+    // A small file may ask for millions of instances, since its accessor needs no data.
     let bomb = triangle_file(|f| {
         let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
         f["accessors"].as_array_mut().unwrap().push(accessor);
@@ -288,7 +289,7 @@ fn instances_are_meshes_of_their_own() {
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("1048576 meshes"), "{error}");
 }
 
-/// A triangle of which joints or morph targets move two corners.
+/// Two joints move the corners of a triangle: each joint one corner, and both together the third.
 #[test]
 fn a_skin_is_bent_by_its_joints_at_rest() {
     // Node 1 moves the first corner, node 2 the second, and both with equal weights the third.
@@ -297,7 +298,7 @@ fn a_skin_is_bent_by_its_joints_at_rest() {
             let joints = add_floats(f, "VEC4", 3, &[0.0, 0.0, 0.0, 0.0, joint, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
             let weights = add_floats(f, "VEC4", 3, &[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]);
             let normals = add_floats(f, "VEC3", 3, &[0.0, 0.0, 1.0].repeat(3));
-            // In the bind pose, node 2 is one metre to the right.
+            // In the bind pose, node 2 is one metre to the right of node 1.
             let unit = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
             let moved = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0];
             let inverse = add_floats(f, "MAT4", matrices, &[unit, moved].concat()[..16 * matrices]);
@@ -306,7 +307,7 @@ fn a_skin_is_bent_by_its_joints_at_rest() {
             attributes["WEIGHTS_0"] = weights.into();
             attributes["NORMAL"] = normals.into();
             f["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": inverse }]);
-            // Joints move the mesh, and its own node does not.
+            // The joints place the mesh; the transform of its own node has no effect.
             let half = std::f32::consts::FRAC_1_SQRT_2;
             f["nodes"] = json!([
                 { "mesh": 0, "skin": 0, "translation": [100, 0, 0] },
@@ -326,13 +327,13 @@ fn a_skin_is_bent_by_its_joints_at_rest() {
         assert!(near(found, wanted), "{found} instead of {wanted}");
     }
     assert!(near(mesh.normals[0], Vec3::Z) && near(mesh.normals[1], Vec3::X), "{:?}", mesh.normals);
-    // Joints that reflect the mesh keep its front on the side of the normals.
+    // If the joints mirror the mesh, its front still faces along the normals.
     let mut mirrored: Value = serde_json::from_slice(&file(1.0, 2)).unwrap();
     mirrored["nodes"][1]["scale"] = json!([-1, 1, 1]);
     let mesh = &import(mirrored.to_string().as_bytes(), None).unwrap().meshes[0];
     let [a, b, c] = mesh.corners(0);
     assert!((b - a).cross(c - a).dot(mesh.normals[0]) > 0.0, "{:?} {:?}", mesh.triangles, mesh.normals);
-    // In millimetres.
+    // Read the file with the millimetre as its unit.
     let scaled = super::super::import(&file(1.0, 2), None, Options { unit: 0.001, ..Options::default() }).unwrap();
     assert!(near(scaled.meshes[0].corners(0)[1] * 1000.0, expected[1]));
     for (joint, matrices, message) in [(2.0, 2, "joint 2"), (1.0, 1, "1 inverse bind matrices")] {
@@ -362,12 +363,12 @@ fn morph_targets_are_mixed_by_their_weights() {
     };
     assert_eq!(read(Value::Null, Value::Null), (Vec3::ZERO, Vec3::Z));
     assert_eq!(read(Value::Null, json!([0.5, 0])), (Vec3::Z, Vec3::Z));
-    // The weights of the node override those of the mesh.
+    // The weights of a node override those of its mesh.
     let (position, normal) = read(json!([0, 0.25]), json!([0.5, 0]));
     assert!(near(position, Vec3::X) && near(normal, Vec3::new(1.0, 0.0, 1.0).normalize()), "{position} {normal}");
     let error = import(&file(json!([1, 0]), Value::Null, 2), None).unwrap_err();
     assert!(error.message.contains("2 values for 3 vertices"), "{error}");
-    // A small file with many morph targets of a large array.
+    // A small file may ask for many morph targets of one large array.
     let bomb = triangle_file(|f| {
         let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
         f["accessors"].as_array_mut().unwrap().push(accessor);
@@ -387,7 +388,7 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
             f["meshes"][0]["primitives"][0]["material"] = json!(0);
             let accessor = add_floats(f, kind, 3, colours);
             f["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor.into();
-            // The same mesh again shares the new material.
+            // A second node with the same mesh shares the new material.
             f["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }]);
             f["scenes"][0]["nodes"] = json!([0, 1]);
         });
@@ -399,7 +400,7 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
     assert_eq!(scene.materials[0].base_color, Vec3::new(0.5, 1.0, 1.0));
     assert!(scene.unrendered.is_empty());
     assert!(scene.meshes[0].colours.is_empty());
-    // Other colours stay with the vertices, and come back from a file that is written.
+    // Colours that differ between vertices stay with the vertices, and survive an export and import.
     let scene = with(&[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
     assert_eq!((scene.materials.len(), scene.meshes[0].material, scene.unrendered.len()), (1, 0, 0));
     let colours = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]].map(glam::Vec4::from);
@@ -409,7 +410,7 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
 
 #[test]
 fn a_webp_texture_is_read() {
-    // A lossless WebP of one pixel, (255, 0, 0).
+    // A lossless WebP of one pixel of the colour (255, 0, 0).
     let mut file = Vec::new();
     let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut file);
     encoder.encode(&[255, 0, 0], 1, 1, image::ExtendedColorType::Rgb8).unwrap();
@@ -446,7 +447,7 @@ fn files_outside_the_folder_need_leave() {
     for uri in ["../mesh.bin", absolute.as_str()] {
         assert_eq!(read(uri, true).unwrap().meshes[0].corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y], "{uri}");
     }
-    // Other resources than files are never read.
+    // Only files are read, never other resources.
     for uri in ["https://example.org/mesh.bin", "file:///mesh.bin", "..\\mesh.bin"] {
         assert_eq!(read(uri, true).unwrap_err().kind, ErrorKind::Unsupported, "{uri}");
     }

@@ -1,10 +1,10 @@
-//! Tests of scenes on a national grid.
+//! Tests of scenes far from the origin of their file, as on a national grid.
 
 use super::*;
 use crate::scene::gltf::origin::GRID;
 use glam::DVec3;
 
-/// A triangle, a lamp and a camera under nodes that a translation in f64 moves.
+/// A file with a triangle, a point light and a camera, whose nodes are translated in f64 by `at`.
 fn placed(at: DVec3) -> Vec<u8> {
     triangle_file(|file| {
         file["accessors"][0]["min"] = json!([0, 0, 0]);
@@ -43,7 +43,7 @@ fn a_file_is_read_to_a_hair_at_ten_thousand_kilometres() {
             assert!(off < 2e-5, "{at}: {q} is off by {off}");
         }
     }
-    // A scene near the origin, or larger than its distance, keeps its coordinates.
+    // A scene near the origin keeps its coordinates, and so does a distant one with `keep_origin`.
     assert_eq!(import(&placed(DVec3::splat(200.0)), None).unwrap().origin, DVec3::ZERO);
     let kept =
         super::super::import(&placed(DVec3::splat(1e5)), None, Options { keep_origin: true, ..Options::default() });
@@ -57,7 +57,7 @@ fn an_origin_survives_an_export() {
     assert_ne!(away.origin, DVec3::ZERO);
     let again = import(&export(&away).unwrap(), None).unwrap();
     assert_eq!((again.origin, position(&again)), (away.origin, position(&away)));
-    // The origin is part of the scene.
+    // The origin is part of the fingerprint.
     let mut moved = away.clone();
     moved.origin.x += 1.0;
     assert_ne!(moved.fingerprint(), away.fingerprint());
