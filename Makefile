@@ -61,7 +61,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python dask exr usd onnx docs studio
+	@benches/peers/install.sh mitsuba python dask exr usd report onnx docs studio
 	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy, so a missing tool is reported and skipped.

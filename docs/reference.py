@@ -148,11 +148,7 @@ def relative(target: str, page: str) -> str:
 def python_pages() -> dict[str, tuple[str, str]]:
     """Title and text of each page, by path."""
     exported = ast.parse((PACKAGE / "__init__.py").read_text())
-    names = next(
-        {c.value for c in ast.walk(node.value) if isinstance(c, ast.Constant)}
-        for node in exported.body
-        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"
-    )
+    names = exported_names(exported)
     out = {"reference/python/index.md": ("Overview", f"# The Python package\n\n{ast.get_docstring(exported)}\n")}
     described = {"abi", "library"}  # the C interface, described as such
     for path in sorted(PACKAGE.glob("[a-z]*.py")):
@@ -174,7 +170,38 @@ def python_pages() -> dict[str, tuple[str, str]]:
         out[f"reference/python/{path.stem}.md"] = (path.stem, "\n".join(text))
     if missing := names - described:
         raise Undocumented(f"luxfer.__all__ has what no page describes: {missing}")
+    out["reference/python/design.md"] = ("design", design_page())
     return out
+
+
+def exported_names(module: ast.Module) -> set[str]:
+    """The names of a module's __all__."""
+    return next(
+        {c.value for c in ast.walk(node.value) if isinstance(c, ast.Constant)}
+        for node in module.body
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"
+    )
+
+
+def design_page() -> str:
+    """The page of luxfer.design: what the package exports, and every public function of the modules that it exports."""
+    exported = ast.parse((PACKAGE / "design" / "__init__.py").read_text())
+    names, described = exported_names(exported), set()
+    text = ["# luxfer.design\n", docstring(exported, "design"), ""]
+    for path in sorted((PACKAGE / "design").glob("[a-z]*.py")):
+        tree = ast.parse(path.read_text())
+        described |= {path.stem}
+        for node in tree.body:
+            if not isinstance(node, (ast.ClassDef, ast.FunctionDef)) or node.name.startswith("_"):
+                continue
+            # A name that a listed module exports is called by its module.
+            if node.name in names or path.stem in ("areas", "observers"):
+                described |= {node.name}
+                owner = path.stem if path.stem in ("areas", "observers") else ""
+                text.append(klass(node) if isinstance(node, ast.ClassDef) else function(node, "##", owner))
+    if missing := names - described:
+        raise Undocumented(f"luxfer.design.__all__ has what no page describes: {missing}")
+    return "\n".join(text)
 
 
 def docstring(node: ast.AST, name: str) -> str:

@@ -25,6 +25,8 @@ install exr OpenEXR numpy
 install corpora DracoPy eulumdat eulumdat-py networkx numpy OpenEXR photompy Pillow trimesh
 # Pixar's library for USD files, which the Python package reads and writes them with.
 install usd usd-core numpy
+# What writes PDF reports of lighting designs.
+install report numpy 'reportlab>=4'
 # Another runtime for ONNX files.
 install onnx onnxruntime numpy
 # The server of the studio.

@@ -1,0 +1,45 @@
+"""Lighting design that can be signed: requirements of EN 12464-1, areas and grids, checks with confidence, dimmers
+closest to a photo's look, and a report.
+
+A Project holds a room, luminaires, areas, observers and requirements. Lengths are metres unless a unit is given.
+"""
+
+from . import areas, observers, standard
+from .check import Checked, Finding, Settings, check
+from .command import main
+from .look import Distance, distance
+from .luminaires import Luminaire, Product, dimmed, from_transfer, layout, lit_scene
+from .project import Project
+from .report import save
+from .rooms import Room
+from .solve import Solution, Wishes, solve
+from .standard import Place, Requirement, place, requirements
+
+__all__ = [
+    "Checked",
+    "Distance",
+    "Finding",
+    "Luminaire",
+    "Place",
+    "Product",
+    "Project",
+    "Requirement",
+    "Room",
+    "Settings",
+    "Solution",
+    "Wishes",
+    "areas",
+    "check",
+    "dimmed",
+    "distance",
+    "from_transfer",
+    "layout",
+    "lit_scene",
+    "main",
+    "observers",
+    "place",
+    "requirements",
+    "save",
+    "solve",
+    "standard",
+]

@@ -1,0 +1,387 @@
+"""The contents of a report as blocks, which html.py and pdf.py print."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Union
+
+import numpy as np
+
+from ..photometry import colour_temperature
+from . import fingerprint, plans
+from .check import Checked, Finding, percent
+from .drawing import Drawing
+from .luminaires import near_field
+from .measure import mean_with_bias
+from .units import shown
+
+if TYPE_CHECKING:
+    from .measure import Field
+    from .project import Project
+    from .solve import Solution
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading of level 1 to 2; a new page begins before it if asked."""
+
+    text: str
+    level: int = 1
+    new_page: bool = False
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Text; `tone` is "", "good", "bad", "open" or "small"."""
+
+    text: str
+    tone: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under a header; widths are shares. The last column is coloured by outcome where it has one."""
+
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    widths: tuple[float, ...]
+    outcomes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawing or the bytes of a PNG file, with a caption."""
+
+    picture: Drawing | bytes
+    caption: str
+
+
+@dataclass(frozen=True)
+class Code:
+    """Text as it is."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Lines for date, name and signature."""
+
+    name: str
+
+
+Block = Union[Heading, Paragraph, Table, Figure, Code, Signature]
+OUTCOME_TONES = {"passes": "good", "fails": "bad", "undecided": "open", "unknown": "open"}
+
+
+def contents(
+    project: Project, checked: Checked, solution: Solution | None = None, pictures: dict[str, bytes] | None = None
+) -> list[Block]:
+    """All blocks of a report."""
+    made_of = project.record()
+    blocks: list[Block] = [Heading(project.name), *_summary(project, checked, solution, made_of)]
+    blocks += [Heading("Requirements", 2), _requirements(checked)]
+    blocks.append(Paragraph(_reading(checked), "small"))
+    blocks += [
+        Heading("Plan", 1, True),
+        Figure(
+            plans.plan(project.room, project.luminaires, project.areas, project.observers, project.unit),
+            _plan_caption(project),
+        ),
+    ]
+    blocks += [Heading("Luminaires", 2), *_luminaires(project)]
+    blocks += _glare(project, checked)
+    blocks += _areas(project, checked)
+    if pictures:
+        blocks.append(Heading("Pictures", 1, True))
+        blocks += [Figure(data, caption) for caption, data in pictures.items()]
+    blocks += [Heading("Basis of the calculation", 1, True), *_basis(project, checked)]
+    blocks += [Heading("To make this report again", 2), *_again(made_of)]
+    blocks += [Heading("Signature", 2), Signature(project.author)]
+    return blocks
+
+
+def _summary(project: Project, checked: Checked, solution: Solution | None, made_of: dict) -> list[Block]:
+    room, lamps = project.room, project.luminaires
+    tone = "good" if checked.passes else "bad" if any(f.outcome == "fails" for f in checked.findings) else "open"
+    verdict = checked.verdict()
+    watts = [lamp.product.watts for lamp in lamps]
+    power = sum(lamp.watts for lamp in lamps)
+    known = all(w > 0 for w in watts)
+    length = lambda v: f"{shown(v, project.unit)} {project.unit}"  # noqa: E731
+    rows = [
+        (
+            "Room",
+            f"{length(room.length)} × {length(room.width)} × {length(room.height)}, floor {room.floor_area:.1f} m²",
+        ),
+        ("Maintenance factor", f"{project.chosen.maintenance:g}"),
+        ("Confidence of each result", percent(project.chosen.confidence)),
+        (
+            "Luminaires",
+            f"{sum(1 for lamp in lamps if lamp.flux > 0)} in use, {sum(lamp.flux for lamp in lamps):,.0f} lm as "
+            f"dimmed",
+        ),
+        ("Power", f"{power:.0f} W, {power / room.floor_area:.2f} W/m²" if known else "not stated for all luminaires"),
+    ]
+    if solution is not None:
+        rows.append(("Change of the look", str(solution.look)))
+    rows.append(("Hash", fingerprint.digest(made_of)))
+    said: list[Block] = [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone)]
+    if solution is not None and not solution.feasible:
+        why = solution.explanation()
+        said.append(Paragraph(why[0].upper() + why[1:] + ". The dimmers below come closest.", "bad"))
+    return [*said, Table(("", ""), tuple(rows), (0.28, 0.72))]
+
+
+def _number(value: float, unit: str) -> str:
+    if math.isnan(value):
+        return "unknown"
+    if math.isinf(value):
+        return "none" if value < 0 else "unlimited"
+    digits = 1 if unit in ("", "lx") and abs(value) >= 2 else 2
+    if abs(value) >= 100 or unit == "lx" and value == round(value):
+        digits = 0
+    return f"{value:.{digits}f} {unit}".strip()
+
+
+def _found(f: Finding) -> str:
+    unit = f.requirement.unit
+    if f.high > f.low:
+        return f"{_number(f.value, unit)} [{_number(f.low, '')}, {_number(f.high, '')}]"
+    return _number(f.value, unit)
+
+
+def _requirements(checked: Checked) -> Table:
+    rows = []
+    for f in checked.findings:
+        r = f.requirement
+        quantity = {
+            "mean": "Em",
+            "uniformity": "U0",
+            "glare": "UGR",
+            "rendering": "Ra",
+            "density": "power per area",
+            "flux": "flux per luminaire",
+        }[r.quantity]
+        if r.area in checked.fields and checked.fields[r.area].area.kind == "cylindrical":
+            quantity += " cylindrical"
+        limit = f"{'≥' if r.is_minimum else '≤'} {_number(r.limit, r.unit)}"
+        result = {
+            "passes": f"passes, {percent(f.probability, f.samples == 0)}",
+            "fails": f"fails by {100 * abs(f.reserve):.1f} %",
+        }
+        note = f" ({f.note})" if f.note else ""
+        rows.append(
+            (r.area or "design", quantity, limit, _found(f), r.reference + note, result.get(f.outcome, f.outcome))
+        )
+    header = ("Area", "Quantity", "Required", "Found [interval]", "Reference", "Result")
+    return Table(header, tuple(rows), (0.16, 0.1, 0.12, 0.22, 0.24, 0.16), tuple(f.outcome for f in checked.findings))
+
+
+def _reading(checked: Checked) -> str:
+    s = checked.settings
+    return (
+        f"Illuminances are maintained values, those at the start times {s.maintenance:g}; glare is rated at the "
+        f"start. Intervals contain the computed quantity with {100 * (2 * s.look_confidence - 1):.1f} %. "
+        f"A requirement passes if it holds with at least {percent(s.confidence)} over all looks at the paths; the "
+        "percentage is the confidence of the deciding look. They cover the randomness of the calculation, not errors "
+        "of the model: geometry, reflectances, photometry and maintenance are taken as given."
+    )
+
+
+def _plan_caption(project: Project) -> str:
+    return (
+        "Luminaires with their numbers, areas with their names, observers of glare as arrows along their lines of "
+        "sight. "
+        f"Lengths in {project.unit}."
+    )
+
+
+def _luminaires(project: Project) -> list[Block]:
+    unit, room = project.unit, project.room
+    context = room.scene.context
+    products: dict[str, str] = {}
+    rows, kinds = [], []
+    for number, lamp in enumerate(project.luminaires, 1):
+        p = lamp.product
+        key = f"{p.name}\0{p.hash}\0{p.flux}"
+        if key not in products:
+            products[key] = chr(ord("A") + len(products)) if len(products) < 26 else f"P{len(products) + 1}"
+            power = f"{p.watts:.1f} W, {p.flux / p.watts:.0f} lm/W" if p.watts > 0 else "not stated"
+            size = " × ".join(shown(abs(v), unit) for v in p.size) + f" {unit}"
+            kinds.append(
+                (
+                    products[key],
+                    p.name,
+                    f"{p.flux:.0f} lm",
+                    power,
+                    f"{p.rendering:g}" if p.rendering else "not stated",
+                    size,
+                    p.hash,
+                )
+            )
+        a, b = room.plan(lamp.position)[0]
+        height = lamp.position[1] - room.origin[1]
+        place = ", ".join(shown(v, unit) for v in (float(a), float(b), float(height)))
+        kelvin = "–" if lamp.colour == (1, 1, 1) else f"{colour_temperature(context, lamp.colour)[0]:.0f}"
+        rows.append(
+            (
+                str(number),
+                products[key],
+                place,
+                f"{100 * lamp.dimmer:.1f} %",
+                f"{lamp.flux:.0f}",
+                f"{lamp.watts:.1f}" if p.watts > 0 else "–",
+                kelvin,
+            )
+        )
+    total = (
+        "",
+        "all",
+        "",
+        "",
+        f"{sum(lamp.flux for lamp in project.luminaires):.0f}",
+        f"{sum(lamp.watts for lamp in project.luminaires):.1f}",
+        "",
+    )
+    return [
+        Table(
+            ("", "Product", "Flux", "Power", "Ra", "Opening", "Photometry"),
+            tuple(kinds),
+            (0.05, 0.25, 0.1, 0.2, 0.1, 0.18, 0.12),
+        ),
+        Table(
+            ("No.", "Product", f"Position in {unit}", "Dimmer", "lm", "W", "K"),
+            (*rows, total),
+            (0.08, 0.12, 0.34, 0.13, 0.12, 0.11, 0.1),
+        ),
+        Paragraph(
+            "Positions are along the room, across it, and above the floor, from the corner at the top left of the "
+            "plan. Flux and power are as dimmed, power in proportion to flux. K: colour temperature where the design "
+            "gives the light a colour, such as that of a photo.",
+            "small",
+        ),
+    ]
+
+
+def _areas(project: Project, checked: Checked) -> list[Block]:
+    out: list[Block] = []
+    for index, (name, found) in enumerate(checked.fields.items()):
+        out.append(Heading(f"Area: {name}", 1 if index == 0 else 2, index == 0))
+        out.append(_area_table(project, found, checked))
+        title = "Maintained cylindrical illuminance" if found.area.kind == "cylindrical" else "Maintained illuminance"
+        where = (
+            "of the walls: those along the upper and lower side of the plan above, those along its left and right "
+            "side below"
+            if found.area.kind == "walls"
+            else f"{shown(found.area.height, project.unit)} {project.unit} above the floor"
+        )
+        out.append(
+            Figure(
+                plans.field(project.room, found, project.unit),
+                f"{title} in lx, {where}. Black lines join points of equal illuminance, as marked on the scale.",
+            )
+        )
+    return out
+
+
+def _area_table(project: Project, found: Field, checked: Checked) -> Table:
+    level = 2 * checked.settings.look_confidence - 1
+    mean, bias = mean_with_bias(found)
+    low, high = mean.interval(level)
+    u = found.uniformity
+    ulow, uhigh = u.interval(level)
+    patch = found.area.patches[0]
+    steps = [float(np.linalg.norm(patch.across)) / patch.columns, float(np.linalg.norm(patch.down)) / patch.rows]
+    spacing = " × ".join(shown(v, project.unit) for v in steps) + f" {project.unit}"
+    row = (
+        str(found.area.count),
+        str(found.area.left_out),
+        spacing,
+        f"{mean.value:.0f} [{low - bias:.0f}, {high + bias:.0f}]",
+        f"{found.values.min():.0f} ± {found.errors[found.values.argmin()] * 1.96:.0f}",
+        f"{found.values.max():.0f}",
+        f"{u.value:.2f} [{ulow:.2f}, {uhigh:.2f}]",
+    )
+    header = ("Points", "Left out", "Spacing", "Mean in lx", "Least in lx", "Most in lx", "U0")
+    return Table(header, (row,), (0.09, 0.1, 0.22, 0.2, 0.13, 0.11, 0.15))
+
+
+def _glare(project: Project, checked: Checked) -> list[Block]:
+    if not checked.ratings:
+        return []
+    level, unit, room = 2 * checked.settings.look_confidence - 1, project.unit, project.room
+    rows = []
+    groups = {o.name: o for o in project.observers}
+    for name, ratings in checked.ratings.items():
+        for eye, view, rating in zip(groups[name].positions, groups[name].directions, ratings):
+            a, b = room.plan(eye)[0]
+            angle = math.degrees(math.atan2(view @ room.across, view @ room.along)) % 360
+            low, high = rating.interval(level)
+            place = ", ".join(shown(v, unit) for v in (float(a), float(b), float(eye[1] - room.origin[1])))
+            rows.append(
+                (
+                    name,
+                    place,
+                    f"{angle:.0f}°",
+                    f"{rating.background.value:.1f}",
+                    f"{_number(rating.ugr, '')} [{_number(low, '')}, {_number(high, '')}]"
+                    if math.isfinite(rating.ugr)
+                    else "none in view",
+                )
+            )
+    header = ("Observers", f"Eye in {unit}", "Towards", "Background in cd/m²", "UGR")
+    return [
+        Heading("Glare", 2),
+        Table(header, tuple(rows), (0.25, 0.27, 0.12, 0.18, 0.18)),
+        Paragraph(
+            "Unified glare rating of CIE 117 with initial flux; directions are angles in the plan from its "
+            "horizontal axis "
+            "clockwise.",
+            "small",
+        ),
+    ]
+
+
+def _basis(project: Project, checked: Checked) -> list[Block]:
+    heights = [
+        project.room.origin[1] + a.height for a in project.areas if a.kind in ("task", "surrounding", "background")
+    ]
+    s = checked.settings
+    said = [
+        "Light is computed by path tracing of the whole scene with furniture, all reflections included; without "
+        "daylight.",
+        f"Each point has {s.samples} to {s.max_samples} paths, in up to {s.looks} looks; each look spends an equal "
+        f"share of the error of "
+        f"{100 * (1 - s.confidence):.3g} %. A uniformity passes if each of its points does.",
+        "Grids follow EN 12464-1: spacing 0.2 · 5^log10(d), at most 10 m. Points inside objects, under furniture "
+        "(of the background) and "
+        "on windows and objects at walls are left out; the tables count them.",
+        "Cylindrical illuminance is the mean of 9 vertical planes around each point, within 1.02 %, which its "
+        "interval includes.",
+        "Rows of the standard are an excerpt: check them against its text. Ra is the manufacturer's statement.",
+    ]
+    said += [
+        f"Luminaires shine as points with their measured distribution. {n}."
+        for n in near_field(project.luminaires, heights)
+    ]
+    return [Paragraph(text) for text in said]
+
+
+def _again(made_of: dict) -> list[Block]:
+    keep = {k: v for k, v in made_of.items() if k in ("form", "luxfer", "scene", "settings", "areas", "observers")}
+    lamps: Sequence[dict] = made_of["luminaires"]
+    keep["photometry"] = sorted({lamp["photometry"] for lamp in lamps})
+    return [
+        Paragraph(
+            "The same scene, photometry, settings and version of the library give the same numbers to the bit on "
+            "one kind of "
+            "processor. The hash on the first page is that of the whole record, of which this is the part that is "
+            "not in the "
+            "tables."
+        ),
+        Code(json.dumps(keep, indent=1)),
+    ]

@@ -1,0 +1,169 @@
+"""Estimates with their intervals, and the probability that a limit is met.
+
+An estimate of the path tracer comes with the standard error of 16 independent batches, so it follows Student's t with
+15 degrees of freedom; sums of points have more (Welch-Satterthwaite). Probabilities are read in the sense of
+confidence: "passes with 97.5 %" means that the one-sided 97.5 % confidence interval of the quantity lies within the
+limit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+#: Degrees of freedom of the standard error of one point: 16 batches less one.
+POINT_FREEDOM = 15
+#: Steps of the bisections that invert distributions; each halves the bracket. [rounding]
+BISECTIONS = 80
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its standard error.
+
+    >>> e = Estimate(510.0, 5.0)
+    >>> round(e.probability_at_least(500), 3), [round(x, 1) for x in e.interval()]
+    (0.968, [499.3, 520.7])
+    """
+
+    value: float
+    """The estimate."""
+    error: float = 0
+    """Its standard error; 0 for exact numbers."""
+    freedom: float = POINT_FREEDOM
+    """Degrees of freedom of the standard error."""
+
+    def probability_at_least(self, limit: float) -> float:
+        """Confidence that the true number is at least the limit."""
+        if not self.error > 0:
+            return float(self.value >= limit)
+        return student((self.value - limit) / self.error, self.freedom)
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The two-sided interval of that confidence."""
+        half = self.error * quantile(0.5 + confidence / 2, self.freedom)
+        return self.value - half, self.value + half
+
+    def scaled(self, factor: float) -> Estimate:
+        """The estimate of a multiple."""
+        return Estimate(self.value * factor, self.error * abs(factor), self.freedom)
+
+
+def student(t: float, freedom: float) -> float:
+    """Distribution function of Student's t.
+
+    >>> round(student(2.131, 15), 4), round(student(1.959964, 1e9), 4)
+    (0.975, 0.975)
+    """
+    if math.isinf(t):
+        return float(t > 0)
+    if freedom > 1e6:
+        return 0.5 * math.erfc(-t / math.sqrt(2))
+    tail = 0.5 * _incomplete_beta(freedom / 2, 0.5, freedom / (freedom + t * t))
+    return 1 - tail if t > 0 else tail
+
+
+def quantile(probability: float, freedom: float) -> float:
+    """Inverse of student, by bisection.
+
+    >>> round(quantile(0.975, 15), 3)
+    2.131
+    """
+    if not 0 < probability < 1:
+        return math.inf if probability >= 1 else -math.inf
+    high = 1.0
+    while student(high, freedom) < max(probability, 1 - probability):
+        high *= 2
+    return bisect(lambda t: student(t, freedom) >= probability, -high, high)
+
+
+def bisect(holds: Callable[[float], bool], low: float, high: float) -> float:
+    """Where a condition begins to hold, between low, where it does not, and high."""
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def mean_of(values: ArrayLike, errors: ArrayLike) -> Estimate:
+    """The mean of independent estimates.
+
+    >>> e = mean_of([100, 102, 98, 104], [2, 2, 2, 2])
+    >>> e.value, e.error, e.freedom
+    (101.0, 1.0, 60.0)
+    """
+    values, variances = np.asarray(values, float), np.asarray(errors, float) ** 2
+    count, total = len(values), variances.sum()
+    freedom = POINT_FREEDOM if total == 0 else total**2 / (variances**2 / POINT_FREEDOM).sum()
+    return Estimate(float(values.mean()), float(np.sqrt(total) / count), float(freedom))
+
+
+@dataclass(frozen=True)
+class Uniformity:
+    """U0, the smallest over the mean illuminance of independent points.
+
+    The smallest of noisy values is too small on average, so no interval is centred on it. Instead each point is
+    compared with U0 times the mean. U0 is at least a limit if every point passes: the confidence is that of the worst
+    point (intersection-union test). It is below the limit if any point fails, and the more points there are, the
+    likelier one does by chance: the error of the worst point counts once for each of them (Bonferroni).
+    """
+
+    values: NDArray[np.float64]
+    """Illuminance of the points in lux."""
+    errors: NDArray[np.float64]
+    """Their standard errors."""
+
+    @property
+    def value(self) -> float:
+        """Smallest over mean illuminance, 0 in darkness."""
+        mean = self.values.mean()
+        return float(self.values.min() / mean) if mean > 0 else 0.0
+
+    def failing(self, limit: float) -> NDArray[np.float64]:
+        """For each point, the probability that it lies below limit times the mean."""
+        count, variances = len(self.values), self.errors**2
+        gap = self.values - limit * self.values.mean()
+        # The point itself is a part of the mean.
+        spread = np.sqrt(np.maximum(variances * (1 - 2 * limit / count) + limit**2 * variances.sum() / count**2, 0))
+        return np.array([1 - Estimate(g, s).probability_at_least(0) for g, s in zip(gap, spread)])
+
+    def probability_at_least(self, limit: float) -> float:
+        """Confidence that U0 is at least the limit."""
+        return 1 - float(self.failing(limit).max())
+
+    def probability_below(self, limit: float) -> float:
+        """Confidence that U0 is below the limit."""
+        return max(0.0, 1 - len(self.values) * float((1 - self.failing(limit)).min()))
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The two-sided interval of that confidence."""
+        sure = (1 + confidence) / 2
+        low = bisect(lambda u: self.probability_at_least(u) < sure, 0.0, 1.0)
+        high = bisect(lambda u: self.probability_below(u) >= sure, 0.0, 1.0)
+        return (low, max(low, high)) if self.values.mean() > 0 else (0.0, 0.0)
+
+
+def _incomplete_beta(a: float, b: float, x: float) -> float:
+    """Regularised incomplete beta function by its continued fraction (Lentz's method)."""
+    if x <= 0 or x >= 1:
+        return float(x >= 1)
+    if x > (a + 1) / (a + b + 2):  # where the fraction converges slowly
+        return 1 - _incomplete_beta(b, a, 1 - x)
+    front = math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)) / a
+    tiny, d = 1e-300, 1 - (a + b) * x / (a + 1)  # [rounding]
+    d = 1 / (d if abs(d) > tiny else tiny)
+    c, out = 1.0, d
+    for m in range(1, 500):
+        even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
+        odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
+        for step in (even, odd):
+            d, c = 1 + step * d, 1 + step / c
+            d, c = 1 / (d if abs(d) > tiny else tiny), c if abs(c) > tiny else tiny
+            out *= d * c
+        if abs(d * c - 1) < 1e-15:  # [rounding]
+            break
+    return front * out

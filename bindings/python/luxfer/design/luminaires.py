@@ -1,0 +1,226 @@
+"""Luminaires of a design: products with measured photometry, their places, and the scene that they light."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import Error
+from ..photometry import Distribution
+from ..scene import Scene
+
+if TYPE_CHECKING:
+    from ..context import Context
+    from ..transfer import Transfer
+    from .rooms import Room
+
+#: A luminaire may be taken for a point from a distance of this many times its size. [convention: five-times rule]
+FAR_FIELD = 5.0
+#: Steps in degrees of the made distribution of a flat panel. [convention]
+PANEL_STEP = 5
+
+
+@dataclass(frozen=True)
+class Product:
+    """A type of luminaire."""
+
+    name: str
+    """Name as the list of luminaires prints it."""
+    photometry: bytes
+    """Bytes of its IES or EULUMDAT file."""
+    format: str
+    """ "ies" or "ldt"."""
+    flux: float
+    """Luminous flux in lumens at full power."""
+    watts: float = 0
+    """Electric power in watts at full power; 0 if unknown."""
+    rendering: float = 0
+    """Colour rendering index Ra; 0 if unknown."""
+    size: tuple[float, float, float] = (0, 0, 0)
+    """Luminous opening in metres, as in DistributionReport."""
+
+    @classmethod
+    def load(
+        cls,
+        context: Context,
+        path: str | os.PathLike[str],
+        name: str | None = None,
+        watts: float = 0,
+        rendering: float = 0,
+    ) -> Product:
+        """A product from its .ies or .ldt file; watts of 0 are those of the file."""
+        file = Path(path)
+        kind = file.suffix.lower().lstrip(".")
+        if kind not in ("ies", "ldt"):
+            raise ValueError(f"{file.name} is no photometry that can be used: the name must end in .ies or .ldt")
+        return cls.from_bytes(context, file.read_bytes(), kind, name or file.stem, watts, rendering)
+
+    @classmethod
+    def from_bytes(
+        cls, context: Context, data: bytes, format: str, name: str, watts: float = 0, rendering: float = 0
+    ) -> Product:
+        """A product from the bytes of its file."""
+        try:
+            with Distribution.load_memory(context, data, format) as distribution:
+                report = distribution.report
+        except Error as error:
+            raise ValueError(f"the photometry of {name!r} cannot be used for a design: {error}") from error
+        if report.flux <= 0:
+            raise ValueError(f"the photometry of {name!r} has no flux")
+        return cls(name, data, format, report.flux, watts or report.watts, rendering, report.size)
+
+    @classmethod
+    def panel(
+        cls,
+        context: Context,
+        length: float,
+        width: float,
+        flux: float,
+        name: str = "",
+        watts: float = 0,
+        rendering: float = 0,
+    ) -> Product:
+        """A flat diffuse panel of that opening in metres, whose intensity falls with the cosine."""
+        angles = range(0, 181, PANEL_STEP)
+        peak = flux / math.pi
+        candela = " ".join(f"{max(0.0, peak * math.cos(math.radians(a))) if a < 90 else 0:.6g}" for a in angles)
+        # IES gives the width along C = 90 first, then the length along C = 0.
+        text = (
+            f"IESNA:LM-63-2002\n[LUMINAIRE] {name or 'diffuse panel'}\nTILT=NONE\n1 -1 1 {len(angles)} 1 1 2 "
+            f"{width:.6g} "
+            f"{length:.6g} 0\n1 1 {watts:.6g}\n{' '.join(str(a) for a in angles)}\n0\n{candela}\n"
+        )
+        made = cls.from_bytes(
+            context, text.encode(), "ies", name or f"panel {length:.2f} x {width:.2f} m", watts, rendering
+        )
+        return replace(made, flux=flux)
+
+    @property
+    def hash(self) -> str:
+        """The first 12 digits of the SHA-256 of the photometry."""
+        return hashlib.sha256(self.photometry).hexdigest()[:12]
+
+
+@dataclass(frozen=True)
+class Luminaire:
+    """A product at a place."""
+
+    product: Product
+    position: tuple[float, float, float]
+    """Centre of the opening in metres."""
+    dimmer: float = 1
+    """Share of the full flux."""
+    axis: tuple[float, float, float] = (0, -1, 0)
+    """Direction in which it shines."""
+    c0: tuple[float, float, float] = (1, 0, 0)
+    """Direction of the plane C = 0."""
+    colour: tuple[float, float, float] = (1, 1, 1)
+    """Linear colour of its light."""
+    group: str = ""
+    """Luminaires of one group share a dimmer; empty: it has its own."""
+
+    @property
+    def flux(self) -> float:
+        """Flux in lumens as dimmed."""
+        return self.product.flux * self.dimmer
+
+    @property
+    def watts(self) -> float:
+        """Power in watts as dimmed, in proportion to the flux; 0 if unknown."""
+        return self.product.watts * self.dimmer
+
+
+def dimmed(luminaires: Sequence[Luminaire], dimmers: Sequence[float]) -> list[Luminaire]:
+    """The luminaires with other dimmers."""
+    if len(luminaires) != len(dimmers):
+        raise ValueError(f"there are {len(dimmers)} dimmers for {len(luminaires)} luminaires")
+    return [replace(lamp, dimmer=float(d)) for lamp, d in zip(luminaires, dimmers)]
+
+
+def lit_scene(scene: Scene, luminaires: Sequence[Luminaire]) -> Scene:
+    """A copy of a scene with these luminaires; those that are off are left out."""
+    context = scene.context
+    copy = Scene.from_bytes(context, scene.to_bytes(), keep_origin=1)
+    loaded: dict[bytes, Distribution] = {}
+    for lamp in luminaires:
+        if lamp.flux <= 0:
+            continue
+        data = lamp.product.photometry
+        if data not in loaded:
+            loaded[data] = Distribution.load_memory(context, data, lamp.product.format)
+        copy.add_luminaire(
+            loaded[data], flux=lamp.flux, position=lamp.position, axis=lamp.axis, c0=lamp.c0, colour=lamp.colour
+        )
+    return copy
+
+
+def layout(
+    room: Room, product: Product, columns: int, rows: int, below: float = 0.01, group: str = ""
+) -> list[Luminaire]:
+    """Equal luminaires in columns along the room and rows across it, at half the spacing from the walls, at a distance
+    in metres below the ceiling."""
+    if columns < 1 or rows < 1:
+        raise ValueError(f"a layout of {columns} by {rows} luminaires has none")
+    plan = [
+        (room.length * (i + 0.5) / columns, room.width * (j + 0.5) / rows) for j in range(rows) for i in range(columns)
+    ]
+    c0 = (float(room.along[0]), float(room.along[1]), float(room.along[2]))
+    places = room.world(plan, room.height - below)
+    return [Luminaire(product, (float(x), float(y), float(z)), c0=c0, group=group) for x, y, z in places]
+
+
+def from_transfer(
+    context: Context, transfer: Transfer, product: Product | None = None, efficacy: float = 0, rendering: float = 0
+) -> list[Luminaire]:
+    """The lamps of a photo's lighting as luminaires: each at its place, with its flux and colour.
+
+    Without a product each lamp becomes a flat diffuse panel of its size, of that efficacy in lm/W (0: power unknown)
+    and colour rendering index. With one, each becomes that product, whose full flux must suffice: its dimmer is the
+    photo's flux over the product's."""
+    out = []
+    for fixture in transfer.fixtures:
+        if fixture.flux <= 0:
+            continue
+        peak = max(fixture.radiance)
+        colour = tuple(max(v, 0.0) / peak for v in fixture.radiance)
+        kind, dimmer = product, 1.0
+        if kind is None:
+            watts = fixture.flux / efficacy if efficacy > 0 else 0
+            kind = Product.panel(context, *fixture.size, fixture.flux, watts=watts, rendering=rendering)
+        else:
+            dimmer = fixture.flux / kind.flux
+        # A little off the surface, so that this does not shade the lamp.
+        place = np.array(fixture.position) + 0.005 * np.array(fixture.normal)
+        out.append(Luminaire(kind, _three(place), dimmer, fixture.normal, fixture.axis, _three(colour)))
+    if not out:
+        raise ValueError("the transfer has no lamp that shines: run it up to the stage RELIGHT")
+    return out
+
+
+def near_field(luminaires: Sequence[Luminaire], heights: Sequence[float]) -> list[str]:
+    """Sentences about luminaires that are too large for their distance to a horizontal area at one of these heights of
+    the scene to count as points."""
+    out = []
+    for product in {lamp.product.name: lamp.product for lamp in luminaires}.values():
+        largest = max(abs(v) for v in product.size)
+        lowest = min(lamp.position[1] for lamp in luminaires if lamp.product is product or lamp.product == product)
+        gap = min((lowest - h for h in heights if h < lowest), default=math.inf)
+        if gap < FAR_FIELD * largest:
+            out.append(
+                f"{product.name}: its opening of {largest:.2f} m counts as a point, which the five-times rule "
+                f"allows from "
+                f"{FAR_FIELD * largest:.2f} m on; the nearest area lies {gap:.2f} m below it"
+            )
+    return out
+
+
+def _three(values: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(v) for v in values)
+    return x, y, z

@@ -1,0 +1,101 @@
+"""A design with everything that belongs to it, so that it can be checked, solved and reported in one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..scene import Scene
+from . import fingerprint
+from .areas import Area
+from .check import Checked, Settings, check
+from .luminaires import Luminaire, lit_scene
+from .observers import Observers
+from .rooms import Room
+from .solve import Solution, Wishes, solve
+from .standard import Place, Requirement, requirements
+
+
+@dataclass(frozen=True)
+class Project:
+    """A room with its luminaires, areas, observers and requirements.
+
+    >>> from luxfer.design import areas, layout
+    >>> room = Room.find(luxfer_scene)
+    >>> desk = areas.task_on(room, "desk", "Table")
+    >>> project = Project(room, layout(room, panel, 3, 2), (desk,), settings=Settings(maintenance=0.8))
+    >>> project = project.requiring(Requirement("mean", "desk", at_least=100))
+    >>> print(project.check().verdict())
+    all 1 requirements pass, each with at least 97.5 %
+    """
+
+    room: Room
+    luminaires: Sequence[Luminaire]
+    areas: Sequence[Area]
+    observers: Sequence[Observers] = ()
+    requirements: Sequence[Requirement] = ()
+    settings: Settings | None = None
+    unit: str = "m"
+    """Unit of lengths in the report: "m", "mm" or "inch"."""
+    name: str = "Lighting design"
+    """Title of the report."""
+    author: str = ""
+    """Name beside the signature."""
+
+    def requiring(self, *more: Requirement) -> Project:
+        """The project with further requirements."""
+        return replace(self, requirements=(*self.requirements, *more))
+
+    def for_place(self, row: Place, modified: bool = False) -> Project:
+        """The project with the requirements of a place for all its areas and observers."""
+        kinds = {a.name: a.kind for a in self.areas} | {o.name: "observers" for o in self.observers}
+        return self.requiring(*requirements(row, kinds, modified))
+
+    @property
+    def chosen(self) -> Settings:
+        """The settings; without them the maintenance factor is unknown, which is an error."""
+        if self.settings is None:
+            raise ValueError(
+                "the project has no settings: give Settings(maintenance=...), such as 0.8 for a clean office"
+            )
+        return self.settings
+
+    def lit(self) -> Scene:
+        """The scene with the luminaires at their initial flux."""
+        return lit_scene(self.room.scene, self.luminaires)
+
+    def check(self) -> Checked:
+        """Checks all requirements."""
+        return check(
+            self.lit(),
+            self.luminaires,
+            self.requirements,
+            self.areas,
+            self.observers,
+            floor_area=self.room.floor_area,
+            settings=self.chosen,
+        )
+
+    def solve(self, wishes: Wishes = Wishes()) -> Solution:
+        """Finds the dimmers closest to the present ones that meet the requirements."""
+        return solve(
+            self.room.scene,
+            self.luminaires,
+            self.requirements,
+            self.areas,
+            self.observers,
+            floor_area=self.room.floor_area,
+            settings=self.chosen,
+            wishes=wishes,
+        )
+
+    def solved(self, solution: Solution) -> Project:
+        """The project with the luminaires of a solution."""
+        return replace(self, luminaires=solution.luminaires)
+
+    def record(self) -> dict[str, Any]:
+        """Everything that the numbers depend on (see fingerprint)."""
+        return fingerprint.record(
+            self.room.scene, self.luminaires, self.requirements, self.areas, self.observers, self.chosen
+        )

@@ -1,0 +1,49 @@
+"""Writes the report of a project as HTML or PDF."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from . import fingerprint, html, pdf
+from .content import contents
+from .pictures import views
+
+if TYPE_CHECKING:
+    from .check import Checked
+    from .project import Project
+    from .solve import Solution
+
+
+def save(
+    project: Project,
+    path: str | os.PathLike[str],
+    checked: Checked | None = None,
+    solution: Solution | None = None,
+    *,
+    images: dict[str, bytes] | None = None,
+) -> Path:
+    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first.
+    `images` are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict
+    leaves them out."""
+    file = Path(path)
+    kind = file.suffix.lower()
+    if kind not in (".html", ".pdf", ".json"):
+        raise ValueError(f"a report is an .html, a .pdf or a .json file, not {file.name!r}")
+    made_of = project.record()
+    if kind == ".json":
+        file.write_text(json.dumps(made_of, indent=1, sort_keys=True) + "\n")
+        return file
+    if checked is None:
+        checked = solution.checked if solution is not None else project.check()
+    if images is None:
+        images = views(project.room, project.lit(), seed=project.chosen.seed)
+    blocks = contents(project, checked, solution, images)
+    if kind == ".html":
+        file.write_text(html.page(project.name, blocks), encoding="utf-8")
+    else:
+        footer = f"{project.name}, luxfer {fingerprint.version()}, {fingerprint.digest(made_of)[:16]}"
+        file.write_bytes(pdf.document(project.name, blocks, footer))
+    return file

@@ -1,0 +1,136 @@
+"""Linear responses: the illuminance of every point, and the glare of every observer, by each luminaire at full power.
+
+Light is linear in the flux of the luminaires, so one set of paths for each point measures its light from all of them
+at once (the library's Lamps), and every choice of dimmers is then a product of a matrix and a vector. The unified
+glare rating of CIE 117 is not linear, but its parts are: the sum over luminaires is quadratic in the dimmers without
+mixed terms, and the luminance of the background is linear.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lamps import Lamps
+from ..scene import Scene
+from .areas import PLANES
+from .luminaires import dimmed, lit_scene
+from .measure import UGR_FACTOR
+
+if TYPE_CHECKING:
+    from .areas import Area
+    from .luminaires import Luminaire
+    from .observers import Observers
+
+#: Luminance of linear Rec.709 channels. [convention: BT.709]
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+#: Goals that one Lamps object takes.
+MAX_GOALS = 64
+#: Side in metres of the square that stands for a point. [convention]
+POINT = 0.01
+#: Paths that measure the background of glare, per luminaire and observer. [convention]
+GLARE_SAMPLES = 1024
+#: The factor of the sum in the unified glare rating. [convention: CIE 117]
+UGR_SCALE = 0.25
+
+
+@dataclass(frozen=True)
+class Response:
+    """Illuminance of an area's points: matrix @ dimmers + other."""
+
+    area: Area
+    matrix: NDArray[np.float64]
+    """Lux (points, luminaires) of each luminaire at full power."""
+    other: NDArray[np.float64]
+    """Lux (points) of all other light of the scene."""
+
+    def values(self, dimmers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Initial illuminance of the points for dimmers."""
+        return self.matrix @ dimmers + self.other
+
+
+@dataclass(frozen=True)
+class GlareResponse:
+    """Parts of the glare of observers."""
+
+    observers: Observers
+    sources: NDArray[np.float64]
+    """L² ω / p² (observers, luminaires) of each luminaire at full power."""
+    background: NDArray[np.float64]
+    """Luminance of the background in cd/m² (observers, luminaires) by each luminaire at full power."""
+
+    def ugr(self, dimmers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The unified glare rating of each observer for dimmers."""
+        total, veil = self.sources @ dimmers**2, self.background @ dimmers
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(total > 0, UGR_FACTOR * np.log10(UGR_SCALE * total / veil), -np.inf)
+
+
+def respond(scene: Scene, luminaires: Sequence[Luminaire], area: Area, paths: int = 1024, seed: int = 1) -> Response:
+    """The response of an area to each luminaire. The scene has none of them yet, and no punctual lights of its own."""
+    return respond_all(scene, luminaires, [area], paths, seed)[0]
+
+
+def respond_all(
+    scene: Scene, luminaires: Sequence[Luminaire], areas: Sequence[Area], paths: int = 1024, seed: int = 1
+) -> list[Response]:
+    """The responses of several areas."""
+    if scene.counts.lights:
+        raise ValueError(f"the scene has {scene.counts.lights} punctual lights of its own: give them as luminaires")
+    lit = lit_scene(scene, dimmed(luminaires, [1.0] * len(luminaires)))
+    return [_respond(lit, len(luminaires), area, paths, seed + index) for index, area in enumerate(areas)]
+
+
+def _respond(lit: Scene, count: int, area: Area, paths: int, seed: int) -> Response:
+    grids = []
+    for patch in area.patches:
+        across = POINT * patch.across / np.linalg.norm(patch.across)
+        down = POINT * patch.down / np.linalg.norm(patch.down)
+        for point in patch.points[patch.keep]:
+            corner = point - 0.5 * (across + down)
+            grids.append({"origin": corner, "across": across, "down": down, "normal": patch.normal})
+    parts = [
+        _goals(lit, count, grids[i : i + MAX_GOALS], paths, seed * 1000 + i) for i in range(0, len(grids), MAX_GOALS)
+    ]
+    matrix, other = np.concatenate([m for m, _ in parts]), np.concatenate([o for _, o in parts])
+    if area.kind == "cylindrical":
+        matrix = matrix.reshape(PLANES, -1, count).mean(axis=0)
+        other = other.reshape(PLANES, -1).mean(axis=0)
+    return Response(area, matrix, other)
+
+
+def _goals(lit: Scene, count: int, grids: list[dict], paths: int, seed: int) -> tuple[NDArray, NDArray]:
+    """Lux of a few points by each luminaire, and by all other light."""
+    lamps = Lamps(lit.context)
+    lamps.set_scene(lit, None)
+    for grid in grids:
+        lamps.add_grid(grid, 1.0)
+    lamps.run(group="all", paths=paths, target_error=0.0, seed=seed)
+    matrix = np.array([[_lux(lamps.response(g, i).mean) for i in range(count)] for g in range(len(grids))])
+    return matrix, np.array([lamps.goal(g).background_lux for g in range(len(grids))])
+
+
+def respond_glare(
+    scene: Scene, luminaires: Sequence[Luminaire], observers: Sequence[Observers], seed: int = 1
+) -> list[GlareResponse]:
+    """The parts of glare, from one scene for each luminaire alone."""
+    eyes = np.concatenate([o.positions for o in observers])
+    views = np.concatenate([o.directions for o in observers])
+    sources, veils = np.zeros((len(eyes), len(luminaires))), np.zeros((len(eyes), len(luminaires)))
+    for index, lamp in enumerate(dimmed(luminaires, [1.0] * len(luminaires))):
+        ratings = lit_scene(scene, [lamp]).glare(eyes, views, GLARE_SAMPLES, seed + index)
+        veils[:, index] = ratings["background"]
+        seen = np.isfinite(ratings["ugr"])
+        sources[seen, index] = 10 ** (ratings["ugr"][seen] / UGR_FACTOR) * ratings["background"][seen] / UGR_SCALE
+    ends = np.cumsum([len(o.positions) for o in observers])[:-1]
+    parts = zip(observers, np.split(sources, ends), np.split(veils, ends))
+    return [GlareResponse(o, s, b) for o, s, b in parts]
+
+
+def _lux(radiance: Sequence[float]) -> float:
+    return math.pi * float(LUMINANCE @ np.asarray(radiance))

@@ -1,0 +1,270 @@
+"""Finds dimmers of luminaires that stay closest to a photo's look and meet all requirements.
+
+1. Measure once the linear responses of what the requirements ask for.
+2. Minimise the distance of the look (look.objective) under the requirements as convex limits. Nothing is traced again.
+3. Check the result with independent paths. A requirement that does not pass with the wanted confidence gets a
+   margin, and step 2 is repeated.
+
+If no dimmers meet the requirements, explain.py says which bind and what relaxing each would give.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .check import Checked, Settings, check
+from .constraints import DIMMABLE, Model
+from .convex import Limits, box, least_violation, minimise
+from .explain import Relaxation, joined, of_groups, relaxations
+from .look import Distance, distance, objective
+from .luminaires import Luminaire, dimmed, lit_scene
+from .responses import respond_all, respond_glare
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+    from .areas import Area
+    from .check import Finding
+    from .observers import Observers
+    from .standard import Requirement
+
+#: First margin of means and uniformities as a share of the limit, and of glare in units of UGR. [convention]
+MARGIN, GLARE_MARGIN = 0.005, 0.1
+#: Rounds of check and new margins. [convention]
+ROUNDS = 5
+#: Limits are kept by this share of their scale, so that the barrier has an inside. [rounding]
+INSIDE = 1e-6
+#: The responses are measured with seeds this far from those of the check. [convention]
+SEED_OFFSET = 100_003
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the dimmers may be."""
+
+    max_dimmer: float = 1
+    """Largest dimmer of a luminaire."""
+    min_dimmer: float = 0
+    """Smallest dimmer of a luminaire."""
+    levels: tuple[float, ...] = ()
+    """The dimmers that drivers can set; empty for drivers without steps."""
+    paths: int = 1024
+    """Paths for each point that measure the responses."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A design, or the explanation why there is none."""
+
+    feasible: bool
+    """Whether dimmers were found that meet all requirements that dimmers can meet."""
+    luminaires: tuple[Luminaire, ...]
+    """The luminaires with their dimmers; if not feasible, those that come closest to the requirements."""
+    look: Distance
+    """Distance from the photo's look."""
+    checked: Checked
+    """The requirements checked with independent paths."""
+    relaxations: tuple[Relaxation, ...] = ()
+    """If not feasible: what each requirement alone would have to become."""
+    rounds: int = 1
+    """Number of solutions until the check passed."""
+    wishes: Wishes = Wishes()
+
+    def explanation(self) -> str:
+        """The result in sentences."""
+        if self.feasible:
+            return f"{self.checked.verdict()}; {self.look}"
+        lines = ["no dimmers meet all requirements together"]
+        lines += [str(r) for r in self.relaxations] or ["relaxing any single one of them is not enough"]
+        return "; ".join(lines)
+
+
+def solve(
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    requirements: Sequence[Requirement],
+    areas: Sequence[Area],
+    observers: Sequence[Observers] = (),
+    *,
+    floor_area: float,
+    settings: Settings,
+    wishes: Wishes = Wishes(),
+    model: Model | None = None,
+) -> Solution:
+    """Solves for the dimmers; those of the given luminaires are the photo's look. With the model of an earlier
+    solution for the same luminaires and areas (see measured_model) only the check traces light."""
+    if model is None:
+        model = measured_model(scene, luminaires, requirements, areas, observers, floor_area, settings, wishes)
+    groups = _groups(luminaires)
+    photo, flux = np.array([lamp.dimmer for lamp in luminaires]), np.array([lamp.product.flux for lamp in luminaires])
+    solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
+    margins = {
+        r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
+        for r in solvable
+    }
+    best: tuple[NDArray, Checked] | None = None
+    for turn in range(1, ROUNDS + 1):
+        dimmers = _dimmers(model, solvable, margins, photo, flux, groups, wishes)
+        if dimmers is None:
+            break
+        checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
+        best = dimmers, checked
+        missed = [f for f in checked.findings if f.requirement in margins and f.outcome != "passes"]
+        if not missed:
+            final = tuple(dimmed(luminaires, dimmers))
+            return Solution(True, final, distance(photo, dimmers, flux), checked, (), turn, wishes)
+        for finding in missed:
+            margins[finding.requirement] += _more(finding)
+    hard, start = _box(groups, wishes)
+    closest, found = relaxations(model, solvable, groups, hard, start)
+    dimmers, checked = best if best else (np.clip(closest, 0, wishes.max_dimmer), None)
+    if checked is None:
+        checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
+    return Solution(
+        False, tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux), checked, tuple(found), turn, wishes
+    )
+
+
+def measured_model(
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    requirements: Sequence[Requirement],
+    areas: Sequence[Area],
+    observers: Sequence[Observers],
+    floor_area: float,
+    settings: Settings,
+    wishes: Wishes,
+) -> Model:
+    """The linear responses of what the requirements ask for."""
+    if not luminaires:
+        raise ValueError("a design without luminaires cannot be solved for")
+    wanted = {r.area for r in requirements if r.quantity in ("mean", "uniformity")}
+    rated = {r.area for r in requirements if r.quantity == "glare"}
+    missing = (wanted - {a.name for a in areas}) | (rated - {o.name for o in observers})
+    if missing:
+        raise ValueError(f"requirements name {', '.join(sorted(missing))}, which is no area and no group of observers")
+    chosen = [a for a in areas if a.name in wanted]
+    groups = [o for o in observers if o.name in rated]
+    seed = settings.seed + SEED_OFFSET
+    responses = respond_all(scene, luminaires, chosen, wishes.paths, seed) if chosen else []
+    glare = respond_glare(scene, luminaires, groups, seed) if groups else []
+    return Model(
+        luminaires,
+        {r.area.name: r for r in responses},
+        {g.observers.name: g for g in glare},
+        settings.maintenance,
+        floor_area,
+    )
+
+
+def _groups(luminaires: Sequence[Luminaire]) -> NDArray[np.float64]:
+    """Matrix (luminaires, dimmers): luminaires of one group share a dimmer relative to their look."""
+    keys = [lamp.group or f"\0{index}" for index, lamp in enumerate(luminaires)]
+    names = list(dict.fromkeys(keys))
+    out = np.zeros((len(keys), len(names)))
+    for row, key in enumerate(keys):
+        column = names.index(key)
+        peak = max(lamp.dimmer for lamp, k in zip(luminaires, keys) if k == key)
+        out[row, column] = luminaires[row].dimmer / peak if peak > 0 else 1.0
+    return out
+
+
+def _box(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
+    """The range of the dimmers of groups, and a point inside."""
+    if not 0 <= wishes.min_dimmer < wishes.max_dimmer:
+        raise ValueError(f"min_dimmer = {wishes.min_dimmer} is not in [0, max_dimmer = {wishes.max_dimmer})")
+    low = np.full(groups.shape[1], wishes.min_dimmer - INSIDE)
+    high = np.full(groups.shape[1], wishes.max_dimmer + INSIDE)
+    return box(low, high), 0.5 * (low + high)
+
+
+def _dimmers(
+    model: Model,
+    solvable: Sequence[Requirement],
+    margins: dict[Requirement, float],
+    photo: NDArray,
+    flux: NDArray,
+    groups: NDArray,
+    wishes: Wishes,
+) -> NDArray | None:
+    """The dimmers closest to the look within the limits and margins; None if there are none."""
+    hard, start = _box(groups, wishes)
+    parts = [of_groups(model.limits(r, margins[r]), groups) for r in solvable]
+    limits = hard
+    if parts:
+        soft = joined(parts)
+        violation, inside = least_violation(soft, hard, start)
+        if violation > -INSIDE:
+            return None
+        start, limits = inside.x[:-1], soft.joined(hard)
+    # One more variable: the exposure.
+    wide = np.zeros((len(photo) + 1, groups.shape[1] + 1))
+    wide[:-1, :-1], wide[-1, -1] = groups, 1.0
+    hessian, gradient = objective(photo, flux)
+    extended = limits.relaxed(np.zeros(len(limits.constant)))
+    found = minimise(wide.T @ hessian @ wide, wide.T @ gradient, extended, np.append(start, 1.0))
+    dimmers = np.clip(found.x[:-1], wishes.min_dimmer, wishes.max_dimmer)
+    if wishes.levels:
+        stepped = _in_steps(dimmers, limits, hessian, gradient, groups, wishes)
+        return None if stepped is None else groups @ stepped
+    return groups @ dimmers
+
+
+def _in_steps(
+    dimmers: NDArray, limits: Limits, hessian: NDArray, gradient: NDArray, groups: NDArray, wishes: Wishes
+) -> NDArray | None:
+    """Dimmers among the drivers' levels: the next level above, then changes of single dimmers as long as the limits
+    hold and the look improves. A heuristic: the best choice of all is not looked for."""
+    levels = np.array(sorted(v for v in wishes.levels if wishes.min_dimmer <= v <= wishes.max_dimmer))
+    if not len(levels):
+        raise ValueError(f"no level of {wishes.levels} is in [{wishes.min_dimmer}, {wishes.max_dimmer}]")
+
+    def cost(x: NDArray) -> float:
+        if (limits.values(x) > INSIDE).any():
+            return np.inf
+        s = groups @ x
+        k = -(hessian[-1, :-1] @ s + gradient[-1]) / hessian[-1, -1]  # the best exposure
+        y = np.append(s, k)
+        return float(0.5 * y @ hessian @ y + gradient @ y)
+
+    nearest = levels[np.abs(levels[None] - dimmers[:, None]).argmin(axis=1)]
+    above = levels[np.minimum(np.searchsorted(levels, dimmers - 1e-9), len(levels) - 1)]
+    candidates = [x for x in (nearest, above, *(np.full(len(dimmers), v) for v in levels)) if np.isfinite(cost(x))]
+    if not candidates:
+        return None
+    x = min(candidates, key=cost)
+    while True:
+        moves = [np.where(np.arange(len(x)) == i, v, x) for i in range(len(x)) for v in levels if v != x[i]]
+        better = min(moves, key=cost, default=x)
+        if cost(better) >= cost(x) - 1e-12:  # [rounding]
+            return x
+        x = better
+
+
+def _checked(
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    dimmers: NDArray,
+    requirements: Sequence[Requirement],
+    areas: Sequence[Area],
+    observers: Sequence[Observers],
+    floor_area: float,
+    settings: Settings,
+) -> Checked:
+    final = dimmed(luminaires, dimmers)
+    lit = lit_scene(scene, final)
+    return check(lit, final, requirements, areas, observers, floor_area=floor_area, settings=settings)
+
+
+def _more(finding: Finding) -> float:
+    """The margin that a finding lacks: from the near end of its interval to the limit, and a little more."""
+    r = finding.requirement
+    near = finding.low if r.is_minimum else finding.high
+    lack = (r.limit - near) if r.is_minimum else (near - r.limit)
+    if r.quantity == "glare":
+        return max(0.1, lack) if np.isfinite(lack) else 1.0
+    return max(0.002, lack / r.limit * 1.1)
