@@ -4,7 +4,6 @@ import atexit
 import contextlib
 import csv
 import functools
-import importlib.machinery
 import io
 import json
 import math
@@ -110,7 +109,7 @@ class Help(Cli):
             self.assertIn(f"    {name} ", listed)
             text = self.call(name, "--help").stdout
             self.assertIn(f"usage: luxfer {name}", text)
-            if name != "studio":
+            if name not in ("design", "studio"):  # these have a command line of their own
                 self.assertIn("exit codes: 0 fine", text)
                 self.assertLessEqual(max(map(len, text.splitlines())), 100)
         for part in ("print", "read"):
@@ -531,7 +530,6 @@ class Studio(Case):
     def test_words_are_handed_on(self):
         seen = []
         studio = types.ModuleType("luxfer.studio")
-        studio.__spec__ = importlib.machinery.ModuleSpec("luxfer.studio", None)
         studio.main = lambda argv: seen.append(argv) or 3
         with mock.patch.dict(sys.modules, {"luxfer.studio": studio}):
             self.assertEqual(main(["studio", "photo.png", "--port", "0"]), 3)

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from types import FrameType
 from typing import Any, NoReturn
 
-from . import studio
+from . import design, studio
 from .console import Console
 from .exits import TABLE, Exit, Failure
 
 #: The subcommands in the order of --help; each is a module of this folder.
-SUBCOMMANDS = ("transfer", "render", "lux", "stylise", "sheet", "inspect", "surfaces", "plan", "studio")
+SUBCOMMANDS = ("transfer", "render", "lux", "stylise", "sheet", "inspect", "surfaces", "plan", "design", "studio")
 
 DESCRIPTION = """Lighting from one photo onto a 3D scene, rendering, lux, and pictures in the style of an artwork.
 
@@ -101,8 +101,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     console.name = f"luxfer {words[0]}" if words and words[0] in SUBCOMMANDS else "luxfer"
     handler = _stop_on_terminate()
     try:
-        if words[:1] == ["studio"] and (studio.is_there() or not {"-h", "--help"} & set(words)):
+        if words[:1] == ["studio"]:
             return studio.start(words[1:])
+        if words[:1] == ["design"]:
+            return design.start(words[1:])
         args = parse(words)
         console.configure(args)
         return int(args.run(args, console))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 
 from .console import Console
-from .exits import Exit, failed
+from .exits import Exit
 
 SUMMARY = "start the studio, where masks and lamps can be seen and changed"
 
@@ -21,15 +20,8 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     return Exit(start(args.arguments))
 
 
-def is_there() -> bool:
-    """Whether this installation has a studio."""
-    return importlib.util.find_spec("luxfer.studio") is not None
-
-
 def start(argv: list[str]) -> int:
-    """Hands the words on to the studio; returns its exit code."""
-    if not is_there():
-        raise failed("this installation has no studio (the module luxfer.studio is missing)")
-    from importlib import import_module
+    """Hands the words on to `luxfer.studio`; returns its exit code."""
+    from ..studio import main
 
-    return int(import_module("luxfer.studio").main(argv) or 0)
+    return main(argv)

@@ -6,6 +6,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 
 | file | job |
 |---|---|
+| command | the options of the command line |
 | app | the web application: its routes, its start |
 | security | who may ask: token, Host and Origin; which files may be read |
 | files | photos, scenes and project files, by the hash of their content |
@@ -26,7 +27,9 @@ import sys
 
 def main(argv: list[str] | None = None) -> int:
     """Starts the studio and serves it until it is interrupted; returns the exit code."""
-    arguments = sys.argv[1:] if argv is None else argv
+    from .command import parser
+
+    asked = parser().parse_args(argv)
     try:
         from .app import serve
     except ImportError as missing:
@@ -34,4 +37,4 @@ def main(argv: list[str] | None = None) -> int:
             raise
         print(f"the studio needs the package {missing.name}: pip install 'luxfer[studio]'", file=sys.stderr)
         return 1
-    return serve(arguments)
+    return serve(asked)

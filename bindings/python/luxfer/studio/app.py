@@ -32,7 +32,6 @@ from .security import Allowed, Guard, new_token
 from .session import Session
 
 STATIC = Path(__file__).resolve().parent / "static"
-PORT = 8717
 #: Users whose page has gone are forgotten, the one that was here longest ago first, beyond this number.
 MAX_SESSIONS = 8
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
@@ -232,29 +231,6 @@ def problem(message: str, status: int = 400) -> Response:
     return JSONResponse({"message": message}, status)
 
 
-def parser() -> argparse.ArgumentParser:
-    out = argparse.ArgumentParser(
-        prog="python -m luxfer.studio",
-        description="A photo and a room side by side in the browser, on this machine alone.",
-    )
-    out.add_argument(
-        "photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office"
-    )
-    out.add_argument("scene", nargs="?", type=Path, help="a room, .glb or .gltf; default: a generated one")
-    out.add_argument(
-        "--project", type=Path, help="the file that the project is kept in as you work; opened if it is there"
-    )
-    out.add_argument(
-        "--folder", type=Path, action="append", default=[], help="a folder whose files the page may open"
-    )
-    out.add_argument("--port", type=int, default=PORT, help=f"default {PORT}, or the next free one; 0: any")
-    out.add_argument(
-        "--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}"
-    )
-    out.add_argument("--no-browser", action="store_true", help="only print the address")
-    return out
-
-
 def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Project | None, Path | None]:
     """The project that the command line asks for, and the file that it is kept in."""
     project: projects.Project | None = None
@@ -292,9 +268,8 @@ def bind(port: int) -> socket.socket:
     raise OSError("no port is free")
 
 
-def serve(arguments: list[str]) -> int:
+def serve(asked: argparse.Namespace) -> int:
     """Runs the server until it is interrupted."""
-    asked = parser().parse_args(arguments)
     if not (STATIC / "index.html").exists():
         print(
             f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr

@@ -1,0 +1,34 @@
+"""The options of `luxfer studio`; its help needs no package of the server."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .files import state_folder
+
+#: The port that is tried first.
+PORT = 8717
+
+
+def parser() -> argparse.ArgumentParser:
+    out = argparse.ArgumentParser(
+        prog="luxfer studio",
+        description="A photo and a room side by side in the browser, on this machine alone.",
+    )
+    out.add_argument(
+        "photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office"
+    )
+    out.add_argument("scene", nargs="?", type=Path, help="a room, .glb or .gltf; default: a generated one")
+    out.add_argument(
+        "--project", type=Path, help="the file that the project is kept in as you work; opened if it is there"
+    )
+    out.add_argument(
+        "--folder", type=Path, action="append", default=[], help="a folder whose files the page may open"
+    )
+    out.add_argument("--port", type=int, default=PORT, help=f"default {PORT}, or the next free one; 0: any")
+    out.add_argument(
+        "--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}"
+    )
+    out.add_argument("--no-browser", action="store_true", help="only print the address")
+    return out
