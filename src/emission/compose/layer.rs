@@ -69,7 +69,8 @@ struct Setting<'a> {
     offset: DVec2,
     /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
-    /// Side of a patch, and the distance to a light at which the metadata saturate at 1; both in working pixels.
+    /// Side of a patch, and the distance to a light from which on the distances in the metadata stay at 1; both in
+    /// working pixels.
     block: usize,
     cap: f64,
 }

@@ -24,12 +24,12 @@ pub struct Working {
     pub colour: Image,
     /// Confidence of each pixel that it is light; 0 for cut lamps ([`super::roles::Role::Cut`]).
     pub confidence: Vec<f32>,
-    /// Share of each pixel that is light, without cut lamps.
+    /// Share of each pixel that lights cover; cut lamps are left out.
     pub coverage: Vec<f32>,
     /// Whether patches may show a pixel: it is shown and not part of a cut lamp ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
     /// The lattice is found from `shown` and `shown_coverage`, which include cut lamps: whether a pixel is shown, and
-    /// the share of it that is light.
+    /// the share of it that lights cover.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
     /// Mean luminance of the shown part of each pixel, including lights.

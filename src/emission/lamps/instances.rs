@@ -115,8 +115,8 @@ impl Canvas<'_> {
     }
 }
 
-/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each cell in which the
-/// texture shows a part of it; in a tileable texture, once for each cell that begins in the texture.
+/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each repetition in which the
+/// texture shows a part of it; in a tileable texture, once for each repetition that begins in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);

@@ -5,7 +5,7 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of cells for which the lamps at the texture's border are counted.
+/// In a texture with more lattice cells than this, a lamp is centred without counting the lamps that the border cuts.
 const MAX_CELLS: f64 = 1e6;
 
 /// A bounding box of lights.

@@ -6,7 +6,7 @@ use glam::{DMat2, DVec2};
 /// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
-/// The law by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.
+/// How a texture continues beyond its exemplar. Vectors are in unwarped pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Continuation {
     /// No continuation: the texture is a part of the exemplar.

@@ -6,7 +6,7 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Minimum gap between the lamps of adjacent cells, in unwarped pixels. [convention]
+/// Minimum gap between the lamps of adjacent copies of the exemplar, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
 /// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]

@@ -18,7 +18,8 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches compete by their error if they fill at least this share of the pixels that the best-covering patch fills.
+/// Only patches that fill at least this share of the pixels that the patch with the best coverage fills are compared
+/// by their error.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If there are more patches than this, a first comparison uses every `ROW_STEP`-th row only, and the `FINALISTS` best
@@ -31,8 +32,8 @@ const ROW_STEP: usize = 4;
 const TASK: usize = 1 << 16;
 
 /// A shift with its score. `fills`: number of empty pixels of a block that it fills. `excess`: light in these pixels
-/// above their share, in pixels. `error`: mean squared difference from the known pixels, plus the penalty for the
-/// excess.
+/// above the target share, as a number of lit pixels. `error`: mean squared difference from the known pixels, plus the
+/// penalty for the excess.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,

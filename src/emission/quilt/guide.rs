@@ -36,16 +36,16 @@ impl Guide<'_> {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// The period of each metadata channel; values that differ by a period are equivalent. Distances wrap around: one
-    /// cap to the left of a light is equivalent to one cap to its right.
+    /// The period of each metadata channel; values that differ by a period are equivalent. Distances wrap around: a
+    /// distance of `cap` to the left of a light is equivalent to a distance of `cap` to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-/// Sum of squared differences between two rows of pixels over all channels; metadata wrap around with the periods
-/// `turns`.
+/// Sum of squared differences between two rows of pixels, over colour and metadata (confidence, x and y distance to
+/// the nearest light). Metadata channels are periodic, with the periods `turns`.
 pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());

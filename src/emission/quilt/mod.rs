@@ -230,7 +230,7 @@ impl Quilt<'_> {
         let low = (point(rect.x, rect.y) - point(self.bounds[2], self.bounds[3])) * pitch;
         let high = (point(rect.x + rect.w, rect.y + rect.h) - point(self.bounds[0], self.bounds[1])) * pitch;
 
-        // Find the range of lattice cells for the box of such shifts.
+        // Find the range of lattice cells that contains these shifts.
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         let corners =
             [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - self.offset));

@@ -1,4 +1,4 @@
-//! The patch map: for each pixel of the texture, the shift that leads to the pixel of the exemplar it shows.
+//! The patch map stores which pixel of the exemplar each pixel of the texture shows, as a shift.
 
 use crate::emission::exemplar::working::Working;
 use glam::DVec2;

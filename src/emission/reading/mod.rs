@@ -1,10 +1,10 @@
-//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a row,
-//! repetition of the whole exemplar, or none.
+//! Analyses an exemplar: finds its lamps, and how their pattern continues beyond it (its law): on a lattice, in a row,
+//! by repetition of the whole exemplar, or without a lattice.
 //!
 //! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
 //! near ones. So laws are proposed from the whole exemplar and from its sharper parts, with strict and with loose
-//! thresholds. Each law is scored by how well it predicts the lamps of the whole photo ([`sites`]). The law that the
-//! settings ask for is kept unless another one scores clearly higher.
+//! thresholds. Each law is scored by how well it predicts the lamps of the whole photo ([`sites`]). The law found in
+//! the whole exemplar with the threshold of the settings is kept unless another one scores clearly higher.
 
 pub mod sites;
 
