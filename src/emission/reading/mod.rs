@@ -22,18 +22,18 @@ use sites::Sites;
 /// Laws are also proposed from parts of the exemplar with at most these magnifications, relative to the least
 /// magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Limits for shifts that are proposed as periods: their minimum correlation, their minimum correlation relative to
-/// the best shift, and their maximum number. [judged on 20 photos]
+/// Limits for shifts that are proposed as periods: `PROPOSED` is the minimum correlation, `PROPOSED_RELATIVE` the
+/// minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of shifts. [judged on 20 photos]
 const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Minimum score of the law (lattice or row) that the settings ask for. Below it, the pattern counts as having no
-/// period. [judged on 20 photos]
+/// The lattice or row found in the whole exemplar with the threshold of the settings is dropped if its score is below
+/// this; the pattern then counts as having no period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another law (lattice or row) replaces the one that the settings ask for only if its score is higher by more than
-/// this. [judged on 20 photos]
+/// Another lattice or row replaces the one found in the whole exemplar with the threshold of the settings only if its
+/// score is higher by more than this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
 /// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
 /// through the photo. [judged on 20 photos]
@@ -45,8 +45,8 @@ const SAME_LAW: f64 = 0.08;
 /// The score of the chosen law of continuation (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps for a
-    /// comparison.
+    /// How well the continuation (law) predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are
+    /// lamps for a comparison.
     pub score: f64,
     /// The best alternative law, and its score; the score is 0 if there is no alternative.
     pub runner_up: Continuation,
@@ -88,7 +88,7 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// A pattern without a period: no lamp is predicted from another.
+    /// Proposes that the pattern has no period: no lamp is predicted from another.
     fn lawless(continuation: Continuation) -> Self {
         Self { continuation, regularity: 0.0, score: LAWLESS }
     }
@@ -101,7 +101,7 @@ impl Reading {
         Self::of(exemplar, input, params, job)
     }
 
-    /// Finds the law of continuation for an exemplar that has been built already.
+    /// Finds how the pattern of an exemplar continues, if the exemplar has been built already.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
         let min_regularity = params.min_regularity;
@@ -138,7 +138,7 @@ impl Reading {
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the law of continuation that the settings ask for with other laws, and chooses one.
+    /// Compares the law found in the whole exemplar with other proposals, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = exemplar.evidence(Role::is_whole);
@@ -165,13 +165,13 @@ impl Reading {
         proposals.retain(|p| p.score.is_finite());
         let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
 
-        // Find the law with the highest score, the first one among equals. It replaces the law that the settings ask
-        // for only if its score is clearly higher.
+        // Find the law with the highest score, the first one among equals. It replaces the law found in the whole
+        // exemplar only if its score is clearly higher.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
         // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the law
-        // that the settings ask for.
+        // found in the whole exemplar.
         let panes = lattice
             .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
         let chosen = match panes {

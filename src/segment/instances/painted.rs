@@ -13,7 +13,7 @@ pub const MIN_AREA: f64 = 6.0;
 /// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
 /// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// A region this many times as long as its stroke gets half the gain. [judged on 28 photos]
+/// The gain (score) of a region this many times as long as its stroke is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
 /// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
 /// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.

@@ -33,9 +33,9 @@ const LARGER: f64 = 1.6;
 /// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
 /// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind, if it reaches
-/// this share of their minimum area, this likeness, and if this share of the ring around it lies on the plane.
-/// [bench photos:tune, photos:real]
+/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind. Its area must
+/// be at least the share `SMALLER_KIND` of their minimum area, its likeness at least `SURE`, and the share of the ring
+/// around it that lies on the plane at least `SURELY_ON_PLANE`. [bench photos:tune, photos:real]
 const SMALLER_KIND: f64 = 0.25;
 const SURE: f64 = 1.2;
 const SURELY_ON_PLANE: f64 = 0.9;
