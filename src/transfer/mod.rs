@@ -158,7 +158,7 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view found from lines alone, if the lamps have led to a different `view`.
+    /// The view found from lines alone, if the lamps have led to a different view, which is then in `view`.
     pub view_by_lines: Option<Arc<View>>,
     /// Whether the caller has set the view. Such a view is not corrected.
     pub view_is_given: bool,

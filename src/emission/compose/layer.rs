@@ -165,8 +165,8 @@ const SURE: f64 = 0.6;
 /// [convention]
 const RAGGED: f64 = 2.0;
 
-/// The exemplar from which a texture is made, and the law by which its pattern continues: lattice, row, repetition or
-/// none.
+/// The exemplar from which a texture is made, and how its pattern continues: on a lattice, in a row, by repetition or
+/// without a period.
 struct Source {
     exemplar: Exemplar,
     /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.

@@ -36,9 +36,9 @@ const SIDE: usize = 160;
 /// [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
-/// Finds how the exemplar's lights continue (the law: lattice, row, repetition or none) from their autocorrelation.
-/// Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be a period
-/// if its correlation is at least `min_regularity`; at 1 there are no periods.
+/// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
+/// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
+/// a period if its correlation is at least `min_regularity`; at 1 there are no periods.
 pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
     if min_regularity >= 1.0 {
         return (Continuation::Free, 0.0);

@@ -1,10 +1,10 @@
 //! The sites of a lattice: the positions within a cell at which lamps lie, and how well the lattice predicts the
 //! lamps.
 //!
-//! A law is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice lead to it
-//! from another lamp of similar size. A false prediction is a position in full view to which the lattice leads, but
-//! which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant part of a
-//! photo has little weight. A lattice that predicts no lamp from another scores 0.
+//! A lattice or row is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice
+//! lead to it from another lamp of similar size. A false prediction is a position in full view to which the lattice
+//! leads, but which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant
+//! part of a photo has little weight. A lattice that predicts no lamp from another scores 0.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::evidence::Evidence;
@@ -62,8 +62,8 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` for other laws, and if the pattern does not change
-    /// along a period.
+    /// Groups the lamps into sites of a lattice or a row. `None` for a continuation without a period, and if the
+    /// pattern does not change along a period.
     pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
         let (basis, is_row) = match law {
             Continuation::Lattice(basis) => (basis, false),

@@ -195,7 +195,8 @@ impl Search<'_> {
             }
         }
 
-        // A single small bright thing may be anything: lamps of a smaller kind are at least two of equal size and shape.
+        // A single small bright thing may be anything: lamps of a smaller kind count only if there are at least two of
+        // equal size and shape.
         for &node in &smaller {
             if self.like_ones(smaller.iter().filter(|other| **other != node), node as usize).next().is_some() {
                 try_push(&mut similar.found, node)?;
@@ -265,8 +266,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the plane if the
-    /// room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
+    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the
+    /// plane if the room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
     fn size(&self, model: &Model, node: usize) -> Size {
         let regions = self.regions;
         let area = regions.area[node];
