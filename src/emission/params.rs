@@ -70,7 +70,7 @@ pub struct Params {
     pub min_regularity: f32,
     /// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
     pub law: Law,
-    /// Parts of the exemplar that unwarping magnifies more than this count as not shown. Magnification is a ratio of
+    /// Parts of the exemplar that unwarping magnifies more than this are not used. Magnification is a ratio of
     /// lengths, relative to the least magnified pixel. In `[1, 1e6]`, or 0 to use the whole exemplar.
     pub max_magnification: f64,
     /// Copies every lamp as a whole. If false, seams may cut lamps, as in the paper.

@@ -6,8 +6,8 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// A warning is given if the features of more than this share of the mask are unlike those of every stroke. [judged on
-/// 38 photos]
+/// A warning is given if the features of more than this share of the mask are unlike those of every stroke.
+/// [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
@@ -19,8 +19,8 @@ const MAX_CONTRADICTORY: f64 = 0.05;
 const MAX_OFF_IMAGE: f64 = 0.05;
 /// A warning is given if the expected error of the mask exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
-/// A warning is given if the mask assigns more than this share of the painted pixels to the wrong class. [judged on 38
-/// photos]
+/// A warning is given if the mask assigns more than this share of the painted pixels to the wrong class.
+/// [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
 /// A warning is given if the probability that a pixel painted as light is brighter than a pixel of the plane is below
 /// this. The probability is below 0.83 on the three of 44 photos whose lamps are off or shine away from the camera,

@@ -69,8 +69,8 @@ struct Setting<'a> {
     offset: DVec2,
     /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
-    /// Side of a patch, and the distance to a light from which on the distances in the metadata stay at 1; both in
-    /// working pixels.
+    /// Side of a patch, and the distance to a light from which on the x and y distances in the metadata stay at 1;
+    /// both in working pixels.
     block: usize,
     cap: f64,
 }
@@ -355,8 +355,9 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours. It is one and a
-/// half times the longer period of a lattice; without a lattice, it is a quarter of the exemplar's shorter side.
+/// Default side of a patch in working pixels (at the reduced size of the synthesis), large enough for a lamp and parts
+/// of its neighbours. It is one and a half times the longer period of a lattice; without a lattice, it is a quarter of
+/// the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -18,8 +18,8 @@ const WIDEST: f64 = 0.05;
 /// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
 /// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
-/// A bar is detected only if at least this share of the positions along it has light on both sides of the bar. [bench
-/// photos:tune]
+/// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
+/// [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
 /// Number of sections ([`Stretch`]) into which a bar is divided along its length; each is tested separately.
 /// [convention]

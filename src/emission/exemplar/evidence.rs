@@ -5,8 +5,8 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Two lamps are of one kind if each side differs by at most this share and the tolerances below. [judged on 20
-/// photos]
+/// Two lamps are of one kind if each side differs by at most this share and the tolerances below.
+/// [judged on 20 photos]
 const LIKE: f64 = 0.2;
 /// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the
 /// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]

@@ -95,8 +95,8 @@ impl Cell<'_> {
     }
 }
 
-/// If a cell holds enough light, makes it one pane: fills the lead strips in it, and adds bright parts that the mask
-/// left out.
+/// If a rectangle between bars holds enough light, makes it one pane: fills the lead strips in it, and adds bright
+/// parts that the mask left out.
 fn fill(cell: &Cell, light: &mut Image) {
     let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
     if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {

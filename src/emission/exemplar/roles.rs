@@ -10,8 +10,8 @@ const CUT_LAMP_SLACK: f64 = 1.35;
 /// exceeds the limit. A disc meets it until the border touches a third of its diameter, which cuts off less than a
 /// hundredth of the disc. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through the exemplar if it is at least this share as long as the shown part of the row or column
-/// through its centre. [rounding]
+/// A light runs through the exemplar if its length is at least this share of the part of the row or column through its
+/// centre that the photo shows. [rounding]
 const RUNS_THROUGH: f64 = 0.97;
 
 /// The role of a component of the exemplar.
@@ -77,7 +77,8 @@ fn contacts(components: &Components, shown: &[bool], width: usize, height: usize
     contacts
 }
 
-/// Whether a component is about as long as the shown part of the row, or of the column, through its centre.
+/// Whether a component is about as long as the part of the row, or of the column, through its centre that the photo
+/// shows.
 fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
     let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
     let row = (0..width).filter(|u| shown[y * width + u]).count();

@@ -26,13 +26,14 @@ pub struct Working {
     pub confidence: Vec<f32>,
     /// Share of each pixel that lights cover; cut lamps are left out.
     pub coverage: Vec<f32>,
-    /// Whether patches may show a pixel: it is shown and not part of a cut lamp ([`super::roles::Role::Cut`]).
+    /// Whether patches may copy a pixel: the photo shows it, and it is not part of a cut lamp
+    /// ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// The lattice is found from `shown` and `shown_coverage`, which include cut lamps: whether a pixel is shown, and
-    /// the share of it that lights cover.
+    /// `shown`: whether the photo shows a pixel. `shown_coverage`: the share of the pixel that lights cover, including
+    /// cut lamps. The lattice is found from both.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    /// Mean luminance of the shown part of each pixel, including lights.
+    /// Mean luminance of the part of each pixel that the photo shows, lights included.
     pub luminance: Vec<f32>,
 }
 
@@ -101,7 +102,8 @@ impl Working {
     }
 
     /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
-    /// half-extents in unwarped pixels. `None` if the box or the surroundings are not shown.
+    /// half-extents in unwarped pixels. `None` if the photo shows no pixel of the box, or no pixel of the
+    /// surroundings.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];

@@ -41,7 +41,7 @@ pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u6
     Ok(instances)
 }
 
-/// A patch map, and the working pixels that each lamp covers.
+/// A patch map, and the pixels that each lamp covers at the reduced size of the synthesis (working pixels).
 struct Canvas<'a> {
     patch_map: &'a PatchMap,
     footprints: Vec<Vec<[i32; 2]>>,
@@ -122,7 +122,7 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // Find the shifts that move a part of the lamp into the texture, and the cells around these shifts.
+        // Find the shifts that move a part of the lamp into the texture, and the lattice cells around these shifts.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
@@ -137,15 +137,16 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     instances
 }
 
-/// A run of pixels of a working row that a lamp covers, from `start` up to, but not including, `end`.
+/// A run of pixels that a lamp covers in a row of the exemplar at working size, from `start` up to, but not including,
+/// `end`.
 struct Piece {
     start: i32,
     end: i32,
     lamp: u32,
 }
 
-/// Lists the runs of lamp pixels in each working row, from left to right. A pixel that several lamps share, each
-/// smaller than the pixel, belongs to the last one.
+/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. A pixel that several
+/// lamps share, each smaller than the pixel, belongs to the last one.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {

@@ -1,9 +1,9 @@
 //! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo.
 //!
 //! Patches reproduce the disorder of the photo: distant lamps that the mask missed, and positions displaced by
-//! perspective. The sites of the lattice, weighted by photo pixels, give the true positions. A site that nearly always
-//! has a lamp gets one in every cell. At other sites the patches decide whether there is a lamp, and the lamp moves to
-//! the exact site.
+//! perspective. The sites of the lattice (positions in its cell at which lamps lie), averaged with the lamps' photo
+//! pixels as weights, give the true positions. A site that nearly always has a lamp gets one in every cell. At other
+//! sites the patches decide whether there is a lamp, and the lamp moves to the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;

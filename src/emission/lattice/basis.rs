@@ -4,8 +4,8 @@ use super::continuation::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of lamps whose pairs are compared; of more lamps, an even selection is taken. [bench
-/// emission:seconds]
+/// Maximum number of lamps whose pairs are compared; of more lamps, an even selection is taken.
+/// [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// A pair of lamps contributes to the fit if the vector between them differs from a lattice vector by less than this,
 /// as a share of the first period. [bench emission:patterns]

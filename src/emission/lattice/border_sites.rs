@@ -10,8 +10,8 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Two lamps lie at one position of the cell if their offset deviates from a lattice vector by less than this, in
-/// periods.
+/// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
+/// than this, in periods.
 const SAME: f64 = 0.2;
 /// A position in the lattice cell counts as a site of lamps if at least this share of its fully visible copies has a
 /// lamp.

@@ -80,7 +80,7 @@ pub struct Correlated {
 }
 
 impl Correlated {
-    /// Correlates the lights in those working pixels for which `is_within` returns true.
+    /// Correlates the lights in the pixels of the reduced exemplar for which `is_within` returns true.
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);

@@ -11,8 +11,8 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches are equally good if their error is within this factor of the least error (the original paper allows 10 %),
-/// or within this difference from it.
+/// Patches are equally good if their error is at most the first value times the least error (the original paper allows
+/// 10 %), plus the second value or, on a lattice, the larger `Comparison::slack`.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
@@ -50,10 +50,10 @@ pub struct Comparison<'a> {
     /// Summed-area tables of the usable pixels, and of their light.
     pub usable: AreaSums,
     light: AreaSums,
-    /// Lit share of the shown part of the exemplar.
+    /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// Difference in error below which two shifts are equally good.
+    /// Absolute difference in error that is tolerated in addition to the factor in [`TOLERANCE`].
     slack: f32,
 }
 

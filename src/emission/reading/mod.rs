@@ -45,8 +45,8 @@ const SAME_LAW: f64 = 0.08;
 /// The score of the chosen continuation (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the continuation (law) predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are
-    /// lamps for a comparison.
+    /// How well the continuation predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
+    /// for a comparison.
     pub score: f64,
     /// The best alternative continuation, and its score; the score is 0 if there is no alternative.
     pub runner_up: Continuation,

@@ -17,8 +17,8 @@ use glam::{DMat2, DVec2};
 /// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
 /// A position where the light mask shows no lamp counts as shining if its contrast with the surroundings is at least
-/// the share `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured. [judged
-/// on 20 photos]
+/// the share `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured.
+/// [judged on 20 photos]
 const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]

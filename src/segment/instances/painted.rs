@@ -1,5 +1,5 @@
-//! Finds the regions under the strokes: for each stroke, the disjoint tree nodes with the sharpest contours that cover
-//! the stroke.
+//! Finds the regions under the strokes: for each stroke, the disjoint nodes of the component tree that cover the
+//! stroke and have the sharpest contours.
 
 use super::regions::Regions;
 use super::tree::Tree;

@@ -135,8 +135,8 @@ impl OnSurface {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in a row parallel to a side of the face: their centres, measured across the row, differ
-    /// by at most `share` times the width of the wider node.
+    /// Whether two nodes lie in a row parallel to a side of the face of the room: their centres, measured across the
+    /// row, differ by at most `share` times the width of the wider node.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);

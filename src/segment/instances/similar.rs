@@ -39,9 +39,9 @@ const SURFACE: f64 = 4.0;
 const SMALLER_KIND: f64 = 0.25;
 const SURE: f64 = 1.2;
 const SURELY_ON_PLANE: f64 = 0.9;
-/// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the lamps under the
-/// strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant
-/// lamps along the line of sight. [bench photos:tune]
+/// The aspect (length over width) of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of
+/// the lamps under the strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and
+/// lengthens distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// Area and shape on the plane are taken from lamps under the strokes with at least this share of the pixels of the
@@ -53,7 +53,7 @@ const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Minimum share of the ring around a lamp that must lie on the plane. [judged on 28 photos]
+/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
@@ -64,7 +64,8 @@ const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
 /// [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Maximum aspect of a round lamp. Round lamps are often scattered, other lamps lie in rows. [bench photos:tune]
+/// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
+/// [bench photos:tune]
 const ROUND: f64 = 1.25;
 /// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
 /// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
@@ -72,7 +73,8 @@ const EQUAL_RING: f64 = 8.0;
 /// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
 /// tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Minimum likeness of a doubtful region; a lamp must have a likeness of 1. [judged on 28 photos]
+/// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of 1.
+/// [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
 /// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
@@ -123,7 +125,8 @@ struct Model {
 }
 
 impl Model {
-    /// Whether a ring has about the colour of the ring around one of the lamps under the strokes.
+    /// Whether the ring of pixels around a region has about the colour of the ring around one of the lamps under the
+    /// strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)

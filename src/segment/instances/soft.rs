@@ -15,7 +15,7 @@ const INSIDE: f32 = 0.501;
 const OUTSIDE: f32 = 0.499;
 
 /// Holes of at most this share of their region are filled, because they are bars, screws or lead strips in front of a
-/// lamp; the inside of a ring is larger and stays open. [judged on 44 photos]
+/// lamp; the inside of a ring-shaped lamp is larger and stays open. [judged on 44 photos]
 const HOLE: f64 = 0.05;
 
 /// Writes the confidence of a node's region to the image `confidence`; where regions overlap, the maximum counts.
