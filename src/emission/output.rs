@@ -24,7 +24,7 @@ pub struct Emission {
     /// Autocorrelation of the lights at a shift by one period, in `[0, 1]`: the lower value of the two periods; 0 if
     /// no period was found.
     pub regularity: f64,
-    /// How well this continuation predicts the lamps of the photo, and the best alternative.
+    /// How well `continuation` predicts the lamps of the photo, and the best alternative.
     pub choice: Choice,
     /// Two sets of statistics in texels: those expected from the exemplars, and those of the texture.
     pub statistics: [Statistics; 2],

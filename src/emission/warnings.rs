@@ -5,7 +5,8 @@ use crate::warning::{Code, Warning, percent};
 
 /// A warning is given if the statistics of texture and photo differ by more than this share. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// The same limit for lamps without a lattice. [judged on 38 photos]
+/// A warning is given if the lamps lie on no lattice and the statistics differ by more than this share.
+/// [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
 /// Relative difference of a texture without any light: its lit share differs by all of the photo's lit share. A larger
 /// difference gives the warning that there is no pattern. [convention]

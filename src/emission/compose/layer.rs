@@ -239,7 +239,7 @@ impl<'a> Setting<'a> {
         Ok(Self { params, found, continuation, offset, canvas, block, cap })
     }
 
-    /// The lattice as found and as stretched, for a tileable texture.
+    /// For a tileable texture, the lattice as found and as stretched; `None` for other textures.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
         let lattices = self.found.lattice().zip(self.continuation.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])

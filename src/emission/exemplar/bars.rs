@@ -24,8 +24,8 @@ const MIN_LENGTH: f64 = 0.1;
 /// Number of sections ([`Stretch`]) into which a bar is divided along its length; each is tested separately.
 /// [convention]
 const STRETCHES: usize = 24;
-/// Another bar that crosses hides at most this many consecutive sections ([`Stretch`]) of a bar, even if it has the
-/// maximum width. [convention]
+/// Where another bar crosses, it hides at most this many consecutive sections ([`Stretch`]) of a bar, even if the
+/// crossing bar has the maximum width. [convention]
 const CROSSING: usize = 2;
 /// A section ([`Stretch`]) that the photo shows sharply has no bar if its depth is below this share of the whole bar's
 /// depth. [bench photos:tune]

@@ -26,8 +26,7 @@ pub struct Evidence {
     pub size: DVec2,
     /// Number of photo pixels that show the lamp.
     pub weight: f64,
-    /// Blur of the lamp's edges along x and y: the distance in unwarped pixels by which an edge moves if it moves by
-    /// one photo pixel.
+    /// Blur of the lamp's edges along x and y: one photo pixel, measured across the edge in unwarped pixels.
     pub blur: DVec2,
 }
 

@@ -36,14 +36,14 @@ pub const LUMINOUS: f64 = 0.3;
 pub struct Exemplar {
     pub width: usize,
     pub height: usize,
-    /// Whether each pixel is usable: finite, on the plane, and not magnified beyond the limit.
+    /// Whether the photo shows each pixel: the pixel is finite, on the plane, and not magnified beyond the limit.
     pub shown: Vec<bool>,
     pub components: Components,
     /// The role of each component.
     pub roles: Vec<Role>,
     /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,
-    /// Share of the usable pixels (`shown`) that is lit.
+    /// Share of the pixels marked in `shown` that is lit.
     pub lit_share: f64,
     /// The map from unwarped pixels into the photo, if there is one.
     pub to_photo: Option<Homography>,

@@ -184,8 +184,8 @@ impl Bits {
     }
 }
 
-/// The working pixels of each lamp that is copied as one piece: the pixels whose centre the lamp covers or, if there
-/// are none, the pixel that contains the lamp's centre.
+/// The pixels, at working size, of each lamp that is copied as one piece: the pixels whose centre the lamp covers or,
+/// if there are none, the pixel that contains the lamp's centre.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];

@@ -84,7 +84,7 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites in the order of their photo pixels, without sites that overlap an earlier one.
+/// The sites, in descending order of the photo pixels of their lamps, without sites that overlap an earlier one.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));

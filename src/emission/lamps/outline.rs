@@ -13,8 +13,8 @@ use glam::DVec2;
 
 /// Maximum distance in texels by which simplification may move an outline that runs between the centres of texels.
 const TOLERANCE: f64 = 0.1;
-/// The same for an outline along the corners of texels, used if each texel is either fully lit or unlit. This distance
-/// turns a staircase into a line.
+/// Maximum distance in texels by which simplification may move an outline along the corners of texels, used if each
+/// texel is either fully lit or unlit. This distance turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
 /// The outline of a lamp of at most this width, in texels, runs along the corners of its texels. An outline between
 /// texel centres would enclose only half of a single texel.

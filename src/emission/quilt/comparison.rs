@@ -131,8 +131,8 @@ impl<'a> Comparison<'a> {
     }
 
     /// Scores how well shifts agree with the known pixels. Only shifts are scored that fill at least `least` empty
-    /// pixels or, without `least`, nearly as many as the best shift. A shift that is clearly worse than the best one
-    /// so far, or than an error of `limit`, gets an infinite error.
+    /// pixels or, without `least`, nearly as many as the best shift. A shift whose error is clearly above the least
+    /// error so far, or above `limit`, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,

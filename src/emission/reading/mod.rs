@@ -3,8 +3,8 @@
 //!
 //! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
 //! near ones. So continuations (laws) are proposed from the whole exemplar and from its sharper parts, with strict and
-//! with loose thresholds. Each is scored by how well it predicts the lamps of the whole photo ([`sites`]). The law
-//! found in the whole exemplar with the threshold of the settings is kept unless another one scores clearly higher.
+//! with loose thresholds. Each is scored by how well it predicts the lamps of the whole photo ([`sites`]). The one
+//! found in the whole exemplar at the threshold `min_regularity` is kept unless another one scores clearly higher.
 
 pub mod sites;
 
@@ -29,10 +29,10 @@ const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// The lattice or row found in the whole exemplar with the threshold of the settings is dropped if its score is below
+/// The lattice or row found in the whole exemplar at the threshold `min_regularity` is dropped if its score is below
 /// this; the pattern then counts as having no period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another lattice or row replaces the one found in the whole exemplar with the threshold of the settings only if its
+/// Another lattice or row replaces the one found in the whole exemplar at the threshold `min_regularity` only if its
 /// score is higher by more than this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
 /// Different continuations are compared only if lamps have at least this share of the lights' photo pixels; the rest

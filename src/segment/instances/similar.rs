@@ -44,8 +44,8 @@ const SURELY_ON_PLANE: f64 = 0.9;
 /// lengthens distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Area and shape on the plane are taken from lamps under the strokes with at least this share of the pixels of the
-/// largest one. [judged on 44 photos]
+/// The limits of area and shape on the plane are derived from those lamps under the strokes that have at least this
+/// share of the pixels of the largest one. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
 /// Maximum breadth in pixels, relative to the broadest lamp under a stroke, if the room has no box layout.
 /// [judged on 28 photos]
