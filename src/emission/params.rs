@@ -23,8 +23,8 @@ pub struct Input<'a> {
     pub photo: Option<(&'a Image, Homography)>,
 }
 
-/// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition of the whole exemplar, or as
-/// free patches.
+/// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition of the whole exemplar, or by
+/// patches without a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
     /// The continuation that predicts the lamps of the photo best. The one found by autocorrelation is kept unless

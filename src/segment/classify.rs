@@ -166,7 +166,7 @@ struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
     /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside, `1 - e^(1 - distance)`
-    /// outside.
+    /// outside, where the distance is 1 on an ellipsoid.
     beyond: [f32; TILE],
     /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,

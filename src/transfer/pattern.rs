@@ -145,8 +145,8 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // Refuse scales here that the synthesis would refuse with a message in which the user cannot see the cause.
-        // Also refuse a pattern too small for the texels, which would take minutes.
+        // Refuse here the scales that the synthesis would refuse too, because its error message does not name the
+        // cause. Also refuse a pattern too small for the texels, which would take minutes.
         let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
         let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
         if is_lost || !emission::SCALES.contains(&(texel / pixel)) {

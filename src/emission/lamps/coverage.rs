@@ -18,8 +18,8 @@ pub struct Lights<'a> {
     /// For each texel 0, or the number of its lamp.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number, the lamp's largest coverage. It stands for a texel that is entirely light, because the
-    /// confidence need not reach 1.
+    /// For each lamp number, the lamp's largest coverage. It stands for a texel that light covers entirely, because
+    /// the confidence need not reach 1.
     full: Vec<f32>,
 }
 

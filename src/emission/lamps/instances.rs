@@ -92,8 +92,8 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free.
-    /// Lamps without a lattice keep a gap of one pixel between them.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free (on a
+    /// lattice, all but the share [`LATTICE_SLACK`]). Lamps without a lattice keep a gap of one pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;

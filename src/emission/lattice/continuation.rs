@@ -1,4 +1,5 @@
-//! How the pattern of a texture continues beyond its exemplar: as a lattice, as a row, by repetition, or freely.
+//! How the pattern of a texture continues beyond its exemplar: on a lattice, in a row, by repetition, or by patches
+//! without a lattice.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};

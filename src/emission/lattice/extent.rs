@@ -12,8 +12,8 @@ const CELL_GAP: f64 = 4.0;
 /// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Lamps count as one group if the free space around them, both sides together, exceeds this many times the longest
-/// distance from a lamp to its nearest neighbour. [judged on 5 photos]
+/// Lamps count as one isolated group if, along both axes, the free space on both sides of them together exceeds this
+/// many times the longest distance from a lamp to its nearest neighbour. [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
 /// Width and height of the usable box of the exemplar, in unwarped pixels.

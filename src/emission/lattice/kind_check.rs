@@ -6,8 +6,8 @@ use glam::DVec2;
 
 /// Two lamps are of one kind if each side differs by at most this share. [judged on 5 photos]
 const KIND: f64 = 0.33;
-/// A shift is not a period if more than this share of the lamps that it moves onto lamps meet another kind.
-/// [judged on 5 photos]
+/// A shift is not a period if, among the lamps that it moves onto lamps, more than this share land on a lamp of
+/// another kind. [judged on 5 photos]
 const MAX_UNLIKE: f64 = 0.4;
 /// Maximum number of lamps that are tested. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;

@@ -2,9 +2,9 @@
 //!
 //! If a shift maps the mask nearly exactly onto itself, the lamps repeat with that shift. The two shortest such shifts
 //! form the lattice, which may be rectangular, hexagonal or skewed. Missing lamps lower the correlation only by their
-//! share. Every patch keeps the phase of the lattice. If there is only one such shift, or only a handful of lamps, the
-//! extent of the exemplar serves as the missing period, because the exemplar does not show how its design continues
-//! beside itself. Many lamps without any such shift are placed without a lattice.
+//! share. On a lattice, patches are shifted by lattice vectors only. If there is only one such shift, or only a
+//! handful of lamps, the extent of the exemplar serves as the missing period, because the exemplar does not show how
+//! its design continues beside itself. Many lamps without any such shift are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;

@@ -1,5 +1,5 @@
-//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata, the confidence and the
-//! distances to the nearest light ("Lighting Style Transfer", §6).
+//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata (the confidence, and the x and y
+//! distance to the nearest light; "Lighting Style Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
 //! those with the best agreement with the pixels already placed are kept, and one of them is chosen at random. Pixels

@@ -57,8 +57,8 @@ const CUT: f64 = 0.06;
 const ON_PLANE: f64 = 0.5;
 /// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// A region off the plane counts as a lamp only if the ratio of its area to that of a known lamp, and the ratio of the
-/// aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
+/// A region off the plane counts as a lamp only if the ratio of its area to that of a lamp under a stroke or on the
+/// plane, and the ratio of their aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
