@@ -182,7 +182,7 @@ struct Tile {
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels; results behind the last pixel are undefined. `likely` is the index of the
+    /// Classifies up to [`TILE`] pixels; results after the last pixel are undefined. `likely` is the index of the
     /// ellipsoid that contained all pixels of an earlier tile. It is tested first, which saves time and does not
     /// change the result.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {

@@ -154,8 +154,9 @@ impl Source<'_> {
         label != 0 && is_shown(label)
     }
 
-    /// The share of an unwarped pixel that components cover for which `is_shown` is true. Pixels beside lamps, where
-    /// the confidence fades out, count for every lamp; a pixel of a component counts for that component only.
+    /// The share of an unwarped pixel that is covered by the components for which `is_shown` is true. Pixels beside
+    /// lamps, where the confidence fades out, count for every lamp; a pixel of a component counts for that component
+    /// only.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }

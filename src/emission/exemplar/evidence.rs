@@ -5,7 +5,7 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Two lamps are of one kind if each side differs by at most this share and the tolerances below.
+/// Two lamps are of one kind if each side differs by at most this share, in addition to measurement error and bloom.
 /// [judged on 20 photos]
 const LIKE: f64 = 0.2;
 /// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the

@@ -8,8 +8,8 @@ use crate::job::Job;
 use glam::DVec2;
 
 /// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`; the surroundings
-/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if less than `UNLIT` of
-/// it is light. [judged on 20 photos]
+/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if lights cover less
+/// than the share `UNLIT` of it. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;

@@ -15,8 +15,8 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site of the lattice cell gets a lamp in every cell if lamps shine in at least this share of its visible copies,
-/// weighted by photo pixels. [bench emission:perspective]
+/// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine in at least this share of its
+/// visible copies, weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
 /// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
 /// the lamps at the dark copies. [judged on 20 photos]

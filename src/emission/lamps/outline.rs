@@ -44,7 +44,7 @@ pub struct Ring {
 
 impl Ring {
     /// Walks around a lamp. `is_in` tells whether a texel, given by column and row, belongs to the lamp. `coverage`
-    /// gives the share of a texel that is light: at least 0.5 for texels of the lamp, less for others, and `None`
+    /// gives the share of a texel that light covers: at least 0.5 for texels of the lamp, less for others, and `None`
     /// outside the texture, where the outline follows the border.
     pub fn walk(
         lamp: &Component,

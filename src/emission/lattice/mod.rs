@@ -25,8 +25,8 @@ use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Minimum correlation of a period, relative to the highest correlation: lower ones match lamps of different kinds.
-/// [bench emission:patterns]
+/// Minimum correlation of a period, relative to the highest correlation. Shifts with a lower correlation move lamps
+/// onto lamps of another kind. [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
 /// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;

@@ -18,8 +18,8 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Only patches that fill at least this share of the pixels that the patch with the best coverage fills are compared
-/// by their error.
+/// Patches are compared by their error only if they fill at least this share of the number of pixels that the patch
+/// with the best coverage fills.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If there are more patches than this, a first comparison uses every `ROW_STEP`-th row only, and the `FINALISTS` best
@@ -213,9 +213,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, the light that it adds to the empty pixels of a block above their share, in pixels. On a
-    /// lattice, the share is the mean over all given shifts, because lamps always lie at the same positions of a
-    /// block; otherwise it is the lit share of the exemplar.
+    /// For each shift, the light that it adds to the empty pixels of a block above a target, as a number of lit
+    /// pixels. On a lattice, the target is the mean over all given shifts, because lamps always lie at the same
+    /// positions of a block; otherwise it follows from the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));

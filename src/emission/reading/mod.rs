@@ -102,7 +102,7 @@ impl Reading {
         Self::of(exemplar, input, params, job)
     }
 
-    /// Finds how the pattern of an exemplar continues, if the exemplar has been built already.
+    /// Analyses an exemplar that has been built already: finds how its pattern continues.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
         let min_regularity = params.min_regularity;
@@ -260,7 +260,7 @@ impl Reading {
 }
 
 /// Score of a continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern does not
-/// change along one of the periods: only the autocorrelation can judge a law with such a period.
+/// change along one of the periods: only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
