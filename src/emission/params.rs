@@ -53,8 +53,8 @@ pub struct Params {
     /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
     /// lights.
     pub block: usize,
-    /// Where no lattice restricts the choice, at most this many patches of the exemplar are compared for each block of
-    /// the texture. In `[1, 65536]`.
+    /// Where no lattice restricts the choice, this many patches of the exemplar are drawn at random and compared for
+    /// each block of the texture, besides the patches that continue neighbouring blocks. In `[1, 65536]`.
     pub candidates: usize,
     /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,

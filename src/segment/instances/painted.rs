@@ -35,7 +35,8 @@ pub struct Paint<'a> {
     pub negatives: &'a [f64],
 }
 
-/// Finds the nodes under the positive strokes, in ascending order, without nodes inside other found nodes.
+/// Finds the nodes of the component tree under the positive strokes, in ascending order, without nodes that lie inside
+/// other found nodes.
 pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     let mut is_chosen = try_vec(tree.len(), false)?;
     let mut covered = try_vec(tree.len(), 0f64)?;

@@ -87,8 +87,8 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node, measured on the surface of the room: each pixel is weighted by the area that it
-/// shows.
+/// Sums over the pixels of each node of the component tree, measured on the surface of the room: each pixel is
+/// weighted by the area that it shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
     /// Number of pixels that show the face itself, not its extension beyond the edges.
@@ -169,7 +169,7 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
 }
 
-/// Sums over the pixels of each node, and over the pixel edges along its contour.
+/// Sums over the pixels of each node of the component tree, and over the pixel edges along its contour.
 pub struct Regions {
     /// Area of each node in pixels.
     pub area: Vec<f64>,

@@ -208,8 +208,8 @@ impl Search<'_> {
         Ok(similar)
     }
 
-    /// Returns the nodes that may be lamps, each with its likeness, the sharpest contours first. Nodes that contain a
-    /// painted node or lie inside one are left out.
+    /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
+    /// strokes, the sharpest contours first. Nodes that contain a lamp under a stroke or lie inside one are left out.
     fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;
