@@ -13,7 +13,8 @@ use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
 pub struct Measure {
-    /// Two medians over the whole lamps: of the longer side, and of the shorter side. 0 without a whole lamp.
+    /// Medians, over the lamps that the exemplar shows completely (whole lamps), of the longer side and of the shorter
+    /// side. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
     /// Median over the whole lamps of the share of the bounding box that a lamp covers: 1 for rectangles along the
     /// axes, π/4 for discs. 0 without a whole lamp.
@@ -21,7 +22,8 @@ pub struct Measure {
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
     /// nearest other whole lamp; 0 if there are fewer than two.
     pub spacing: f64,
-    /// Number of columns of the unwarped image with at least one shown pixel.
+    /// Number of columns of the unwarped image that contain at least one usable pixel: on the plane, and not magnified
+    /// too much.
     pub width: f64,
     pub(super) reading: Reading,
 }

@@ -9,8 +9,8 @@
 //! 2. [`lattice`] finds the lattice that the lamps lie on, from the autocorrelation of the light mask, and the lattice
 //!    sites that the border cuts.
 //! 3. [`quilt`] computes metadata (confidence, signed x and y distance to the nearest light), and quilts colour and
-//!    metadata with minimum-error seams. Patches keep their phase on the lattice, and the amount of light is kept in
-//!    balance.
+//!    metadata with minimum-error seams. On a lattice, patches are shifted by whole periods only. The amount of light
+//!    is kept in balance.
 //! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it; measures its
 //!    outline, kind and colour.
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
@@ -25,8 +25,8 @@
 //! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that must
 //! stay free of lamps ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
 //! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
-//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in tileable textures, whose
-//! edges may be displaced by the stretch of a few cells.
+//! exemplars; a pattern that continues across the edge between two planes; and exact edges of crossing lines in
+//! tileable textures, where stretching the lattice may displace them.
 
 mod agreement;
 mod compose;
@@ -198,8 +198,9 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// The exemplar's metadata (confidence, x and y distance to the nearest light), arranged by the patch map as the
-/// texture shows them. Pixels without a patch get confidence 0 and the largest distance.
+/// Builds the metadata image of the texture: `patch_map` copies the exemplar's metadata (confidence, x and y distance
+/// to the nearest light) in the same way as its pixels. Pixels without a patch get confidence 0 and the largest
+/// distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

@@ -15,16 +15,16 @@ pub struct Emission {
     /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light. Empty
     /// where the caller supplied the texture.
     pub exemplar_metadata: Image,
-    /// The exemplar's metadata, arranged by the patches of the texture, at working size (the reduced size of the
-    /// synthesis).
+    /// Metadata of the texture, copied from `exemplar_metadata` patch by patch, at working size (the reduced size of
+    /// the synthesis).
     pub metadata: Image,
     pub luminaires: Vec<Luminaire>,
-    /// The law by which the pattern continues beyond the exemplar: lattice, row, repetition or none.
+    /// How the pattern continues beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
     pub continuation: Continuation,
     /// Autocorrelation of the lights at a shift by one period, in `[0, 1]`: the lower value of the two periods; 0 if
     /// no period was found.
     pub regularity: f64,
-    /// How well the law of continuation predicts the lamps of the photo, and the best alternative law.
+    /// How well `continuation` predicts the lamps of the photo, and the best alternative.
     pub choice: Choice,
     /// Two sets of statistics in texels: those expected from the exemplars, and those of the texture.
     pub statistics: [Statistics; 2],

@@ -23,17 +23,17 @@ pub struct Input<'a> {
     pub photo: Option<(&'a Image, Homography)>,
 }
 
-/// The law by which the lights of an exemplar continue: a lattice, a row, repetition of the whole exemplar, or free
-/// patches.
+/// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition of the whole exemplar, or by
+/// patches without a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// The law that predicts the lamps of the photo best. The law found by autocorrelation is kept unless another one
-    /// scores clearly higher.
+    /// The continuation that predicts the lamps of the photo best. The one found by autocorrelation is kept unless
+    /// another one scores clearly higher.
     Best,
-    /// The law found by the autocorrelation of the lights, with `min_regularity` as its threshold.
+    /// The continuation found by the autocorrelation of the lights, with `min_regularity` as its threshold.
     Correlation,
-    /// The lattice (for `Row`, the row of lamps) found by the autocorrelation; if there is none, the best of all
-    /// proposed ones.
+    /// The lattice (for `Row`, the row of lamps) found by the autocorrelation. If it finds none, other lattices (rows)
+    /// are proposed, and the best is chosen.
     Lattice,
     Row,
     /// The exemplar repeats as a whole.
@@ -53,11 +53,12 @@ pub struct Params {
     /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
     /// lights.
     pub block: usize,
-    /// Maximum number of patches that are compared for each block where no lattice restricts them, in `[1, 65536]`.
+    /// Where no lattice restricts the choice, this many patches of the exemplar are drawn at random and compared for
+    /// each block of the texture, besides the patches that continue neighbouring blocks. In `[1, 65536]`.
     pub candidates: usize,
     /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,
-    /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) against
+    /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) relative to
     /// colour; 0 is plain quilting.
     pub metadata_weight: f32,
     /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
@@ -67,10 +68,10 @@ pub struct Params {
     /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
     /// exactly; at 1, none is, and patches are placed without a lattice.
     pub min_regularity: f32,
-    /// The law by which the lights continue beyond the exemplar: lattice, row, repetition or none.
+    /// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
     pub law: Law,
-    /// Maximum magnification of the parts of the exemplar that are used, in length and relative to the least magnified
-    /// pixel. Parts with a larger magnification count as not shown. In `[1, 1e6]`, or 0 to use the whole exemplar.
+    /// Parts of the exemplar that unwarping magnifies more than this are not used. Magnification is a ratio of
+    /// lengths, relative to the least magnified pixel. In `[1, 1e6]`, or 0 to use the whole exemplar.
     pub max_magnification: f64,
     /// Copies every lamp as a whole. If false, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
@@ -164,8 +165,8 @@ impl Input<'_> {
     }
 }
 
-/// Maximum number of working pixels of a texture, the pixels of its layout. For a larger texture, the layout of lamps
-/// and patches is computed at a lower resolution.
+/// Maximum number of pixels at which the layout of a texture (its lamps and patches) is computed. The layout of a
+/// larger texture is computed at a lower resolution.
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {
@@ -180,8 +181,8 @@ impl Params {
     }
 }
 
-/// Longest side of the exemplar at working size, in pixels. It is below `params.working_side` if the texture would
-/// otherwise have too many working pixels.
+/// Longest side, in pixels, of the exemplar at the reduced size of the synthesis. It is below `params.working_side` if
+/// the layout of the texture would otherwise have more than `MAX_WORKING_PIXELS` pixels.
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);

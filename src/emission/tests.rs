@@ -226,10 +226,10 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
     assert_eq!(result.continuation, Continuation::Free);
     let s = score(&result, per_area, (least, mean, most), None);
-    // Patches repeat contiguous parts of the exemplar, so the texture is a sample of no more lamps than the exemplar
-    // has. Lamp areas vary by a third. The mean area, and the number of lamps at a given lit share, therefore have a
-    // standard deviation of a third divided by the root of the number of lamps. Allow three standard deviations. The
-    // lit share itself is kept more closely.
+    // Patches repeat contiguous parts of the exemplar, so the texture's statistics are no more precise than those of a
+    // sample of as many lamps as the exemplar has. Lamp areas vary by a third. The mean area, and the number of lamps
+    // at a given lit share, therefore have a standard deviation of a third divided by the root of the number of lamps.
+    // Allow three standard deviations. The lit share itself is kept more closely.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");
@@ -328,7 +328,7 @@ fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
     let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
     assert!(matches!(result.continuation, Continuation::Tile(_)));
     assert_eq!(result.luminaires.len(), 9);
-    // The confidence of edge pixels is uncertain by a tenth, which changes the areas slightly.
+    // The confidence of edge pixels has noise of up to a tenth, which changes the areas slightly.
     assert!(result.luminaires.iter().all(|l| (l.area / 320.0 - 1.0).abs() < 0.01));
     assert!(result.error < 1e-6);
 }
@@ -346,7 +346,7 @@ fn lights_that_touch_every_border_go_on() {
     let result = lines.run(&Params { width: 500, height: 480, ..Params::default() }).unwrap();
     assert!(result.error < 0.05, "{}", result.error);
     assert_eq!(result.luminaires.len(), 20);
-    // The confidence of edge pixels is uncertain by a tenth, which changes sizes and areas slightly.
+    // The confidence of edge pixels has noise of up to a tenth, which changes sizes and areas slightly.
     assert!(result.luminaires.iter().all(|l| (l.size - DVec2::new(500.0, 6.0)).abs().max_element() < 0.3));
     assert!(result.luminaires.iter().all(|l| (l.area / 3000.0 - 1.0).abs() < 0.01));
 }

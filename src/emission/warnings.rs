@@ -3,14 +3,16 @@
 use super::{Continuation, Emission};
 use crate::warning::{Code, Warning, percent};
 
-/// Maximum relative difference between the statistics of texture and photo. [judged on 38 photos]
+/// A warning is given if the statistics of texture and photo differ by more than this share. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// Maximum relative difference for lamps without a lattice. [judged on 38 photos]
+/// A warning is given if the lamps lie on no lattice and the statistics differ by more than this share.
+/// [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
-/// Relative difference of a texture without any light: its lit share differs by all of the photo's lit share.
-/// [convention]
+/// Relative difference of a texture without any light: its lit share differs by all of the photo's lit share. A larger
+/// difference gives the warning that there is no pattern. [convention]
 const UNLIT_ERROR: f64 = 1.0;
-/// Minimum number of whole lamps from which a lamp size and a spacing can be measured. [convention]
+/// A warning is given if the exemplars show fewer whole lamps than this, too few to measure a lamp size and a spacing.
+/// [convention]
 const MIN_LAMPS: usize = 2;
 
 impl Emission {

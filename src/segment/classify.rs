@@ -166,7 +166,7 @@ struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
     /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside, `1 - e^(1 - distance)`
-    /// outside.
+    /// outside, where the distance is 1 on an ellipsoid.
     beyond: [f32; TILE],
     /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,
@@ -182,7 +182,7 @@ struct Tile {
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels; results behind the last pixel are undefined. `likely` is the index of the
+    /// Classifies up to [`TILE`] pixels; results after the last pixel are undefined. `likely` is the index of the
     /// ellipsoid that contained all pixels of an earlier tile. It is tested first, which saves time and does not
     /// change the result.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {

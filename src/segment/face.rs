@@ -77,8 +77,8 @@ fn face(features: &Image, normal: Vec3) -> Result<Image> {
 }
 
 /// Returns the mask of the ceiling of a room laid out as a box. The normals of such a ceiling are equal, unlike the
-/// normals of a depth map or of the prior for photos without lines. Errors (`Degenerate`): the room is not laid out as
-/// a box, or the ceiling covers less than [`MIN_CEILING`] of the photo.
+/// normals of a depth map or of the neutral room that is assumed for photos without lines. Errors (`Degenerate`): the
+/// room is not laid out as a box, or the ceiling covers less than [`MIN_CEILING`] of the photo.
 fn ceiling(features: &Image) -> Result<Image> {
     let mask = face(features, CEILING)?;
     let is_in_view = marked(&mask).count() as f64 >= MIN_CEILING * mask.data.len() as f64;

@@ -93,7 +93,7 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
 
 /// The pixels that belong to each stroke. A pixel under several strokes belongs to the last one.
 struct Owned {
-    /// For each stroke, its pixels without duplicates, each after the hash by which samples are drawn.
+    /// For each stroke, its pixels without duplicates, each with the hash by which samples are drawn.
     pixels_of: Vec<Vec<(u64, u32)>>,
     contradictory: usize,
     off_image: usize,

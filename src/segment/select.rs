@@ -145,7 +145,7 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
     while let Some((terms, ..)) =
         rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
     {
-        // Evaluate all candidates with up to twice as many terms in parallel.
+        // Evaluate in parallel all candidates that have at most twice as many terms as the smallest remaining one.
         let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
         let done = |left: &[_]| 1.0 - left.len() as f64 / order.len() as f64;
         let candidates = exec::map(batch.len(), job.part(done(rest), done(larger)), |i| {

@@ -221,7 +221,7 @@ fn a_mask_has_the_normal_of_the_face_that_it_covers_and_none_over_two_faces() {
 #[test]
 fn without_strokes_and_without_a_ceiling_the_error_asks_for_strokes() {
     let wall = Image::from_fn(WIDTH, HEIGHT, |_, _| [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0]).unwrap();
-    // The normals of the prior for photos without lines differ from row to row.
+    // The normals of the neutral room that is assumed for photos without lines differ from row to row.
     let prior = Image::from_fn(WIDTH, HEIGHT, |_, y| {
         let (sin, cos) = (y as f32 / HEIGHT as f32).sin_cos();
         [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, cos, -sin]

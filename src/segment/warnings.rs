@@ -6,23 +6,27 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// Maximum share of the mask whose features are unlike those of every stroke. [judged on 38 photos]
+/// A warning is given if the features of more than this share of the mask are unlike those of every stroke.
+/// [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
-/// Maximum number of pixels under strokes of both classes, divided by the number of samples. [judged on 38 photos]
+/// A warning is given if more pixels than this lie under strokes of both classes, as a multiple of the number of
+/// samples. [judged on 38 photos]
 const MAX_CONTRADICTORY: f64 = 0.05;
-/// Maximum number of stroke pixels outside the photo, divided by the number of samples. [judged on 38 photos]
+/// A warning is given if more stroke pixels than this lie outside the photo, as a multiple of the number of samples.
+/// [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
-/// Maximum expected error of the mask. [judged on 38 photos]
+/// A warning is given if the expected error of the mask exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
-/// Maximum share of the painted pixels that the mask assigns to the wrong class. [judged on 38 photos]
+/// A warning is given if the mask assigns more than this share of the painted pixels to the wrong class.
+/// [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
-/// Minimum probability that a pixel painted as light is brighter than a pixel of the plane. The probability is below
-/// 0.83 on the three of 44 photos whose lamps are off or shine away from the camera, and above 0.85 on the others.
-/// [judged on 44 photos]
+/// A warning is given if the probability that a pixel painted as light is brighter than a pixel of the plane is below
+/// this. The probability is below 0.83 on the three of 44 photos whose lamps are off or shine away from the camera,
+/// and above 0.85 on the others. [judged on 44 photos]
 const MIN_BRIGHTER: f64 = 0.85;
-/// Maximum share of the plane that lamps may cover. [judged on 38 photos]
+/// A warning is given if lamps cover more than this share of the plane. [judged on 38 photos]
 const MAX_LIT: f64 = 0.4;
 
 /// Number of grid cells along the longer side of the photo. [`Segmentation::warnings`] suggests the next stroke in the

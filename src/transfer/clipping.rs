@@ -3,8 +3,7 @@
 //! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of its pixels
 //! therefore lie roughly on a line. The unclipped pixels determine this line, and a clipped channel follows from an
 //! unclipped one. Because this is extrapolation, the estimate is limited to the range from white to the value that the
-//! mean ratio of the channels gives. If all channels are clipped, nothing more is known than that they are at least
-//! white.
+//! mean ratio of the channels gives. If all channels are clipped, only a lower bound of them is known: white.
 
 use glam::{BVec3, DVec3, Vec3};
 
@@ -12,7 +11,7 @@ use glam::{BVec3, DVec3, Vec3};
 /// decoding. In an unwarped photo, whose pixels are means of several photo pixels, clipping begins at lower values
 /// (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
-/// A line is fitted only if at least this share of the pixels is unclipped in both channels.
+/// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
 const LEAST_WHOLE: f64 = 0.02;
 /// Relative standard deviation of a plane's brightness below which the regularisation dominates: the fitted line then
 /// runs nearly through black.

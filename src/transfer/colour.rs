@@ -12,7 +12,7 @@ use crate::relight::Constraint;
 use crate::segment;
 use glam::{DVec3, Vec3};
 
-/// The part of the photo whose colour the target surface should have (the paper's two variants, its Table 1).
+/// The part of the photo whose mean colour the target surface should have (the two variants in Table 1 of the paper).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetColour {
     /// The plane that carries the lights, without the lights and their halo.
@@ -32,7 +32,7 @@ pub(super) struct Target {
 
 /// Width of the halo of glare around a lamp, as a share of the photo's longer side.
 const HALO: f32 = 0.01;
-/// A photo with a value above this has a range beyond white (1), so it is not clipped at white.
+/// A photo with a value above this has values beyond white (1), so it is not clipped at white.
 const WHITE: f32 = 1.001;
 /// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
 const MOSTLY: f64 = 0.5;

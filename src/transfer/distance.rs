@@ -48,13 +48,13 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// A distance that is known.
+    /// A distance that is known, with an error of 0.
     pub fn given(metres: f64) -> Self {
         Self { metres, error: 0.0 }
     }
 
     /// Estimates the distance from the sides of the median lamp, the longer side first. The sides are given as
-    /// multiples of the distance; sides of 0 mean that there is no lamp, or no rectangular one.
+    /// multiples of the distance; sides of 0 mean that there is no rectangular lamp.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);
         let step = (high - low) / STEPS as f64;

@@ -1,4 +1,4 @@
-//! Finds the parts of the surface's rectangle in which lamps may lie.
+//! Finds the parts of the surface's rectangle where lamps may lie.
 
 use crate::emission::Placement;
 use crate::error::Result;
@@ -9,7 +9,7 @@ use crate::scene::surface::Surface;
 use crate::segment;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
-/// Width in texels by which triangles are enlarged, so that no texel is lost between two triangles.
+/// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost.
 const CRACK: f64 = 1e-3;
 /// A surface whose area is at least this share of its rectangle's area counts as the full rectangle.
 const FULL: f32 = 0.9999;
@@ -37,7 +37,8 @@ pub(super) fn of(
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Mark the places without lamps: zones and, with a margin, places off the surface. Then dilate them by the margin.
+    // Mark the places where no lamp may be: zones and, with a margin, places off the surface. Then dilate them by the
+    // margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -70,7 +71,7 @@ fn on_other(from: &Surface, to: &Surface, at: DVec2) -> DVec2 {
     DVec2::new(offset.dot(to.u_axis.as_dvec3()), offset.dot(to.v_axis.as_dvec3()))
 }
 
-/// Whether the centre of each texel lies in a triangle of the surface, or within `slack` texels of one.
+/// For each texel, whether its centre lies in a triangle of the surface, or within `slack` texels of one.
 fn coverage(scene: &Scene, surface: &Surface, size: UVec2, slack: f64) -> Result<Vec<bool>> {
     let (width, height) = (size.x as usize, size.y as usize);
     let mut covered = try_vec(width * height, false)?;
@@ -141,7 +142,7 @@ mod tests {
         let of = |margin: f64, zones: &[DVec4]| {
             of(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
         };
-        // 4 of 24 m² are hidden, minus a strip of one texel along the two inner edges.
+        // 4 of 24 m² are hidden. The hidden part is smaller by a strip of one texel along the two inner edges.
         let cut = of(-1.0, &[]);
         assert!((share(&cut, Placement::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Placement::KeepOut) == 0.0);
         // With a margin of 0.3 m, the open part is the L shrunk by the margin, with a quarter of a disc at the inner

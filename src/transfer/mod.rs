@@ -89,7 +89,8 @@ pub struct Input {
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
-    /// The (mesh, triangle) pairs that receive the lights. If the list is not empty, it is used instead of `surface`.
+    /// The triangles of the scene that receive the lights, as pairs of indices (mesh, triangle). If the list is not
+    /// empty, it is used instead of `surface`.
     pub triangles: Vec<(usize, usize)>,
     /// Keep-out rectangles of the surface, without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
     pub zones: Vec<DVec4>,
@@ -158,7 +159,7 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view found from lines alone, if the lamps have led to a different `view`.
+    /// The view found from lines alone, if the lamps have led to a different view, which is then in `view`.
     pub view_by_lines: Option<Arc<View>>,
     /// Whether the caller has set the view. Such a view is not corrected.
     pub view_is_given: bool,

@@ -8,7 +8,7 @@ use crate::scene::surface::Surface;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// The quantity that determines the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
+/// Determines the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// The distance of the photo's camera from the lit plane: [`super::Params::plane_distance`] or, if that is 0, an
@@ -19,21 +19,21 @@ pub enum Scale {
     /// The shorter period of the lamps' lattice; without a lattice, the median distance from a lamp to its nearest
     /// neighbour.
     Spacing(f64),
-    /// The surface's width: it holds as many lamps side by side as the photo's plane.
+    /// The width of the surface: as many lamps lie side by side on it as on the plane in the photo.
     Across,
 }
 
-/// A lamp counts as rectangular if it covers more than this share of its bounding box: halfway between a disc and a
-/// full box. [convention]
+/// A lamp counts as rectangular if it covers more than this share of its bounding box. The limit lies halfway between
+/// a disc and a full box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// A pattern is refused as too small for the texels if it exceeds this limit and falls below `MIN_SHOWN_TEXELS`. The
-/// limit is the maximum ratio of the surface's length to the length of the plane in the photo: for example a hall of
-/// 600 m and 6 m of a ceiling. [convention]
+/// A pattern is refused if it is too small for the texels: if the surface is more than this many times as long as the
+/// plane in the photo (for example a hall of 600 m and 6 m of a ceiling), and the plane spans fewer than
+/// `MIN_SHOWN_TEXELS` texels. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
-/// Minimum number of texels along the plane in the photo at which its pattern is visible: two lamps with a gap beside
-/// each. [convention]
+/// Minimum number of texels along the plane in the photo for its pattern to be visible: enough for two lamps with a
+/// gap beside each. [convention]
 const MIN_SHOWN_TEXELS: f64 = 4.0;
 
 /// Size, rotation, offset and margin of the pattern on the surface.
@@ -58,7 +58,7 @@ impl Default for Pattern {
     }
 }
 
-/// The size of the pattern, expressed by an unwarped pixel.
+/// The size of the pattern, given by the size of an unwarped pixel on the surface.
 pub(super) struct Sizing {
     /// Metres per unwarped pixel.
     pub pixel: f64,
@@ -115,7 +115,7 @@ impl Pattern {
         };
         let distance = match self.scale {
             Scale::Distance => {
-                // Use rectangles only, because discs come in every size.
+                // Use rectangles only, because discs have no usual sizes.
                 let is_rectangle = measured.lamp_fill > MIN_FILL;
                 Distance::of_lamps(measured.lamp_sides.map(|side| if is_rectangle { side * pixel } else { 0.0 }))
             }
@@ -126,8 +126,9 @@ impl Pattern {
         Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
-    /// Chooses the texels of the surface: of the given size or, without one, of the size of an unwarped pixel; at most
-    /// `max_texels` along the longer side. The unwarped photo is `pixels` pixels long, each of `pixel` metres.
+    /// Chooses the size and number of the texels on the surface. The size is `texel_size` or, if that is 0, the size
+    /// of an unwarped pixel, enlarged if necessary so that there are at most `max_texels` along the longer side. The
+    /// unwarped photo is `pixels` pixels long, each of `pixel` metres.
     pub(super) fn texel_grid(
         &self,
         surface: &Surface,
@@ -144,8 +145,8 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // Refuse scales here that the synthesis would refuse with a message in which the user cannot see the cause.
-        // Also refuse a pattern too small for the texels, which would take minutes.
+        // Refuse here the scales that the synthesis would refuse too, because its error message does not name the
+        // cause. Also refuse a pattern too small for the texels, which would take minutes.
         let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
         let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
         if is_lost || !emission::SCALES.contains(&(texel / pixel)) {

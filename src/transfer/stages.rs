@@ -14,7 +14,7 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. The second factor is for
+/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. `MAX_GROWTH_UNCERTAIN` is for
 /// uncertain layouts: the plane was proposed because strokes were missing, or lines do not determine the camera.
 /// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
@@ -110,8 +110,8 @@ impl Transfer {
         Ok(true)
     }
 
-    /// If lamps lie beyond the plane of the room's layout, enlarges the room, and finds the plane and the lights in it
-    /// again.
+    /// If lamps lie beyond the plane of the room's layout, enlarges the room, and finds the plane and the lights again
+    /// in the larger room.
     fn enlarge_room(&mut self, job: Job) -> Result<()> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results

@@ -1,4 +1,5 @@
-//! Chooses a camera for scenes without one: in the corner of the room below the lit surface with the most open view.
+//! Chooses a camera for scenes without one. It stands in a corner of the room, below the lit surface, and has the most
+//! open view of several candidates.
 
 use crate::render::World;
 use crate::scene::surface::Surface;
@@ -7,11 +8,11 @@ use glam::{Vec2, Vec3};
 
 /// Vertical angle of view in radians.
 const FOV_Y: f32 = 0.9;
-/// Distances from a corner that are tried, as shares of the surface's sides.
+/// Distances from a corner of the surface that are tried, as shares of the surface's sides.
 const INSETS: [f32; 2] = [0.08, 0.2];
 /// Distances below the surface that are tried, as shares of the scene's depth below the surface.
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Number of rays that measure how open a view is: across and down.
+/// Number of rays across and down the picture that measure how open a view is.
 const RAYS: [usize; 2] = [12, 8];
 
 /// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
@@ -40,7 +41,8 @@ fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
     if depth > 0.0 { depth } else { surface.size.max_element() / 2.0 }
 }
 
-/// A camera near a corner of the surface, `below` metres from the surface, which looks at the opposite corner.
+/// A camera `below` metres from the surface, near one of its corners. It looks parallel to the surface, towards the
+/// diagonally opposite corner.
 fn candidate(surface: &Surface, corner: usize, inset: f32, below: f32) -> Camera {
     let at = |u: f32, v: f32| {
         let on_surface = Vec2::new(u, v) * surface.size;

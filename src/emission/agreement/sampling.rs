@@ -13,7 +13,7 @@ use crate::image::{Image, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Number of parts of the texture that are measured.
+/// Number of parts of the texture whose statistics are compared with those of the whole texture.
 const PARTS: usize = 6;
 
 /// Root mean square, over parts of the texture, of the largest relative difference between a part's statistics and the

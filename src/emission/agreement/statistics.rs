@@ -36,7 +36,8 @@ pub struct Pattern<'a, C> {
     pub whole: &'a [bool],
     /// Period along x and along y, in pixels; `None` without a period, infinite if the whole pattern is one period.
     pub periods: [Option<f64>; 2],
-    /// Function from a pixel index to linear RGB; `None` where the pattern is not shown.
+    /// Function from a pixel index to linear RGB; `None` for a pixel that is left out, such as one that the photo does
+    /// not show.
     pub colour: C,
 }
 

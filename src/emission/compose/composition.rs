@@ -88,7 +88,8 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// The law by which the lights of the first exemplar continue (lattice, row, repetition or none), and its score.
+    /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period), and
+    /// the score.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))

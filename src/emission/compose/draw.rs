@@ -66,7 +66,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
     // A lamp takes the random number of the earlier lamp that it overlaps most. Without one, it takes the number of
-    // its square if lamps are dense, else a number of its own.
+    // the square of the texture that holds its centre if lamps are dense, else a number of its own.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
             let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
@@ -111,8 +111,8 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
     Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
 }
 
-/// A hash grid of lamps by the square that holds their centre. The squares are as long as the longest lamp, so that
-/// overlapping lamps lie in the same square or in adjacent ones.
+/// A hash grid that finds lamps by the square that holds their centre. The squares are as long as the longest lamp, so
+/// that overlapping lamps lie in the same square or in adjacent ones.
 struct Near {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,

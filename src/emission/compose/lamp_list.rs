@@ -121,7 +121,8 @@ impl LampList {
         let shift = layer.rounded(instance.shift);
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let whole = shape.moved(shift, 1.0 / layer.scale);
-        // In a copied part, lights are dimmed by the exemplar's weight; other lamps are shown in full or not at all.
+        // If the texture is a copied part of the exemplar, the exemplar's weight in the blend dims the lights.
+        // Otherwise a lamp is shown at full brightness or not at all.
         let whole = match layer.continuation {
             Continuation::Copy => {
                 Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole }

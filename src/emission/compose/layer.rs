@@ -69,7 +69,8 @@ struct Setting<'a> {
     offset: DVec2,
     /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
-    /// Side of a patch, and the distance to a light at which the metadata saturate at 1; both in working pixels.
+    /// Side of a patch, and the distance to a light from which on the x and y distances in the metadata stay at 1;
+    /// both in working pixels.
     block: usize,
     cap: f64,
 }
@@ -164,8 +165,8 @@ const SURE: f64 = 0.6;
 /// [convention]
 const RAGGED: f64 = 2.0;
 
-/// The exemplar from which a texture is made, and the law by which its pattern continues: lattice, row, repetition or
-/// none.
+/// The exemplar from which a texture is made, and how its pattern continues: on a lattice, in a row, by repetition or
+/// without a period.
 struct Source {
     exemplar: Exemplar,
     /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
@@ -238,7 +239,7 @@ impl<'a> Setting<'a> {
         Ok(Self { params, found, continuation, offset, canvas, block, cap })
     }
 
-    /// The lattice as found and as stretched, for a tileable texture.
+    /// For a tileable texture, the lattice as found and as stretched; `None` for other textures.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
         let lattices = self.found.lattice().zip(self.continuation.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
@@ -354,8 +355,9 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours. It is one and a
-/// half times the longer period of a lattice; without a lattice, it is a quarter of the exemplar's shorter side.
+/// Default side of a patch in working pixels (at the reduced size of the synthesis), large enough for a lamp and parts
+/// of its neighbours. It is one and a half times the longer period of a lattice; without a lattice, it is a quarter of
+/// the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

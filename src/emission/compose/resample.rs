@@ -6,9 +6,9 @@
 //!
 //! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, but is
 //! less exact. At its published width, the Gaussian also weighs parts of the photo that belong to other texels; a
-//! Gaussian as narrow as a texel does not have the texel's shape. Only where tens of texels share a photo pixel along
-//! one side, so that no detail is left to recover, is its blur closer to the truth. `cargo bench --bench emission --
-//! recovery` compares both methods with the truth.
+//! Gaussian as narrow as a texel does not have the texel's shape. Its blur is closer to the truth only at extreme
+//! magnification, where tens of texels along one side share a photo pixel and no detail is left to recover. `cargo
+//! bench --bench emission -- recovery` compares both methods with the truth.
 
 use crate::geometry::Homography;
 use crate::image::Image;

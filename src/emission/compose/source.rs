@@ -55,7 +55,7 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The shift of the patch at a texel's centre; `None` if there is no patch.
+    /// The shift (texture minus exemplar) of the patch at a texel's centre; `None` if there is no patch.
     pub fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
         let Layer { patch_map, exemplar, scale, .. } = self.layer;
         let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * *scale / exemplar.working.pitch;
@@ -154,8 +154,9 @@ impl Source<'_> {
         label != 0 && is_shown(label)
     }
 
-    /// The share of an unwarped pixel that is light of the shown components. The fading confidence beside lamps counts
-    /// for every lamp; a pixel of a component counts for that component only.
+    /// The share of an unwarped pixel that is covered by the components for which `is_shown` is true. Pixels beside
+    /// lamps, where the confidence fades out, count for every lamp; a pixel of a component counts for that component
+    /// only.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }

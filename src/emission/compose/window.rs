@@ -14,8 +14,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Finds the fully shown part whose lit share is closest to the exemplar's, and moves it by minus the offset.
-    /// `None` if no part is fully shown.
+    /// Finds the part, among those that the photo shows completely, whose lit share is closest to the exemplar's.
+    /// Moves it by the negative of `params.offset`. `None` if the photo shows no such part completely.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));

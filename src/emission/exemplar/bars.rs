@@ -18,18 +18,19 @@ const WIDEST: f64 = 0.05;
 /// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
 /// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
-/// Minimum share of the positions along a bar with light on both sides of the bar. [bench photos:tune]
+/// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
+/// [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
-/// Number of stretches into which a bar is divided along its length; each is tested separately. [convention]
-const STRETCHES: usize = 24;
-/// A crossing bar hides at most this many consecutive stretches of a bar, even if it has the maximum width.
+/// Number of sections ([`Stretch`]) into which a bar is divided along its length; each is tested separately.
 /// [convention]
+const STRETCHES: usize = 24;
+/// Where another bar crosses, it hides at most this many consecutive sections ([`Stretch`]) of a bar, even if the
+/// crossing bar has the maximum width. [convention]
 const CROSSING: usize = 2;
-/// A stretch that the photo shows sharply has no bar if its depth is below this share of the whole bar's depth.
-/// [bench photos:tune]
+/// A section ([`Stretch`]) that the photo shows sharply has no bar if its depth is below this share of the whole bar's
+/// depth. [bench photos:tune]
 const ABSENT: f32 = 0.25;
-/// Maximum relative deviation of the distances between bars from their mean, for bars with a period.
-/// [bench photos:tune]
+/// Bars have a period if the distances between them deviate from their mean by at most this share. [bench photos:tune]
 const SAME_PERIOD: f64 = 0.12;
 
 /// A plane with lights in the unwarped image, and the map into the photo.
@@ -51,8 +52,8 @@ impl LitPlane<'_> {
     }
 }
 
-/// A bar: its first and last position across, and its depth. The depth is the share of the panes' luminance that the
-/// bar lacks.
+/// A bar: the first and last pixel position across it, and its depth. The depth is the share of the panes' luminance
+/// that the bar lacks.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     pub first: usize,
@@ -66,8 +67,8 @@ impl Bar {
     }
 }
 
-/// The plane as lines parallel to the bars of one direction. `across` and `along` are the numbers of positions across
-/// and along the bars.
+/// View of the plane for detecting the bars of one direction. `across` and `along` are the numbers of pixel positions
+/// across and along the bars.
 pub struct Lines<'a> {
     plane: &'a LitPlane<'a>,
     is_column: bool,
@@ -118,9 +119,9 @@ impl<'a> Lines<'a> {
         1.0 / if self.is_column { pixel.x } else { pixel.y }
     }
 
-    /// Median depth of the pixels in `along` at position `u` across, weighted by sharpness. `None` if fewer than
-    /// `least` pixels have light on both sides. A bar is dark over all of its length; a bar that crosses it is dark in
-    /// a few places only.
+    /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness. `None`
+    /// if fewer than `least` pixels have light on both sides. A bar is dark over all of its length; a bar that crosses
+    /// it is dark in a few places only.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.stretch()) {
@@ -187,7 +188,7 @@ impl<'a> Lines<'a> {
         beyond
     }
 
-    /// Divides a bar into its stretches, and measures each.
+    /// Divides a bar into sections along its length, and measures each.
     pub fn stretches(&self, bar: &Bar) -> Vec<Stretch> {
         let middle = (bar.first + bar.last) / 2;
         let starts = (0..self.along).step_by(self.stretch());
@@ -202,12 +203,12 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Removes a bar from the light, except in stretches where the photo shows no bar although its sharpness is at
+    /// Removes a bar from the light, except in sections where the photo shows no bar although its sharpness is at
     /// least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, this bar does not stand out from the other one, so the stretch seems to have no
+        // Where another bar crosses, this bar does not stand out from the other one, so the section seems to have no
         // bar.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
@@ -228,7 +229,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A stretch of a bar: its positions along the bar, the depth there, and the photo's sharpness in photo pixels per
+/// A section of a bar: its positions along the bar, the depth there, and the photo's sharpness in photo pixels per
 /// unwarped pixel.
 pub struct Stretch {
     along: Range<usize>,
@@ -236,7 +237,7 @@ pub struct Stretch {
     sharpness: f64,
 }
 
-/// The least sharpness among the stretches in which a bar is visible.
+/// The least sharpness among the sections in which a bar is visible.
 pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
     let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)

@@ -5,7 +5,8 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Maximum relative difference between the sides of two lamps of one kind. [judged on 20 photos]
+/// Two lamps are of one kind if each side differs by at most this share, in addition to measurement error and bloom.
+/// [judged on 20 photos]
 const LIKE: f64 = 0.2;
 /// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the
 /// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]
@@ -25,7 +26,7 @@ pub struct Evidence {
     pub size: DVec2,
     /// Number of photo pixels that show the lamp.
     pub weight: f64,
-    /// Distance in unwarped pixels by which the lamp's edges move, along x and y, if they move by one photo pixel.
+    /// Blur of the lamp's edges along x and y: one photo pixel, measured across the edge in unwarped pixels.
     pub blur: DVec2,
 }
 

@@ -50,7 +50,7 @@ pub struct MagnificationLimit {
 }
 
 impl MagnificationLimit {
-    /// The part of the shown pixels with at most `max_magnification`; `None` if that is all of them.
+    /// The part of the image with at most `max_magnification`; `None` if all `shown` pixels meet this limit.
     pub fn new(to_photo: Homography, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
         let denominator = |i: usize| denominator(&to_photo, pixel_centre(i, width));
         let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
@@ -59,7 +59,7 @@ impl MagnificationLimit {
         (max_denominator < high).then_some(Self { to_photo, max_denominator })
     }
 
-    /// Marks the pixels beyond the limit as not shown.
+    /// Clears `shown` for the pixels beyond the limit.
     pub fn restrict(&self, shown: &mut [bool], width: usize) {
         shown.iter_mut().enumerate().for_each(|(i, shown)| *shown &= self.contains(pixel_centre(i, width)));
     }

@@ -1,9 +1,9 @@
 //! Detects fragments: specks, and pieces of light that are only parts of a lamp, for example between the blades of a
 //! louvre.
 //!
-//! A lamp usually has others of its kind. A piece of light is a fragment if it covers far fewer photo pixels than a
-//! lamp of the smallest kind would cover in its place. In addition, it must lie close to another light, or be one of
-//! few pieces of its kind. Fragments count as light in the pattern, but the texture does not show them.
+//! A photo usually shows several lamps of a kind. A piece of light is a fragment if it covers far fewer photo pixels
+//! than a lamp of the smallest kind would cover in its place. In addition, it must lie close to another light, or be
+//! one of few pieces of its kind. Fragments count as light in the pattern, but the texture does not show them.
 
 use super::components::{Component, Components};
 use super::evidence::Evidence;

@@ -36,14 +36,14 @@ pub const LUMINOUS: f64 = 0.3;
 pub struct Exemplar {
     pub width: usize,
     pub height: usize,
-    /// Whether each pixel is finite and on the plane.
+    /// Whether the photo shows each pixel: the pixel is finite, on the plane, and not magnified beyond the limit.
     pub shown: Vec<bool>,
     pub components: Components,
     /// The role of each component.
     pub roles: Vec<Role>,
     /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,
-    /// Share of the shown pixels that is lit.
+    /// Share of the pixels marked in `shown` that is lit.
     pub lit_share: f64,
     /// The map from unwarped pixels into the photo, if there is one.
     pub to_photo: Option<Homography>,
@@ -129,12 +129,13 @@ impl Exemplar {
         [low, lights.iter().fold([0; 2], |high, light| corners(high, light.max, usize::max))]
     }
 
-    /// The whole lamps.
+    /// The lamps that the photo shows completely.
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }
 
-    /// The lamps with certain roles as evidence; lamps with most photo pixels come first.
+    /// The components whose role fulfils `has_role`, as evidence for a lattice; those with most photo pixels come
+    /// first.
     pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
         let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
         let mut all: Vec<Evidence> =
@@ -143,7 +144,7 @@ impl Exemplar {
         all
     }
 
-    /// The components that are copied as one piece, each after its index.
+    /// The components that are copied as one piece, with their indices.
     pub fn pieces(&self) -> impl Iterator<Item = (usize, &Component)> {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }

@@ -1,7 +1,7 @@
 //! Separates the panes of a luminous ceiling along the bars between them, and fills gaps within each pane.
 //!
 //! The light mask joins panes where bloom covers the bars between them. Where the camera is near, it cuts panes to
-//! pieces along their leading, the lead strips inside a pane. The detected bars ([`super::bars`]) define the panes,
+//! pieces along the lead strips inside them (their leading). The detected bars ([`super::bars`]) define the panes,
 //! near and far.
 
 use super::LUMINOUS;
@@ -13,13 +13,13 @@ use crate::job::Job;
 use glam::Vec3;
 use std::ops::Range;
 
-/// A cell between bars counts as a pane if at least this share of it is lit. [bench photos:real]
+/// A rectangle between bars counts as a pane if at least this share of it is lit. [bench photos:real]
 const PANE: f64 = 0.35;
 /// A pixel outside the mask is added to its pane if it has at least this luminance, relative to the pane's median.
 /// [bench photos:real]
 const BRIGHT: f32 = 0.5;
-/// A dark line inside a pane counts as leading and is filled if it is at most this wide, as a share of the cell's
-/// side. [bench photos:real]
+/// A dark line inside a pane is filled, as a lead strip, if it is at most this wide, as a share of the pane's side.
+/// [bench photos:real]
 const LEADING: f64 = 0.06;
 
 /// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
@@ -79,7 +79,7 @@ fn between(bars: &[Bar], size: usize) -> Vec<Range<usize>> {
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end).collect()
 }
 
-/// A cell between bars, given by its columns and rows.
+/// A rectangle between bars, which may be a pane, given by its columns and rows.
 struct Cell<'a> {
     plane: &'a LitPlane<'a>,
     luminances: &'a [f32],
@@ -95,14 +95,15 @@ impl Cell<'_> {
     }
 }
 
-/// If a cell holds enough light, makes it one pane: fills its leading, and adds bright parts that the mask left out.
+/// If a rectangle between bars holds enough light, makes it one pane: fills the lead strips in it, and adds bright
+/// parts that the mask left out.
 fn fill(cell: &Cell, light: &mut Image) {
     let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
     if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {
         return;
     }
 
-    // Fill the leading along rows and columns.
+    // Fill the lead strips along rows and columns.
     let width = light.width;
     let (columns, rows) = (cell.columns.clone(), cell.rows.clone());
     rows.clone().for_each(|y| close(light, (y * width + columns.start, 1, columns.len())));

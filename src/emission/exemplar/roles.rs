@@ -10,14 +10,14 @@ const CUT_LAMP_SLACK: f64 = 1.35;
 /// exceeds the limit. A disc meets it until the border touches a third of its diameter, which cuts off less than a
 /// hundredth of the disc. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through if it covers this share of the shown pixels in the row or column through its centre.
-/// [rounding]
+/// A light runs through the exemplar if its length is at least this share of the part of the row or column through its
+/// centre that the photo shows. [rounding]
 const RUNS_THROUGH: f64 = 0.97;
 
 /// The role of a component of the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A lamp that ends inside the region that the photo shows.
+    /// A lamp that the photo shows completely.
     Whole,
     /// A lamp that counts as whole although a few of its pixels touch the border.
     WholeAtBorder,
@@ -31,7 +31,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Whether the component is a lamp that ends inside the region that the photo shows.
+    /// Whether the component is a lamp that the photo shows completely, or that counts as such.
     pub fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::WholeAtBorder)
     }
@@ -77,7 +77,8 @@ fn contacts(components: &Components, shown: &[bool], width: usize, height: usize
     contacts
 }
 
-/// Whether a component is about as long as the shown part of the row, or of the column, through its centre.
+/// Whether a component is about as long as the part of the row, or of the column, through its centre that the photo
+/// shows.
 fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
     let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
     let row = (0..width).filter(|u| shown[y * width + u]).count();

@@ -8,8 +8,8 @@ use crate::job::Job;
 use glam::DVec2;
 
 /// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`; the surroundings
-/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if less than `UNLIT` of
-/// it is light. [judged on 20 photos]
+/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if lights cover less
+/// than the share `UNLIT` of it. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;
@@ -24,15 +24,16 @@ pub struct Working {
     pub colour: Image,
     /// Confidence of each pixel that it is light; 0 for cut lamps ([`super::roles::Role::Cut`]).
     pub confidence: Vec<f32>,
-    /// Share of each pixel that is light, without cut lamps.
+    /// Share of each pixel that lights cover; cut lamps are left out.
     pub coverage: Vec<f32>,
-    /// Whether patches may show a pixel: it is shown and not part of a cut lamp ([`super::roles::Role::Cut`]).
+    /// Whether patches may copy a pixel: the photo shows it, and it is not part of a cut lamp
+    /// ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// The lattice is found from `shown` and `shown_coverage`, which include cut lamps: whether a pixel is shown, and
-    /// the share of it that is light.
+    /// `shown`: whether the photo shows a pixel. `shown_coverage`: the share of the pixel that lights cover, including
+    /// cut lamps. The lattice is found from both.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    /// Mean luminance of the shown part of each pixel, including lights.
+    /// Mean luminance of the part of each pixel that the photo shows, lights included.
     pub luminance: Vec<f32>,
 }
 
@@ -101,7 +102,8 @@ impl Working {
     }
 
     /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
-    /// half-extents in unwarped pixels. `None` if the box or the surroundings are not shown.
+    /// half-extents in unwarped pixels. `None` if the photo shows no pixel of the box, or no pixel of the
+    /// surroundings.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];

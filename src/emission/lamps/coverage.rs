@@ -7,8 +7,8 @@ use crate::image::try_vec;
 /// Steps from a texel to the eight texels around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Function from a texel index to its coverage, the share that is light: at least 0.5 for texels of a lamp, less for
-/// others.
+/// Function from a texel index to its coverage, the share of the texel that light covers: at least 0.5 for texels of a
+/// lamp, less for others.
 pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 
 /// The lamps of a texture, with the coverage of each texel.
@@ -18,8 +18,8 @@ pub struct Lights<'a> {
     /// For each texel 0, or the number of its lamp.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number, the lamp's largest coverage. It stands for a texel that is entirely light, because the
-    /// confidence need not reach 1.
+    /// For each lamp number, the lamp's largest coverage. It stands for a texel that light covers entirely, because
+    /// the confidence need not reach 1.
     full: Vec<f32>,
 }
 
@@ -57,7 +57,8 @@ impl<'a> Lights<'a> {
 
     /// Calls `add` for each lit area that a texel contributes to its lamp: first the step from the texel to the texel
     /// that holds the area, then the area. A texel deep in the lamp contributes itself as a whole. A texel at the edge
-    /// contributes its own lit part, and its share of the light in adjacent texels that are less than half light.
+    /// contributes its own lit part, and its share of the light in adjacent texels that light covers by less than
+    /// half.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -75,8 +76,9 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// The share of a texel at the edge that is light. If coverage takes more than two texels to rise from 0 to 1, the
-    /// edge is blurred. The distance from the edge then follows from the coverage, and the share from that distance.
+    /// The share of a texel at a lamp's edge that light covers. If coverage takes more than two texels to rise from 0
+    /// to 1, the edge is blurred. The distance from the edge then follows from the coverage, and the share from that
+    /// distance.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -31,7 +31,7 @@ pub fn remove(
 }
 
 /// Removes the texels for which `goes`, called with the lamp and the texel, returns true. Texels at a lamp's rim that
-/// are less than half light belong to no lamp; they are removed if all lamp texels next to them are removed.
+/// light covers by less than half belong to no lamp; they are removed if all lamp texels next to them are removed.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

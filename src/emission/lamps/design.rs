@@ -29,14 +29,15 @@ const ROUNDER: f64 = 0.03;
 const MAX_SMEARED: f64 = 160.0;
 const SMEAR: f64 = 1.25;
 const ALONG: f64 = 0.9;
-/// Lamps are elongated in a common direction if the mean of their doubled directions is longer than this; its length
-/// is 1 if all directions agree. Lamps that are each elongated along their own blur, in different directions, are
-/// discs of any size. [judged on 20 photos]
+/// Lamps are elongated in a common direction if the mean of the unit vectors at twice the angles of their long axes is
+/// longer than this; its length is 1 if all axes are parallel. Lamps that are each elongated along their own blur, in
+/// different directions, are discs of any size. [judged on 20 photos]
 const SAME_WAY: f64 = 0.93;
-/// Minimum agreement of a lamp with its shape: the area of their intersection divided by the area of their union.
-/// [judged on 20 photos]
+/// Minimum agreement of the lamps of a kind with their shape, on average: the area of the intersection divided by the
+/// area of the union. Below it, the kind has no design. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// A side of a rectangle is measured within the middle part of the other side, this share of it. [judged on 20 photos]
+/// A side of a rectangle is measured across the middle part of the other side; this is the share of the other side
+/// that the middle part covers. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
@@ -245,9 +246,9 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps if they are discs that blur has elongated; else `None`. Most of such lamps are elongated
-/// along their blur, and they are small in the photo or elongated in different directions. The diameter is measured
-/// along the shorter axis.
+/// The diameter of lamps if they are discs that blur has elongated; else `None`. They count as such discs if at least
+/// half of them, by weight, are elongated along their blur, and if they are either small in the photo or not all
+/// elongated in the same direction. The diameter is measured along the shorter axis.
 fn smeared_disc(members: &[&Member]) -> Option<f64> {
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;

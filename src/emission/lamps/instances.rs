@@ -41,7 +41,7 @@ pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u6
     Ok(instances)
 }
 
-/// A patch map, and the working pixels that each lamp covers.
+/// A patch map, and the pixels that each lamp covers at the reduced size of the synthesis (working pixels).
 struct Canvas<'a> {
     patch_map: &'a PatchMap,
     footprints: Vec<Vec<[i32; 2]>>,
@@ -92,8 +92,8 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free.
-    /// Lamps without a lattice keep a gap of one pixel between them.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free (on a
+    /// lattice, all but the share [`LATTICE_SLACK`]). Lamps without a lattice keep a gap of one pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;
@@ -115,14 +115,14 @@ impl Canvas<'_> {
     }
 }
 
-/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each cell in which the
-/// texture shows a part of it; in a tileable texture, once for each cell that begins in the texture.
+/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each repetition in which the
+/// texture shows a part of it; in a tileable texture, once for each repetition that begins in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // Find the shifts that move a part of the lamp into the texture, and the cells around these shifts.
+        // Find the shifts that move a part of the lamp into the texture, and the lattice cells around these shifts.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
@@ -137,15 +137,16 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     instances
 }
 
-/// A run of pixels of a working row that a lamp covers, from `start` up to, but not including, `end`.
+/// A run of pixels that a lamp covers in a row of the exemplar at working size, from `start` up to, but not including,
+/// `end`.
 struct Piece {
     start: i32,
     end: i32,
     lamp: u32,
 }
 
-/// Lists the runs of lamp pixels in each working row, from left to right. A pixel that several lamps share, each
-/// smaller than the pixel, belongs to the last one.
+/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. A pixel that several
+/// lamps share, each smaller than the pixel, belongs to the last one.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {
@@ -183,8 +184,8 @@ impl Bits {
     }
 }
 
-/// The working pixels of each lamp that is copied as one piece: the pixels whose centre the lamp covers or, if there
-/// are none, the pixel that contains the lamp's centre.
+/// The pixels, at working size, of each lamp that is copied as one piece: the pixels whose centre the lamp covers or,
+/// if there are none, the pixel that contains the lamp's centre.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];

@@ -16,7 +16,7 @@ const LIKE: f64 = 0.25;
 const FILL: f64 = 0.1;
 /// Difference in each side between equal lamps, in texels, that rounding and simplification of both ends may cause.
 const ROUNDING: f64 = 2.0;
-/// Before comparison, lamps are binned by the logarithms of area and sides: number of bins per factor of e.
+/// Number of bins per factor of e. Before comparison, lamps are binned by the logarithms of area and sides.
 const STEPS: f64 = 20.0;
 
 /// The measures by which lamps are compared; lengths are in texels.

@@ -1,9 +1,9 @@
 //! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo.
 //!
 //! Patches reproduce the disorder of the photo: distant lamps that the mask missed, and positions displaced by
-//! perspective. The sites of the lattice, weighted by photo pixels, give the true positions. A site that nearly always
-//! has a lamp gets one in every cell. At other sites the patches decide whether there is a lamp, and the lamp moves to
-//! the exact site.
+//! perspective. The sites of the lattice (positions in its cell at which lamps lie), averaged with the lamps' photo
+//! pixels as weights, give the true positions. A site that nearly always has a lamp gets one in every cell. At other
+//! sites the patches decide whether there is a lamp, and the lamp moves to the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -15,8 +15,8 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site of the lattice cell gets a lamp in every cell if lamps shine in at least this share of its visible copies,
-/// weighted by photo pixels. [bench emission:perspective]
+/// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine in at least this share of its
+/// visible copies, weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
 /// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
 /// the lamps at the dark copies. [judged on 20 photos]
@@ -84,7 +84,7 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites in the order of their photo pixels, without sites that overlap an earlier one.
+/// The sites, in descending order of the photo pixels of their lamps, without sites that overlap an earlier one.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));

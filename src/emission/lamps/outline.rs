@@ -11,13 +11,13 @@ use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
 use glam::DVec2;
 
-/// Maximum distance in texels between the simplified outline and a crossing.
+/// Maximum distance in texels by which simplification may move an outline that runs between the centres of texels.
 const TOLERANCE: f64 = 0.1;
-/// Maximum distance in texels for an outline along the corners of texels, used if each texel is either fully lit or
-/// unlit. It turns a staircase into a line.
+/// Maximum distance in texels by which simplification may move an outline along the corners of texels, used if each
+/// texel is either fully lit or unlit. This distance turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through the
-/// crossings between texel centres would enclose only half of a single texel.
+/// The outline of a lamp of at most this width, in texels, runs along the corners of its texels. An outline between
+/// texel centres would enclose only half of a single texel.
 const NARROW: f64 = 2.0;
 /// Limits for sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`: maximum
 /// length of a blunt corner between two sides. `MAX_EXTENDED`: maximum length by which a side is extended. `CORNER`:
@@ -30,9 +30,10 @@ const CORNER: f64 = 0.5;
 /// texels.
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge along the walk gives a crossing,
-/// and the texel corner before it. Points are relative to the lamp's first column and row, so that they have the same
-/// bits wherever the lamp lies.
+/// The outer boundary of a lamp, walked with the lamp on the right. For each texel edge along the walk, `crossings`
+/// holds where the outline crosses between the centres of both texels, and `corners` holds the texel corner where the
+/// edge begins. Points are relative to the lamp's first column and row, so that they have the same bits wherever the
+/// lamp lies.
 pub struct Ring {
     crossings: Vec<DVec2>,
     corners: Vec<DVec2>,
@@ -43,7 +44,7 @@ pub struct Ring {
 
 impl Ring {
     /// Walks around a lamp. `is_in` tells whether a texel, given by column and row, belongs to the lamp. `coverage`
-    /// gives the share of a texel that is light: at least 0.5 for texels of the lamp, less for others, and `None`
+    /// gives the share of a texel that light covers: at least 0.5 for texels of the lamp, less for others, and `None`
     /// outside the texture, where the outline follows the border.
     pub fn walk(
         lamp: &Component,

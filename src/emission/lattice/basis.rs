@@ -4,10 +4,11 @@ use super::continuation::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of lamps that vote. [bench emission:seconds]
+/// Maximum number of lamps whose pairs are compared; of more lamps, an even selection is taken.
+/// [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
-/// A pair of lamps votes if their difference deviates from a lattice vector by less than this, as a share of the first
-/// period. [bench emission:patterns]
+/// A pair of lamps contributes to the fit if the vector between them differs from a lattice vector by less than this,
+/// as a share of the first period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 
 /// Aligns a period that nearly follows an image axis with that axis. A row of few lamps cannot distinguish a slant of
@@ -21,10 +22,10 @@ pub fn straight(period: DVec2) -> DVec2 {
     }
 }
 
-/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps votes
-/// if its difference is about `i a + j b` with integers `i` and `j`. Close pairs vote first, so that the steps between
-/// distant lamps are counted with an accurate basis. A vote is weighted by the area of the smaller lamp, because small
-/// fragments resemble each other everywhere.
+/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps
+/// contributes (votes) if its difference is about `i a + j b` with integers `i` and `j`. Close pairs come first, so
+/// that the steps between distant lamps are counted with an accurate basis. A vote is weighted by the area of the
+/// smaller lamp, because small fragments resemble each other everywhere.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();

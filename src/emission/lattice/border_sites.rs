@@ -1,8 +1,8 @@
-//! Excludes lattice sites that have no lamp (dark sites) and that the border of the exemplar cuts.
+//! Excludes dark sites at the border of the exemplar: lattice sites that the border cuts and that have no lamp.
 //!
-//! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Sites without a lamp
-//! that the border cuts must be left out too. If patches could show these dark sites but not the lit ones, the texture
-//! would lack lamps more often than the exemplar does.
+//! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Dark sites that the
+//! border cuts must be left out too. If patches could show these but not the lit ones, the texture would lack lamps
+//! more often than the exemplar does.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -10,10 +10,11 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Two lamps lie at one position of the cell if their offset deviates from a lattice vector by less than this, in
-/// periods.
+/// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
+/// than this, in periods.
 const SAME: f64 = 0.2;
-/// A position of the cell counts as a site of lamps if at least this share of its fully visible copies has a lamp.
+/// A position in the lattice cell counts as a site of lamps if at least this share of its fully visible copies has a
+/// lamp.
 const MADE_FOR: f64 = 0.5;
 
 /// Marks dark sites that the border cuts as unusable, so that patches do not show them.

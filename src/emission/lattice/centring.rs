@@ -5,7 +5,7 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of cells for which the lamps at the texture's border are counted.
+/// In a texture with more lattice cells than this, a lamp is centred without counting the lamps that the border cuts.
 const MAX_CELLS: f64 = 1e6;
 
 /// A bounding box of lights.
@@ -84,7 +84,7 @@ fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (u
     let (mut cut, mut room) = (0, f64::INFINITY);
     for lamp in motif {
         let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-        // Find the cells that move the lamp close to the texture.
+        // Find the lattice cells that move the lamp close to the texture.
         let half = (lamp.high - lamp.low) / 2.0;
         let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
         let cells = corners.map(|c| inverse * (c - lamp.centre()));

@@ -1,4 +1,5 @@
-//! How the pattern of a texture continues beyond its exemplar: as a lattice, as a row, by repetition, or freely.
+//! How the pattern of a texture continues beyond its exemplar: on a lattice, in a row, by repetition, or by patches
+//! without a lattice.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
@@ -6,7 +7,7 @@ use glam::{DMat2, DVec2};
 /// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
-/// The law by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.
+/// How a texture continues beyond its exemplar. Vectors are in unwarped pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Continuation {
     /// No continuation: the texture is a part of the exemplar.

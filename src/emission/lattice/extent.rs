@@ -6,14 +6,14 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Minimum gap between the lamps of adjacent cells, in unwarped pixels. [convention]
+/// Minimum gap between the lamps of adjacent copies of the exemplar, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
 /// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Lamps count as one group if the free space around them, both sides together, exceeds this many times the longest
-/// distance from a lamp to its nearest neighbour. [judged on 5 photos]
+/// Lamps count as one isolated group if, along both axes, the free space on both sides of them together exceeds this
+/// many times the longest distance from a lamp to its nearest neighbour. [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
 /// Width and height of the usable box of the exemplar, in unwarped pixels.
@@ -33,9 +33,9 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The sides of the cell by which an exemplar repeats as a whole. They are chosen so that the texture has the lit
-/// share of the shown part of the plane. The cell is therefore smaller than the exemplar's extent if the extent
-/// includes corners that the photo does not show, or cut lamps that are left out.
+/// The periods along x and y with which an exemplar repeats as a whole. They are chosen so that the texture has the
+/// lit share of the part of the plane that the photo shows. They are therefore shorter than the exemplar's extent if
+/// the extent includes corners that the photo does not show, or cut lamps that are left out.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
@@ -44,7 +44,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     if share > 1.0 - 1e-6 {
         return extent;
     }
-    // Keep a gap between the lamps of adjacent cells.
+    // Keep a gap between the lamps of adjacent repetitions.
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
         (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
@@ -94,8 +94,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether the photo shows the positions of the next lamp beyond both ends of a row. The shown part of the plane need
-/// not be a rectangle. Without a photo, all positions count as shown.
+/// Whether the photo shows the positions of the next lamp beyond both ends of a row. The part of the plane that the
+/// photo shows need not be a rectangle. Without a photo, all positions count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

@@ -4,9 +4,10 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
-/// Maximum relative difference between two lamps of one kind, in each side. [judged on 5 photos]
+/// Two lamps are of one kind if each side differs by at most this share. [judged on 5 photos]
 const KIND: f64 = 0.33;
-/// Maximum share of the lamps that a period may move onto lamps of another kind. [judged on 5 photos]
+/// A shift is not a period if, among the lamps that it moves onto lamps, more than this share land on a lamp of
+/// another kind. [judged on 5 photos]
 const MAX_UNLIKE: f64 = 0.4;
 /// Maximum number of lamps that are tested. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;

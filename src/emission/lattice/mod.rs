@@ -2,9 +2,9 @@
 //!
 //! If a shift maps the mask nearly exactly onto itself, the lamps repeat with that shift. The two shortest such shifts
 //! form the lattice, which may be rectangular, hexagonal or skewed. Missing lamps lower the correlation only by their
-//! share. Every patch keeps the phase of the lattice. If there is only one such shift, or only a handful of lamps, the
-//! extent of the exemplar serves as the missing period, because the exemplar does not show how its design continues
-//! beside itself. Many lamps without any such shift are placed without a lattice.
+//! share. On a lattice, patches are shifted by lattice vectors only. If there is only one such shift, or only a
+//! handful of lamps, the extent of the exemplar serves as the missing period, because the exemplar does not show how
+//! its design continues beside itself. Many lamps without any such shift are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -25,8 +25,8 @@ use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Minimum correlation of a period, relative to the highest correlation: lower ones match lamps of different kinds.
-/// [bench emission:patterns]
+/// Minimum correlation of a period, relative to the highest correlation. Shifts with a lower correlation move lamps
+/// onto lamps of another kind. [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
 /// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
@@ -36,9 +36,9 @@ const SIDE: usize = 160;
 /// [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
-/// Finds how the exemplar's lights continue (the law: lattice, row, repetition or none) from their autocorrelation.
-/// Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be a period
-/// if its correlation is at least `min_regularity`; at 1 there are no periods.
+/// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
+/// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
+/// a period if its correlation is at least `min_regularity`; at 1 there are no periods.
 pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
     if min_regularity >= 1.0 {
         return (Continuation::Free, 0.0);
@@ -80,7 +80,7 @@ pub struct Correlated {
 }
 
 impl Correlated {
-    /// Correlates the lights in those working pixels for which `is_within` returns true.
+    /// Correlates the lights in the pixels of the reduced exemplar for which `is_within` returns true.
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);

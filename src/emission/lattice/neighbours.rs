@@ -1,8 +1,8 @@
 //! Finds periods along the axes from the distances between neighbouring lamps.
 //!
 //! Autocorrelation needs lamps of equal shape at equal distances. The distances between neighbours give the periods of
-//! lamps in rows and columns even if the distant lamps are blurred. If wide and narrow bars alternate, these distances
-//! alternate too, and the distance to the second neighbour gives the period.
+//! lamps in rows and columns even if the distant lamps are blurred. If wide and narrow gaps between lamps alternate,
+//! these distances alternate too, and the distance to the second neighbour gives the period.
 
 use crate::emission::exemplar::evidence::Evidence;
 use crate::geometry::robust::weighted_median;

@@ -3,8 +3,8 @@
 use super::correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Number of standard errors that are subtracted from the highest correlation. As the maximum over many shifts, some
-/// of which compare few lamps, it is too high by chance.
+/// Number of standard errors that are subtracted from the highest correlation, because the maximum over many shifts,
+/// some of which compare few lamps, is too high by chance.
 const CHANCE: f32 = 2.0;
 
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.

@@ -8,10 +8,10 @@
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Weight of one surplus or missing lamp, as a squared difference for each of its pixels. On a lattice, the weight
-/// equals the squared difference in colour, confidence and distances that a lamp in the wrong position causes. Without
-/// a lattice, the weight must stay below a third: a larger weight would select patches that bring the right amount of
-/// light but violate the distances between lamps.
+/// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp. On a
+/// lattice, the weight equals the squared difference in colour, confidence and distances that a lamp in the wrong
+/// position causes. Without a lattice, the weight must stay below a third: a larger weight would select patches that
+/// bring the right amount of light but violate the distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 

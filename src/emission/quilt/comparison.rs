@@ -11,14 +11,15 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches are equally good if their error is within this factor of the least error (the original paper allows 10 %),
-/// or within this difference from it.
+/// Patches are equally good if their error is at most the first value times the least error (the original paper allows
+/// 10 %), plus the second value or, on a lattice, the larger `Comparison::slack`.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches compete by their error if they fill at least this share of the pixels that the best-covering patch fills.
+/// Patches are compared by their error only if they fill at least this share of the number of pixels that the patch
+/// with the best coverage fills.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If there are more patches than this, a first comparison uses every `ROW_STEP`-th row only, and the `FINALISTS` best
@@ -31,8 +32,8 @@ const ROW_STEP: usize = 4;
 const TASK: usize = 1 << 16;
 
 /// A shift with its score. `fills`: number of empty pixels of a block that it fills. `excess`: light in these pixels
-/// above their share, in pixels. `error`: mean squared difference from the known pixels, plus the penalty for the
-/// excess.
+/// above the target share, as a number of lit pixels. `error`: mean squared difference from the known pixels, plus the
+/// penalty for the excess.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -49,10 +50,10 @@ pub struct Comparison<'a> {
     /// Summed-area tables of the usable pixels, and of their light.
     pub usable: AreaSums,
     light: AreaSums,
-    /// Lit share of the shown part of the exemplar.
+    /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// Difference in error below which two shifts are equally good.
+    /// Absolute difference in error that is tolerated in addition to the factor in [`TOLERANCE`].
     slack: f32,
 }
 
@@ -130,8 +131,8 @@ impl<'a> Comparison<'a> {
     }
 
     /// Scores how well shifts agree with the known pixels. Only shifts are scored that fill at least `least` empty
-    /// pixels or, without `least`, nearly as many as the best shift. A shift that is clearly worse than the best one
-    /// so far, or than an error of `limit`, gets an infinite error.
+    /// pixels or, without `least`, nearly as many as the best shift. A shift whose error is clearly above the least
+    /// error so far, or above `limit`, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,
@@ -212,9 +213,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, the light that it adds to the empty pixels of a block above their share, in pixels. On a
-    /// lattice, the share is the mean over all given shifts, because lamps always lie at the same positions of a
-    /// block; otherwise it is the lit share of the exemplar.
+    /// For each shift, the light that it adds to the empty pixels of a block above a target, as a number of lit
+    /// pixels. On a lattice, the target is the mean over all given shifts, because lamps always lie at the same
+    /// positions of a block; otherwise it follows from the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));

@@ -1,4 +1,5 @@
-//! The pixel features by which patches are compared: weighted colour and metadata ("Lighting Style Transfer", §6).
+//! The pixel features by which patches are compared: weighted colour and metadata (confidence, x and y distance to the
+//! nearest light; "Lighting Style Transfer", §6).
 
 use crate::emission::exemplar::working::Working;
 use crate::image::Image;
@@ -14,8 +15,8 @@ pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
     pub metadata_weight: f32,
-    /// Distance to a light at which the distances in the metadata saturate at 1, and mean area of a lamp; both in
-    /// working pixels.
+    /// `cap`: distance to a light at which the x and y distances in the metadata saturate at 1. `lamp`: mean area of a
+    /// lamp. Both in pixels at the reduced size of the synthesis.
     pub cap: f64,
     pub lamp: f64,
     /// Number of candidate shifts per patch if there is no lattice.
@@ -31,21 +32,22 @@ impl Guide<'_> {
             .collect()
     }
 
-    /// The factors of the colour channels and of the metadata channels in a feature.
+    /// The factors of the colour channels and of the metadata channels (confidence, distances) in a feature.
     fn scales(&self) -> (f32, f32) {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// The period of each metadata channel; values that differ by a period are equivalent. Distances wrap around: one
-    /// cap to the left of a light is equivalent to one cap to its right.
+    /// The period of each metadata channel (confidence, x and y distance to the nearest light); values that differ by
+    /// a period are equivalent. Distances wrap around: a distance of `cap` to the left of a light is equivalent to a
+    /// distance of `cap` to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-/// Sum of squared differences between two rows of pixels over all channels; metadata wrap around with the periods
-/// `turns`.
+/// Sum of squared differences between two rows of pixels, over colour and metadata (confidence, x and y distance to
+/// the nearest light). Metadata channels are periodic, with the periods `turns`.
 pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());

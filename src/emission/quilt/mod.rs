@@ -1,5 +1,5 @@
-//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata, the confidence and the
-//! distances to the nearest light ("Lighting Style Transfer", §6).
+//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata (the confidence, and the x and y
+//! distance to the nearest light; "Lighting Style Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
 //! those with the best agreement with the pixels already placed are kept, and one of them is chosen at random. Pixels
@@ -230,7 +230,7 @@ impl Quilt<'_> {
         let low = (point(rect.x, rect.y) - point(self.bounds[2], self.bounds[3])) * pitch;
         let high = (point(rect.x + rect.w, rect.y + rect.h) - point(self.bounds[0], self.bounds[1])) * pitch;
 
-        // Find the range of lattice cells for the box of such shifts.
+        // Find the range of lattice cells that contains these shifts.
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         let corners =
             [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - self.offset));

@@ -1,4 +1,4 @@
-//! The patch map: for each pixel of the texture, the shift that leads to the pixel of the exemplar it shows.
+//! The patch map stores which pixel of the exemplar each pixel of the texture shows, as a shift.
 
 use crate::emission::exemplar::working::Working;
 use glam::DVec2;
@@ -19,8 +19,8 @@ pub struct Shift {
     pub exact: DVec2,
 }
 
-/// For each working pixel of the texture, the shift by which it shows the exemplar. Patches are wide, so a row is
-/// stored as runs of equal labels.
+/// For each pixel of the texture at the reduced size of the synthesis (working pixel), the shift that leads to the
+/// pixel of the exemplar that it shows. Patches are wide, so a row is stored as runs of equal labels.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,

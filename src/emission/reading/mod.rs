@@ -1,10 +1,10 @@
-//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a row,
-//! repetition of the whole exemplar, or none.
+//! Analyses an exemplar: finds its lamps, and how their pattern continues beyond it (its law): on a lattice, in a row,
+//! by repetition of the whole exemplar, or without a lattice.
 //!
 //! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
-//! near ones. So laws are proposed from the whole exemplar and from its sharper parts, with strict and with loose
-//! thresholds. Each law is scored by how well it predicts the lamps of the whole photo ([`sites`]). The law that the
-//! settings ask for is kept unless another one scores clearly higher.
+//! near ones. So continuations (laws) are proposed from the whole exemplar and from its sharper parts, with strict and
+//! with loose thresholds. Each is scored by how well it predicts the lamps of the whole photo ([`sites`]). The one
+//! found in the whole exemplar at the threshold `min_regularity` is kept unless another one scores clearly higher.
 
 pub mod sites;
 
@@ -19,36 +19,36 @@ use crate::job::Job;
 use glam::DVec2;
 use sites::Sites;
 
-/// Laws are also proposed from parts of the exemplar with at most these magnifications, relative to the least
-/// magnified pixel. [judged on 20 photos]
+/// Lattices and rows are also proposed from parts of the exemplar with at most these magnifications, relative to the
+/// least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Limits for shifts that are proposed as periods: their minimum correlation, their minimum correlation relative to
-/// the best shift, and their maximum number. [judged on 20 photos]
+/// Limits for shifts that are proposed as periods: `PROPOSED` is the minimum correlation, `PROPOSED_RELATIVE` the
+/// minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of shifts. [judged on 20 photos]
 const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Minimum score of the law (lattice or row) that the settings ask for. Below it, the pattern counts as having no
-/// period. [judged on 20 photos]
+/// The lattice or row found in the whole exemplar at the threshold `min_regularity` is dropped if its score is below
+/// this; the pattern then counts as having no period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another law (lattice or row) replaces the one that the settings ask for only if its score is higher by more than
-/// this. [judged on 20 photos]
+/// Another lattice or row replaces the one found in the whole exemplar at the threshold `min_regularity` only if its
+/// score is higher by more than this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
-/// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
-/// through the photo. [judged on 20 photos]
+/// Different continuations are compared only if lamps have at least this share of the lights' photo pixels; the rest
+/// are lights that run through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
 /// Two lattices or rows count as equal if the relative difference between their periods is at most this.
 /// [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// The score of the chosen law of continuation (lattice, row, repetition or none), and the best alternative.
+/// The score of the chosen continuation (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps for a
-    /// comparison.
+    /// How well the continuation predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
+    /// for a comparison.
     pub score: f64,
-    /// The best alternative law, and its score; the score is 0 if there is no alternative.
+    /// The best alternative continuation, and its score; the score is 0 if there is no alternative.
     pub runner_up: Continuation,
     pub runner_up_score: f64,
 }
@@ -59,14 +59,15 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice if no laws were compared: the score is NaN, and the runner-up is the chosen law itself with score 0.
+    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the chosen continuation
+    /// itself with score 0.
     pub fn only(continuation: Continuation) -> Self {
         Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
     }
 }
 
-/// The analysis of an exemplar: its lamps, and the law by which their pattern continues (lattice, row, repetition or
-/// none).
+/// The analysis of an exemplar: its lamps, and how their pattern continues (on a lattice, in a row, by repetition or
+/// without a period).
 pub struct Reading {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
@@ -79,7 +80,7 @@ pub struct Reading {
     max_magnification: f64,
 }
 
-/// A proposed law of continuation (lattice, row, …), with its regularity and its score.
+/// A proposed continuation (lattice, row, …), with its regularity and its score.
 #[derive(Clone, Copy)]
 struct Proposal {
     continuation: Continuation,
@@ -88,7 +89,7 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// A pattern without a period: no lamp is predicted from another.
+    /// Proposes that the pattern has no period: no lamp is predicted from another.
     fn lawless(continuation: Continuation) -> Self {
         Self { continuation, regularity: 0.0, score: LAWLESS }
     }
@@ -101,7 +102,7 @@ impl Reading {
         Self::of(exemplar, input, params, job)
     }
 
-    /// Finds the law of continuation for an exemplar that has been built already.
+    /// Analyses an exemplar that has been built already: finds how its pattern continues.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
         let min_regularity = params.min_regularity;
@@ -138,7 +139,7 @@ impl Reading {
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the law of continuation that the settings ask for with other laws, and chooses one.
+    /// Compares the continuation found in the whole exemplar with other proposals, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = exemplar.evidence(Role::is_whole);
@@ -165,13 +166,13 @@ impl Reading {
         proposals.retain(|p| p.score.is_finite());
         let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
 
-        // Find the law with the highest score, the first one among equals. It replaces the law that the settings ask
-        // for only if its score is clearly higher.
+        // Find the proposal with the highest score, the first one among equals. It replaces the continuation found in
+        // the whole exemplar only if its score is clearly higher.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the law
-        // that the settings ask for.
+        // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the
+        // continuation found in the whole exemplar.
         let panes = lattice
             .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
         let chosen = match panes {
@@ -192,9 +193,9 @@ impl Reading {
         Ok(())
     }
 
-    /// Proposes laws from the whole exemplar and from its sharper parts: the law at threshold `min_regularity`, and
-    /// rows and lattices at looser thresholds. A luminous ceiling also gets lattices from the distances between
-    /// neighbouring panes.
+    /// Proposes continuations from the whole exemplar and from its sharper parts: one at the threshold
+    /// `min_regularity`, and rows and lattices at looser thresholds. A luminous ceiling also gets lattices from the
+    /// distances between neighbouring panes.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -229,7 +230,8 @@ impl Reading {
         Ok(proposals)
     }
 
-    /// Chooses the best law of the kind that the settings ask for. Errors: there is none (`Degenerate`).
+    /// Chooses the best lattice, or the best row, whichever the settings ask for. Errors: there is none
+    /// (`Degenerate`).
     fn fix(&mut self, law: Law, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Continuation| match law {
             Law::Row => matches!(c, Continuation::Row(_)),
@@ -257,8 +259,8 @@ impl Reading {
     }
 }
 
-/// Score of a law of continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern
-/// does not change along one of the periods: only the autocorrelation can judge a law with such a period.
+/// Score of a continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern does not
+/// change along one of the periods: only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
@@ -269,7 +271,7 @@ fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: C
     }
 }
 
-/// Whether two laws are equal except for a small difference between their periods.
+/// Whether two continuations are equal except for a small difference between their periods.
 fn is_same(a: Continuation, b: Continuation) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());

@@ -1,10 +1,10 @@
 //! The sites of a lattice: the positions within a cell at which lamps lie, and how well the lattice predicts the
 //! lamps.
 //!
-//! A law is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice lead to it
-//! from another lamp of similar size. A false prediction is a position in full view to which the lattice leads, but
-//! which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant part of a
-//! photo has little weight. A lattice that predicts no lamp from another scores 0.
+//! A lattice or row is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice
+//! lead to it from another lamp of similar size. A false prediction is a position in full view to which the lattice
+//! leads, but which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant
+//! part of a photo has little weight. A lattice that predicts no lamp from another scores 0.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::evidence::Evidence;
@@ -13,11 +13,11 @@ use crate::emission::lattice::cells;
 use crate::emission::lattice::continuation::Continuation;
 use glam::{DMat2, DVec2};
 
-/// Maximum distance between lamps of one site after whole steps of the lattice, as a share of the shorter period. The
-/// lamps' blur is added to it. [judged on 20 photos]
+/// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
+/// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
-/// A position without marked light shines nevertheless if its contrast with the surroundings is at least the share
-/// `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured.
+/// A position where the light mask shows no lamp counts as shining if its contrast with the surroundings is at least
+/// the share `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured.
 /// [judged on 20 photos]
 const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
@@ -36,8 +36,8 @@ pub struct Site {
     pub lamps: Vec<Evidence>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
-    /// Area in photo pixels of the positions in full view where no light is marked. `unmarked` counts positions that
-    /// shine nevertheless, `missing` counts the others.
+    /// Area in photo pixels of the predicted positions in full view where the light mask shows no lamp. `unmarked`
+    /// counts positions that shine nevertheless, `missing` counts the others.
     pub unmarked: f64,
     pub missing: f64,
     /// Number of positions counted in `missing`.
@@ -62,8 +62,8 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` for other laws, and if the pattern does not change
-    /// along a period.
+    /// Groups the lamps into sites of a lattice or a row. `None` for a continuation without a period, and if the
+    /// pattern does not change along a period.
     pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
         let (basis, is_row) = match law {
             Continuation::Lattice(basis) => (basis, false),
@@ -115,7 +115,7 @@ impl Sites {
     }
 
     /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Measures the positions in
-    /// full view where the lattice predicts a lamp of this site but no light is marked.
+    /// full view where the lattice predicts a lamp of this site but the light mask shows none.
     fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
         let Site { lamps, .. } = &self.list[k];
         let first = lamps[0];
@@ -127,8 +127,9 @@ impl Sites {
         (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
-    /// Tests the predicted positions in full view where no light is marked. Returns three values: photo pixels of the
-    /// positions that shine like the site's lamps, photo pixels of the others, and the number of the others.
+    /// Tests the predicted positions in full view where the light mask shows no lamp. Returns three values: photo
+    /// pixels of the positions that shine like the site's lamps, photo pixels of the others, and the number of the
+    /// others.
     fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
@@ -166,10 +167,10 @@ impl Sites {
         (unmarked, missing, dark)
     }
 
-    /// How well the lattice predicts the lamps, in [0, 1]: a product of two shares. The first share is that of
-    /// correctly predicted lamps among all seen or predicted lamps, by photo pixels. The second is the share of lamps
-    /// that are not the first lamp of their site. Lights that the border cuts, `parts`, count as predicted if a site
-    /// leads to them.
+    /// How well the lattice predicts the lamps, in [0, 1]: a product of two shares. The first is the share of
+    /// correctly predicted lamps among all lamps that are seen or predicted, weighted by photo pixels. The second is
+    /// the share of lamps that are not the first lamp of their site. Lights that the border cuts, `parts`, count as
+    /// predicted if a site leads to them.
     pub fn score(&self, parts: &[Evidence]) -> f64 {
         let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {

@@ -3,8 +3,8 @@
 
 use super::*;
 
-/// An exemplar of square lamps with sides of 14 pixels, or of round lamps with a radius of 11, with period 40 from
-/// `start`.
+/// An exemplar of square lamps with sides of 14 pixels, or of round lamps with a radius of 11. The period is 40, and
+/// the first period begins at `start`.
 fn exemplar(is_round: bool, start: f64) -> Design {
     Design::new(280, 280, move |x, y| {
         let (u, v) = ((x - start).rem_euclid(40.0) - 20.0, (y - start).rem_euclid(40.0) - 20.0);

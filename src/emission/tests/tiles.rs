@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
-    // Lights that run out of the exemplar are copied patch by patch. Large lamps in fine texels have crumbs at their
-    // edges.
+    // The visible part of a light that the border cuts is copied as one piece. Without `whole_lamps`, lights are
+    // copied patch by patch. Large lamps in fine texels have crumbs at their edges.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [
@@ -126,7 +126,7 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
     let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
     let shown = areas(&mut shown.iter().map(|l| l.area));
     assert!(listed.len() == shown.len() && listed.iter().zip(&shown).all(|(a, b)| (a - b).abs() < 1e-9));
-    // The confidence of edge pixels is uncertain by a tenth, which changes the areas slightly.
+    // The confidence of edge pixels has noise of up to a tenth, which changes the areas slightly.
     assert!((listed[0] / 64.0 - 1.0).abs() < 0.02 && (listed[listed.len() - 1] / 324.0 - 1.0).abs() < 0.01);
     assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
 }

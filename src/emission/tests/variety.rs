@@ -43,9 +43,9 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     assert!(shown >= 60, "{shown} of 100 are shown");
     assert!(times.iter().max().unwrap() * 15 < sources.len(), "{times:?}");
 
-    // Mean and variation of the brightness must agree. Patches bring groups of lamps, so a texture is a sample of no
-    // more lamps than the exemplar has. Allow three standard errors of the mean, and of the deviation, whose standard
-    // error is half as large for uniform levels.
+    // Mean and variation of the brightness must agree. Patches copy groups of lamps, so the statistics are no more
+    // precise than those of a sample of as many lamps as the exemplar has. Allow three standard errors of the mean,
+    // and of the deviation, whose standard error is half as large for uniform levels.
     let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
     let (expected, exact) = deviation(&known);
     let standard = exact / (known.len() as f64).sqrt();

@@ -42,8 +42,8 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// The least brightness of the lamps is determined without this share of the strokes' pixels, the darkest ones:
-/// hurried strokes run over the edges of lamps. [judged on 28 photos]
+/// This share of the strokes' pixels, the darkest ones, is ignored when the least brightness of the lamps is
+/// determined, because hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
@@ -120,7 +120,8 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     Ok(Segmentation { is_proposed, ..found })
 }
 
-/// Keeps the nodes that are brighter than the ring around them; the other nodes are noise on a surface.
+/// Keeps the nodes of the component tree that are brighter than the ring of pixels around them; the other nodes are
+/// noise on a surface.
 fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     let nobody = try_vec(search.tree.node_of.len(), false)?;
     let mut kept = Vec::new();

@@ -1,5 +1,5 @@
-//! Finds the regions under the strokes: for each stroke, the disjoint tree nodes with the sharpest contours that cover
-//! the stroke.
+//! Finds the regions under the strokes: for each stroke, the disjoint nodes of the component tree that cover the
+//! stroke and have the sharpest contours.
 
 use super::regions::Regions;
 use super::tree::Tree;
@@ -13,7 +13,7 @@ pub const MIN_AREA: f64 = 6.0;
 /// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
 /// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// A region this many times as long as its stroke gets half the gain. [judged on 28 photos]
+/// The gain (score) of a region this many times as long as its stroke is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
 /// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
 /// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.
@@ -35,7 +35,8 @@ pub struct Paint<'a> {
     pub negatives: &'a [f64],
 }
 
-/// Finds the nodes under the positive strokes, in ascending order, without nodes inside other found nodes.
+/// Finds the nodes of the component tree under the positive strokes, in ascending order, without nodes that lie inside
+/// other found nodes.
 pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     let mut is_chosen = try_vec(tree.len(), false)?;
     let mut covered = try_vec(tree.len(), 0f64)?;

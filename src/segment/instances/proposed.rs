@@ -16,15 +16,16 @@ const BRIGHTEST: f64 = 0.002;
 /// Minimum mean L* of a lamp, on a scale where the plane's brightest pixels have an L* of 100.
 /// [bench photos:nostrokes]
 const MIN_LIGHTNESS: f64 = 80.0;
-/// Minimum contrast between a lamp and the ring around it, in L*. [bench photos:nostrokes]
+/// Minimum contrast between a lamp and the ring of pixels around it, in L*. [bench photos:nostrokes]
 const MIN_RING: f64 = 10.0;
 /// Minimum solidity of a lamp (see `Regions::solidity`). [bench photos:nostrokes]
 const MIN_SOLIDITY: f64 = 0.75;
 /// Maximum share of the plane that a lamp may cover. [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
-/// Minimum share of the ring around a lamp that must lie on the plane. [bench photos:nostrokes]
+/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
-/// Minimum worth of a lamp, relative to the lamp of highest worth. [bench photos:nostrokes]
+/// Minimum worth of a lamp (contrast along its contour times a power of its area), relative to the lamp of highest
+/// worth. [bench photos:nostrokes]
 const NEARLY_BEST: f64 = 0.4;
 /// Exponent of a region's area in its worth. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;

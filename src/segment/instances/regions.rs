@@ -87,8 +87,8 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node, measured on the surface of the room: each pixel is weighted by the area that it
-/// shows.
+/// Sums over the pixels of each node of the component tree, measured on the surface of the room: each pixel is
+/// weighted by the area that it shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
     /// Number of pixels that show the face itself, not its extension beyond the edges.
@@ -135,8 +135,8 @@ impl OnSurface {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in a row parallel to a side of the face: their centres, measured across the row, differ
-    /// by at most `share` times the width of the wider node.
+    /// Whether two nodes lie in a row parallel to a side of the face of the room: their centres, measured across the
+    /// row, differ by at most `share` times the width of the wider node.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);
@@ -169,7 +169,7 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
 }
 
-/// Sums over the pixels of each node, and over the pixel edges along its contour.
+/// Sums over the pixels of each node of the component tree, and over the pixel edges along its contour.
 pub struct Regions {
     /// Area of each node in pixels.
     pub area: Vec<f64>,

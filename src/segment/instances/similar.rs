@@ -33,18 +33,18 @@ const LARGER: f64 = 1.6;
 /// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
 /// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind, if it reaches
-/// this share of their minimum area, and if this share of the ring around it lies on the plane.
-/// [bench photos:tune, photos:real]
+/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind. Its area must
+/// be at least the share `SMALLER_KIND` of their minimum area, and the share of the ring around it that lies on the
+/// plane at least `SURELY_ON_PLANE`. [bench photos:tune, photos:real]
 const SMALLER_KIND: f64 = 0.25;
 const SURELY_ON_PLANE: f64 = 0.9;
-/// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the lamps under the
-/// strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant
-/// lamps along the line of sight. [bench photos:tune]
+/// The aspect (length over width) of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of
+/// the lamps under the strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and
+/// lengthens distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Area and shape on the plane are taken from lamps under the strokes with at least this share of the pixels of the
-/// largest one. [judged on 44 photos]
+/// The limits of area and shape on the plane are derived from those lamps under the strokes that have at least this
+/// share of the pixels of the largest one. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
 /// Maximum breadth in pixels, relative to the broadest lamp under a stroke, if the room has no box layout.
 /// [judged on 28 photos]
@@ -52,18 +52,19 @@ const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Minimum share of the ring around a lamp that must lie on the plane. [judged on 28 photos]
+/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// A region off the plane counts as a lamp only if the ratio of its area to that of a known lamp, and the ratio of the
-/// aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
+/// A region off the plane counts as a lamp only if the ratio of its area to that of a lamp under a stroke or on the
+/// plane, and the ratio of their aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
 /// [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Maximum aspect of a round lamp. Round lamps are often scattered, other lamps lie in rows. [bench photos:tune]
+/// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
+/// [bench photos:tune]
 const ROUND: f64 = 1.25;
 /// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
 /// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
@@ -71,7 +72,8 @@ const EQUAL_RING: f64 = 8.0;
 /// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
 /// tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Minimum likeness of a doubtful region; a lamp must have a likeness of 1. [judged on 28 photos]
+/// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of 1.
+/// [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
 /// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
@@ -122,7 +124,8 @@ struct Model {
 }
 
 impl Model {
-    /// Whether a ring has about the colour of the ring around one of the lamps under the strokes.
+    /// Whether the ring of pixels around a region has about the colour of the ring around one of the lamps under the
+    /// strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
@@ -194,7 +197,8 @@ impl Search<'_> {
             }
         }
 
-        // A single small bright thing may be anything: lamps of a smaller kind are at least two of equal size and shape.
+        // A single small bright thing may be anything: lamps of a smaller kind count only if there are at least two of
+        // equal size and shape.
         for &node in &smaller {
             if self.like_ones(smaller.iter().filter(|other| **other != node), node as usize).next().is_some() {
                 try_push(&mut similar.found, node)?;
@@ -203,8 +207,8 @@ impl Search<'_> {
         Ok(similar)
     }
 
-    /// Returns the nodes that may be lamps, each with its likeness, the sharpest contours first. Nodes that contain a
-    /// painted node or lie inside one are left out.
+    /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
+    /// strokes, the sharpest contours first. Nodes that contain a lamp under a stroke or lie inside one are left out.
     fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;
@@ -264,8 +268,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the plane if the
-    /// room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
+    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the
+    /// plane if the room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
     fn size(&self, model: &Model, node: usize) -> Size {
         let regions = self.regions;
         let area = regions.area[node];

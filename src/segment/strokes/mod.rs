@@ -33,7 +33,7 @@ impl Stroke {
         let mut pixels = Vec::new();
         let ends = points.iter().zip(points.iter().skip(1).chain(points.last()));
         for (&a, &b) in ends {
-            // Test all pixels of the piece's bounding box, clipped to the image.
+            // Test all pixels of the segment's bounding box, clipped to the image.
             let clip = |v: f64, size: usize| v.clamp(0.0, size as f64) as usize;
             let (low, high) = (a.min(b) - radius, a.max(b) + radius);
             for y in clip(low.y.floor(), height)..clip(high.y.ceil(), height) {
@@ -42,7 +42,7 @@ impl Stroke {
                     let along = b - a;
                     let t = if along == DVec2::ZERO { 0.0 } else { (p - a).dot(along) / along.length_squared() };
                     if p.distance(a + along * t.clamp(0.0, 1.0)) <= radius {
-                        // Pieces may overlap completely, so remove duplicates before the list grows.
+                        // Segments may overlap completely, so remove duplicates before the list grows.
                         if pixels.len() == pixels.capacity() {
                             pixels.sort_unstable();
                             pixels.dedup();
