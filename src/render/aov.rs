@@ -89,8 +89,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f64 values per pixel in which a rendered part accumulates this attribute (the lossless
-    /// sums, see [`Surfaces::add_to`]).
+    /// Returns the number of f64 values per pixel (the lossless sums, see [`Surfaces::add_to`]) in which a render in
+    /// parts (`super::parts`) accumulates this attribute.
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -98,7 +98,7 @@ impl Aov {
         }
     }
 
-    /// Computes the totals of a film's pixel from the lossless sums of the pixel.
+    /// Converts the lossless f64 sums of a pixel to the f32 totals that a film stores.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -115,7 +115,7 @@ impl Aov {
     }
 
     /// Writes the value of a pixel to `out`, computed from the pixel's totals, number of hits and number of samples.
-    /// Positions are relative to the centre of the world.
+    /// Positions stay relative to the origin of world coordinates ([`super::facet::centre`]).
     pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
@@ -171,7 +171,7 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to the lossless f64 sums of a rendered part. Vote counts are exact for up to
+    /// Adds these sums to the lossless f64 sums of the pixel in a render in parts. Vote counts are exact for up to
     /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {

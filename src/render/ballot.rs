@@ -5,7 +5,8 @@
 //! merging. If it shows more, votes for rare candidates cancel votes for the others, but an index with a majority
 //! still wins.
 
-/// Largest number of different candidates that one ballot can hold. [origin not recorded]
+/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. [origin
+/// not recorded]
 const CANDIDATES: usize = 4;
 /// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;

@@ -334,7 +334,7 @@ impl<'a> Layers<'a> {
 /// The directional albedo of a rough dielectric top layer, looked up in the albedo table.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
-    /// Factors of the two values of a table entry (scale and bias): `dielectric_f0` and `f90`.
+    /// Factors by which the two values of a table entry, scale and bias, are multiplied: `dielectric_f0` and `f90`.
     weights: Vec2,
 }
 

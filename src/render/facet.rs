@@ -35,8 +35,9 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
 /// if its distance exceeds this multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// To locate the detail of a large scene, the corners of at least this many triangles are used, and of fewer than
-/// twice as many. The number is small, so that the list of corners fits in the memory reserve. [convention]
+/// The detail of a scene with more triangles than this is located from a regular selection of the triangles: at least
+/// this many, and fewer than twice as many. The number is small, so that the list of their corners fits in the memory
+/// reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -119,10 +120,10 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// origin, grid points are multiples of the f32 spacing there, so subtracting a grid point from the coordinates is
 /// exact. A scene nearer to the origin is not translated, because a translation would hardly gain precision.
 ///
-/// A stray object at the origin of a national grid makes the scene as large as the distance from that origin to the
-/// building. Therefore, if most triangles lie close together and far from the origin, the centre is the median
-/// position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the coordinates of
-/// the other triangles are rounded, to the f32 spacing that the building had in its file.
+/// A stray object at the origin of a country's map coordinates makes the scene as large as the distance from that
+/// origin to the building. Therefore, if most triangles lie close together and far from the origin, the centre is the
+/// median position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the
+/// coordinates of the other triangles are rounded, to the f32 spacing that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {

@@ -82,7 +82,7 @@ pub struct Layers<'a> {
     eye: Vec3,
     forward: Vec3,
     pub(super) automaton: Automaton,
-    /// Length of a pixel's totals in numbers.
+    /// How many totals are stored per pixel.
     width: usize,
     /// Totals of each tile. Only one worker at a time processes a tile, so no lock ever waits.
     tiles: Vec<Mutex<Vec<f32>>>,
@@ -226,7 +226,7 @@ pub struct Recorder<'a> {
     /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Light of the pixel's paths: one sum for each list in [`Automaton::lists`].
+    /// Sums of the light of the pixel's paths, one for each list of expressions in [`Automaton::lists`].
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
@@ -255,7 +255,7 @@ impl Recorder<'_> {
         let (colours, surfaces) =
             totals[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        // Add the sum of each list to the totals of all expressions on the list.
+        // Add the sum of each list of expressions to the totals of the expressions on it.
         let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();

@@ -1,9 +1,9 @@
 //! Divides the part of an emission texture that a triangle covers into tiles of 8 × 8 texels. Each tile has a
 //! cumulative distribution of the emission over its texels.
 //!
-//! The tile grid starts at the first texel of the triangle's bounding box and continues beyond the texture as the
-//! texture wraps. At the edges of the triangle, only the covered part of a texel counts. The table of a tile takes
-//! four cache lines; dark tiles are not stored.
+//! The tile grid starts at the first texel of the triangle's bounding box. Tiles beyond the texture read the texels
+//! that the texture's wrap mode puts there. At the edges of the triangle, only the covered part of a texel counts. The
+//! table of a tile takes four cache lines; dark tiles are not stored.
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};

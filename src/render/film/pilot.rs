@@ -234,8 +234,9 @@ impl SystematicSampler {
         Self { step, next: rng.next_f64() * step, end: 0.0 }
     }
 
-    /// Returns the weight of the next item, which has this chance: the number of items that it represents, or 0 if it
-    /// is not selected. An item whose chance exceeds the distance between marks may be selected more than once.
+    /// Returns the weight of the next item, whose chance is `chance`. The weight is the number of items that this item
+    /// represents, or 0 if it is not selected. An item whose chance exceeds the distance between marks may be selected
+    /// more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;

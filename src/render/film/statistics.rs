@@ -79,8 +79,8 @@ impl Canvas<'_> {
         self.statistics(weight, job)
     }
 
-    /// Returns the statistics of each tile. `weight` computes the factor on the error of a pixel from the pixel and
-    /// the mean radiance of its tile.
+    /// Returns the statistics of each tile. `weight` gets a pixel and the mean radiance of its tile, and returns the
+    /// factor by which the pixel's error is multiplied.
     pub fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut sum = Statistics::default();
