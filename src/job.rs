@@ -1,4 +1,4 @@
-//! Progress reports and cancel requests of long work.
+//! Progress reports of long computations, and requests to cancel them.
 //!
 //! The thread that works and the threads that watch share a [`Monitor`]. The worker reports through a [`Job`], which
 //! stands for a span of the whole progress bar. A routine thus reports progress from 0 to 1 without knowing which span

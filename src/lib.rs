@@ -35,7 +35,7 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-// Warn of calls that panic, exit or write to the console.
+// Warn about calls that panic, exit or write to the console.
 #![cfg_attr(
     not(test),
     warn(

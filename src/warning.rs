@@ -41,7 +41,7 @@ pub enum Code {
     PlaneNearHorizon = 14,
     /// Emission: the statistics of the texture differ from those of the photo.
     PatternUncertain = 15,
-    /// Emission: the photo shows fewer whole lamps than determine a pattern.
+    /// Emission: the photo shows too few whole lamps to determine a pattern.
     FewLamps = 16,
     /// Emission: the lamps form no lattice, so the texture is continued patch by patch, and it differs much from the
     /// photo.
@@ -62,7 +62,7 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has points, spots or luminaires, which have no surface that images could show.
+    /// Scene: it has point lights, spot lights or luminaires. Images cannot show them, because they have no surface.
     NotInPicture = 26,
 }
 

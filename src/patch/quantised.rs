@@ -9,7 +9,7 @@ use crate::job::Job;
 pub const LANES: usize = 8;
 
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
-/// differences equals the weighted sum of Eq. 1.
+/// differences equals the weighted sum of Eq. 1 of StyLit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuantisedImage {
     pub width: usize,

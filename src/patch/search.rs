@@ -300,8 +300,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet. Then tries positions around the best match, at
-    /// falling radii.
+    /// Tries uniformly random positions if there is no match yet. Then tries random positions around the best match,
+    /// within decreasing radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {

@@ -99,7 +99,7 @@ impl Table {
     }
 }
 
-/// Returns the channel of the widest range in a sample of the members.
+/// Returns the channel whose values have the widest range in a sample of the members.
 fn widest(means: &Means, members: &[u32]) -> usize {
     let step = (members.len() / 256).max(1);
     let spread = |channel: usize| {

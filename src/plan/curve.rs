@@ -16,18 +16,18 @@ pub(super) struct Curve {
 
 /// Minimum and maximum exponents with which squared errors fall with time: the minimum holds for independent samples,
 /// the maximum for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth
-/// functions") [paper: Owen 1997].
+/// functions"). [paper: Owen 1997]
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, for which nets gain less
-/// [origin not recorded].
+/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, and there scrambled nets gain
+/// less. [origin not recorded]
 const MAX_EXTRAPOLATED: f64 = 2.0;
 
-/// Factor by which an allocation step lengthens the time of a stage [convention].
+/// Factor by which an allocation step lengthens the time of a stage. [convention]
 const STEP: f64 = 1.01;
 
 impl Curve {
-    /// Returns the curve of a squared error that falls with time as for independent samples; it is `square` after the
-    /// minimum time.
+    /// Returns the curve for independent samples: the squared error is `square` after the minimum time, and inversely
+    /// proportional to the time.
     pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
         let point = |times: f64| [times * min_seconds, square / times];
         Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn time_goes_where_it_lowers_the_error_most() {
-        // For squared errors a / t and b / t, the optimal times are proportional to the roots of a and b.
+        // For squared errors a / t and b / t, the optimal times are proportional to the square roots of a and b.
         let curves = [monte_carlo(1.0), monte_carlo(9.0)];
         let seconds = allocate(&curves, Goal::Seconds(8.0));
         assert!((seconds.iter().sum::<f64>() - 8.0).abs() < 1e-9);

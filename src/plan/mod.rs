@@ -12,7 +12,7 @@
 //! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
 //! [`crate::render::Film::error`]. An error of the emission's solution scales all light of the picture by a common
 //! factor; its contribution is its relative standard error times the picture's contrast, which is the root mean square
-//! divided by the mean. The error of a stylisation is the root of its energy.
+//! divided by the mean. The error of a stylisation is the square root of its energy (StyLit, Eq. 3).
 //!
 //! Assumption: the machine later performs as it does now, with the same number of threads, and is otherwise idle while
 //! the plan is made.
@@ -40,8 +40,8 @@ use std::time::{Duration, Instant};
 /// The goal of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or the root of
-    /// the energy of a stylisation.
+    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or, for a
+    /// stylisation, the square root of its energy (StyLit, Eq. 3).
     Error(f64),
     /// Total seconds of the planned stages, in `[1e-3, 1e6]`.
     Seconds(f64),
@@ -80,9 +80,9 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// A stage that stops at a target error may cost at most this many times the expected cost [origin not recorded].
+/// A stage that stops at a target error may cost at most this many times the expected cost. [origin not recorded]
 const MAX_COST: f64 = 4.0;
-/// A stage with a time budget may take at most this many times the expected time [origin not recorded].
+/// A stage with a time budget may take at most this many times the expected time. [origin not recorded]
 const MAX_OVERTIME: f64 = 1.25;
 
 /// Returns the time budget in milliseconds that stops a stage if it takes much longer than expected.

@@ -1,5 +1,5 @@
-//! Plans the solution for the strength of the emission: predicts the time for an error from a few short trial
-//! solutions.
+//! Plans the solution for the strength of the emission: predicts the time needed for a given error from a few short
+//! trial solutions.
 
 use super::curve::Curve;
 use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
@@ -15,12 +15,14 @@ const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
 /// Seed that separates the trials' random paths from those of the solution.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
-/// Radiance in cd/m² far above that of any other light [convention].
+/// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
+/// must supply it. [convention]
 const DOMINANT: f32 = 1e9;
 /// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
-/// [`relight::Params::paths`] [convention].
+/// [`relight::Params::paths`]. [convention]
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
-/// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
+/// Half-width of a 95 % confidence interval in standard errors: Student's factor for the number of batches used.
+/// [convention]
 const HALF_WIDTH: f64 = 2.04;
 
 /// Measured cost and error of the solution for the emission's strength.

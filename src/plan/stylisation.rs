@@ -9,8 +9,8 @@ use crate::stylize::{Input, Mode, Params, PilotRuns};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stylisation {
     pub params: Params,
-    /// The error is the root of the energy (Eq. 3): the root mean square difference of matched patches in colours and
-    /// guides.
+    /// The expected time and error. The error is the square root of the energy (StyLit, Eq. 3): the root mean square
+    /// difference between matched patches in colours and guides.
     pub expected: Expected,
 }
 

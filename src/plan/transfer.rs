@@ -17,7 +17,8 @@ use std::sync::Arc;
 pub struct Lighting {
     pub relight: relight::Params,
     pub render: render::Params,
-    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's interval.
+    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's
+    /// confidence interval.
     pub solving: Expected,
     /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,

@@ -69,7 +69,7 @@ impl Requirements {
     }
 
     /// Returns one sentence for each shading feature that the scene does not need and tracing therefore omits, and one
-    /// for each content of the scene that the renderer does not model.
+    /// for each feature of the scene that the renderer does not model.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {

@@ -158,7 +158,8 @@ pub fn run(
     })
 }
 
-/// Extends the paths of the tiles in the current pass to `count` per pixel. Returns the sums of all pilot tiles.
+/// Traces paths in the tiles of positive `deep_weight` until each of their pixels has `count` paths. Returns the sums
+/// of all pilot tiles.
 fn render_tiles(
     context: TileContext,
     chosen: &mut [PilotTile],

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub const DEAD: u16 = 0;
 
 /// Limits of the construction: number of states of the nondeterministic automaton, number of states before
-/// minimisation, and number of visited transitions. [convention]: bounds time and memory.
+/// minimisation, and number of visited transitions. They bound time and memory. [convention]
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
