@@ -1,8 +1,8 @@
 //! Warnings: reasons to doubt a result, with remedies.
 //!
-//! A warning arises when a figure of a result crosses a limit. Each stage computes its warnings from its result alone,
-//! and a scene computes them from its contents; `warnings.rs` in the folder of the stage holds the limits. Warnings
-//! are not stored.
+//! A warning arises when a number that describes a result (the severity) crosses a limit. Each stage computes its
+//! warnings from its result alone, and a scene computes them from its contents; `warnings.rs` in the folder of the
+//! stage holds the limits. Warnings are not stored.
 
 use glam::DVec2;
 use std::fmt;
@@ -101,11 +101,11 @@ impl Code {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     pub code: Code,
-    /// The figure that caused the warning.
+    /// The number that caused the warning.
     pub severity: f64,
-    /// The limit that the figure has crossed.
+    /// The limit that the severity has crossed.
     pub limit: f64,
-    /// Describes the defect, with the figure.
+    /// Describes the defect, with the severity.
     pub message: String,
     /// Describes the remedy.
     pub advice: String,
@@ -114,7 +114,7 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// Returns a warning if the figure `severity` lies above `limit` or is not a number.
+    /// Returns a warning if `severity` lies above `limit` or is not a number.
     pub fn above(
         code: Code,
         severity: f64,
@@ -126,7 +126,7 @@ impl Warning {
         (!is_good).then(|| Self::new(code, severity, limit, message(), advice))
     }
 
-    /// Returns a warning if the figure `severity` lies below `limit` or is not a number.
+    /// Returns a warning if `severity` lies below `limit` or is not a number.
     pub fn below(
         code: Code,
         severity: f64,

@@ -20,7 +20,7 @@ pub struct Occurrence {
     patch: usize,
     /// Ω of each pixel: the number of matches that contain it.
     uses: Vec<AtomicU32>,
-    /// Penalty of one use of each pixel.
+    /// Penalty of one use, for each pixel.
     each: Vec<f32>,
 }
 

@@ -112,7 +112,8 @@ fn widest(means: &Means, members: &[u32]) -> usize {
 }
 
 impl Search<'_> {
-    /// Compares each active patch with `tries` allowed patches that are nearest in tree order; no distance rises.
+    /// Compares each active patch with up to `tries` allowed patches, beginning with the nearest ones in tree order;
+    /// no distance rises.
     pub fn look_up(
         &self,
         field: &mut Field,

@@ -11,7 +11,7 @@ const CANDIDATES: usize = 4;
 /// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;
 
-/// Adds `votes` votes for `candidate` to a ballot.
+/// Adds `votes` votes for `candidate` to a ballot, a list of candidates with their votes.
 pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     let (slots, _) = ballot.as_chunks_mut::<2>();
     let Some(place) =

@@ -29,7 +29,8 @@ pub struct Substance {
     pub f0: Vec3,
     pub f90: f32,
     pub roughness: f32,
-    /// Straight transmittance, before the reflection loss at the top layer is subtracted; 0 for opaque materials.
+    /// Share of the light that continues in a straight line through the material, before the reflection loss at the
+    /// top layer is subtracted; 0 for opaque materials.
     pub transmission: Vec3,
     /// Reflectance of the dielectric part alone at normal incidence. It determines the attenuation of the diffuse
     /// layer.
@@ -37,7 +38,8 @@ pub struct Substance {
 }
 
 impl Substance {
-    /// Returns the straight transmittance for a ray whose angle to the normal has this cosine.
+    /// Returns the share of light that continues in a straight line for a ray whose angle to the normal has this
+    /// cosine.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
@@ -58,13 +60,13 @@ pub struct Bsdf<'a> {
     layers: Option<Layers<'a>>,
 }
 
-/// The top layer (GGX or mirror) and the straight transmission.
+/// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
 struct Layers<'a> {
     substance: Substance,
     /// The two tangents of the shading frame; its third axis is the shading normal.
     tangents: [Vec3; 2],
     wo: Vec3,
-    /// Straight transmittance towards the viewer.
+    /// Share of the light that passes through the material in a straight line towards the viewer.
     through: Vec3,
     /// Selection probabilities of the diffuse layer and the top layer; the rest selects transmission.
     shares: [f32; 2],

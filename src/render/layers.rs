@@ -19,7 +19,7 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The layer totals of a tile, pixel after pixel, locked for one worker.
+/// The sums of all layers over the paths of a tile (the totals), pixel after pixel, locked for one worker.
 pub type TileTotals<'a> = MutexGuard<'a, Vec<f32>>;
 
 /// Longest name of a layer in bytes (`MAX_NAME_BYTES`), and largest number of light path expressions (`MAX_LAYERS`).
@@ -249,7 +249,7 @@ impl Recorder<'_> {
         self.beauty
     }
 
-    /// Moves the recorded sums to the totals of a pixel of the tile.
+    /// Adds the recorded sums to the totals of a pixel of the tile, and clears the recorded sums.
     pub fn add_to_totals(&mut self, totals: &mut TileTotals, pixel: usize) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
@@ -276,8 +276,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Moves the recorded sums of a pixel to f64 totals: three numbers per expression, then the number of primary
-    /// hits, then [`Aov::summed`] numbers per surface attribute.
+    /// Adds the recorded sums of a pixel to f64 totals, and clears the recorded sums. The totals have three numbers
+    /// per expression, then the number of primary hits, then [`Aov::summed`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());

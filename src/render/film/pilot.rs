@@ -54,7 +54,7 @@ const SALT: u64 = 0x7072_6f62_6564_2121;
 pub struct Pilot {
     /// Time per path in seconds, with all threads busy.
     pub seconds_per_path: f64,
-    /// Square of [`super::super::Film::error`] that the image would have with each number of [`PATHS`] in every pixel.
+    /// Predicted square of [`super::super::Film::error`] for each number of paths per pixel in [`PATHS`].
     pub squared_errors: [f64; 3],
     /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,

@@ -163,7 +163,7 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
-    // With white walls of albedo 1 and a black lamp, all radiances approach the radiance of the lamp.
+    // With white walls of albedo 1 and a lamp that reflects nothing, all radiances approach the radiance of the lamp.
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
     // Let the lamp cover nearly the whole ceiling. It emits downwards only.
