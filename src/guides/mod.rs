@@ -152,7 +152,7 @@ pub struct Extras {
     pub caustics: bool,
 }
 
-/// A guide, as images of the two scenes.
+/// A guide: its image of the exemplar's scene (`source`) and its image of the target scene (`target`).
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: &'static str,

@@ -25,8 +25,8 @@ pub struct Occurrence {
 }
 
 impl Occurrence {
-    /// Counts the matches of `field` among the `allowed` patches of width `patch`. Under uniform usage, the penalty of
-    /// a match is `weight`, in the units of a distance.
+    /// Counts the matches of `field` among the `allowed` patches of width `patch`. `weight` is the penalty that a
+    /// match has under uniform usage, in the units of a distance.
     pub fn new(field: &Field, allowed: &Domain, patch: usize, weight: f64) -> Result<Self> {
         let (width, height) = (allowed.width + patch - 1, allowed.height + patch - 1);
         let matched = field.at.iter().filter(|&&at| at != NONE);

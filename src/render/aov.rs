@@ -50,8 +50,8 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Returns the name of the attribute's layer in image files: the name that Blender or Nuke uses, if either has
-    /// one.
+    /// Returns the name of the attribute's layer in image files. It is the name that Blender or Nuke uses, where one
+    /// of these programs has the attribute.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -127,7 +127,7 @@ impl Aov {
             Self::Albedo => (vector() / samples).as_vec3().write_to_slice(out),
             Self::Object | Self::Material => out[0] = if hits > 0.0 { totals[0] } else { 0.0 },
             Self::Alpha => out[0] = (hits / samples) as f32,
-            // The film computes the luminance from the main image.
+            // Nothing to write: the film computes the luminance from the main image.
             Self::Luminance => (),
         }
     }
@@ -181,7 +181,7 @@ impl Surfaces {
         }
     }
 
-    /// Returns the sum of an attribute that is not an index. A scalar attribute is in the first component.
+    /// Returns the sum of an attribute that is not an index. The sum of a scalar attribute is in the first component.
     fn sum(&self, aov: Aov) -> DVec3 {
         match aov {
             Aov::Depth => DVec3::splat(self.depth),

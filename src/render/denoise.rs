@@ -70,8 +70,8 @@ const TAP: f32 = 0.5;
 /// Variance of one half of the paths, divided by the variance of the mean of both halves; exactly 2 if the halves are
 /// independent. [convention]
 const HALF: f32 = 2.0;
-/// Range weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in luminance
-/// is this multiple of the sum of the two variances. [origin not recorded]
+/// Luminance weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in
+/// luminance is this multiple of the sum of the two variances. [origin not recorded]
 const RANGE: f32 = 12.0;
 /// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
 /// direction to the neighbour has this value. [origin not recorded]
@@ -172,7 +172,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
     Ok(out)
 }
 
-/// One level of the filter, with the images that it reads.
+/// One level of the filter, with the data that it reads.
 struct Level<'a> {
     light: &'a [f32],
     guide: &'a [f32],

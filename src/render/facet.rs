@@ -35,9 +35,9 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
 /// if its distance exceeds this multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// The detail of a scene with more triangles than this is located from a regular selection of the triangles: at least
-/// this many, and fewer than twice as many. The number is small, so that the list of their corners fits in the memory
-/// reserve. [convention]
+/// Number of triangles from which the detail of a scene (the region where most triangles lie) is located. In a larger
+/// scene, every n-th triangle is used, so that at least this many and fewer than twice as many are used. The number is
+/// small, so that the list of their corners fits in the memory reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;

@@ -207,7 +207,7 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 
 impl Requirements {
     /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
-    /// parameter sets that bound the material (see `extremes`).
+    /// BSDF parameters that bound those of the material (see the function `extremes`).
     fn include_material(
         &mut self,
         index: usize,
@@ -274,7 +274,7 @@ impl Requirements {
         };
     }
 
-    /// Adds the kinds of scattering that one parameter set causes.
+    /// Adds the kinds of scattering that occur with the BSDF parameters `s`.
     fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
@@ -321,8 +321,8 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the parameter sets of a material with the smallest and largest metalness and roughness. Between these sets,
-/// all parameters of the layers are linear or monotone.
+/// Returns the BSDF parameters of a material for each combination of its smallest or largest metalness and roughness.
+/// In between, all parameters of the layers are linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -334,7 +334,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
-/// Returns an upper bound of the albedo of a parameter set over all directions.
+/// Returns an upper bound, over all directions, of the albedo with the BSDF parameters `s`.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
     // Number of intervals between the cosines at which the albedo is evaluated. [origin not recorded]
     const STEPS: usize = 64;

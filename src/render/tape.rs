@@ -1,5 +1,5 @@
-//! Recorded subpaths for `shared`: one kind sums contributions, the other also tracks the states of light path
-//! expressions.
+//! Recorded subpaths for `shared`. [`Sum`] only adds up contributions; [`LpeTape`] also tracks the states of light
+//! path expressions.
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;

@@ -36,7 +36,7 @@ pub struct Emitters {
     /// All pieces. Piece indices count the undivided triangles (`even`) first, then the emissive tiles.
     even: Vec<Even>,
     tiles: Vec<Tile>,
-    /// Flux of all emitters in lumens; of a double-sided emitter only one side counts.
+    /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
 }
 
@@ -78,7 +78,7 @@ impl Emitters {
         Ok((this, bounds))
     }
 
-    /// Adds the pieces of the undivided emitters, and makes the tilings of all other emitters.
+    /// Adds one piece for each emitter that is not divided into tiles, and stores the tilings of the other emitters.
     fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
         for (index, emitter) in self.emitters.iter().enumerate() {
             let texture = emitter.texture.map(|t| &scene.textures[t]);
@@ -97,7 +97,7 @@ impl Emitters {
         }
     }
 
-    /// Adds a piece for every tile that emits.
+    /// Adds one piece for every tile that emits.
     fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
         // Collect rows of tiles, in the order of their emitters, to process them in parallel.
         let mut rows = Vec::new();

@@ -68,7 +68,8 @@ impl Grid {
     }
 }
 
-/// Returns the stride of the pixels of the coarsest image, a power of two.
+/// Returns the distance between the pixels of the coarsest image along each axis: a power of two, in pixels of the
+/// full image.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {

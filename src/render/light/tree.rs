@@ -200,7 +200,7 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
     (first + at) as u32
 }
 
-/// Sums over a cluster from which the split heuristic is computed.
+/// Sums over the lights of a cluster; the split heuristic is computed from them.
 #[derive(Clone, Copy)]
 struct Extent {
     low: Vec3A,

@@ -95,7 +95,7 @@ impl Automaton {
         }
     }
 
-    /// Returns the index of the light event of a light.
+    /// Returns the index, among the light events of the alphabet, of the event with which a path ends at this light.
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         self.alphabet.light(source)
@@ -246,8 +246,8 @@ struct SubsetConstruction<'a> {
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// For each NFA state, the number of the last call of `closure` that visited it (`visited`), and the number of
-    /// calls so far (`rounds`).
+    /// For each NFA state, the number of the last call of `closure` that visited the state (`visited`), and the number
+    /// of calls of `closure` so far (`rounds`).
     visited: Vec<u32>,
     rounds: u32,
     transitions_left: usize,

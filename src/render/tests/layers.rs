@@ -241,7 +241,7 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
         let mut scene = Scene { meshes: vec![scene.meshes[0].clone(), lamp, pane], ..scene.clone() };
         scene.meshes[2].name = "Pane".into();
         scene.materials[0] = matt(0.5, 0.0);
-        // An index of refraction of 1 transmits all light at any angle.
+        // Glass with an index of refraction of 1 reflects nothing at any angle.
         let glass = Material { base_color: Vec3::new(0.5, 0.7, 0.9), ior: 1.0, transmission: 1.0, ..matt(0.0, 0.0) };
         scene.materials.push(glass.clone());
         let camera = Camera::look_at(Vec3::new(0.4, 0.3, 0.0), Vec3::ZERO, 0.01);
