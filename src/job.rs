@@ -8,7 +8,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Progress in `[0, 1]`, which never falls, and a cancel request, which cannot be withdrawn.
+/// The state of a job: its progress in `[0, 1]`, which never falls, and whether the job is cancelled, which cannot be
+/// undone.
 pub struct Monitor {
     cancelled: AtomicBool,
     /// Number of uses of the memory reserve when the job started.

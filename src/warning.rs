@@ -21,7 +21,7 @@ pub enum Code {
     NotSquare = 4,
     /// Features: the room was laid out from its lines with little confidence, and there is no depth map.
     LayoutUncertain = 5,
-    /// Mask: a large share of it is unlike all strokes.
+    /// Mask: much of it is unlike every stroke, or it leaves out regions that partly resemble the painted lamps.
     Unseen = 6,
     /// Mask: strokes of both classes cover the same pixels.
     ContradictoryStrokes = 7,

@@ -7,7 +7,7 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Number of passes; the distance between the pixels averaged doubles from pass to pass.
+/// Number of passes; the distance between the averaged pixels doubles from pass to pass.
 const PASSES: u32 = 3;
 /// The cubic B-spline that each pass applies along x and y. [convention]
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];

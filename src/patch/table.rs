@@ -71,7 +71,7 @@ impl Table {
             let members = &mut order[low..high];
             let half = members.len() / 2;
             if !members.is_empty() {
-                // Split the channel of the widest range at its median; ties are ordered by position.
+                // Split the channel with the widest range at its median; ties are ordered by position.
                 let channel = widest(means, members);
                 let key = |&position: &u32| (means.of(position)[channel], position);
                 members.select_nth_unstable_by_key(half, key);

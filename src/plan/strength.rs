@@ -13,7 +13,7 @@ use glam::Vec3;
 /// that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Seed that separates the trials' random paths from those of the solution.
+/// Combined with the seed of the solution, so that the trials trace other random paths than the solution.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
 /// must supply it. [convention]
@@ -33,9 +33,9 @@ pub(super) struct Strength {
 }
 
 impl Strength {
-    /// Runs the trials for an emitting material and the triangles of the target. They solve for the radiance that the
-    /// target currently receives from the emission and all other light; without other light, any target gives the same
-    /// relative error.
+    /// Runs the trials for an emitting material and the triangles of the target. After the first trial, the target
+    /// radiance is that which the emission and all other light currently produce; without other light, any target
+    /// gives the same relative error.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,

@@ -36,8 +36,8 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
     }
 }
 
-/// Returns settings from quick to careful, from the Pareto front in `benches/stylit.rs`, and the index of the
-/// reference settings, those of `Params::fast`.
+/// Returns a list of settings, in the order from quick to careful, and the index of the reference settings
+/// (`Params::fast`) in this list. The settings come from the Pareto front in `benches/stylit.rs`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
     // These modes make at most one matching pass, so their settings offer no choice.
     if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {

@@ -112,10 +112,10 @@ pub enum ScatterKind {
 }
 
 impl<'a> Bsdf<'a> {
-    /// Builds the BSDF towards the viewer, who lies in direction `wo`; both normals are flipped to face the viewer.
-    /// Reflection is two-sided for all materials, because walls of rooms are often modelled with outward-facing
-    /// normals. `layered` must be true if the material may have layers besides the diffuse one. `table` may be `None`
-    /// if no material of the scene has a top layer.
+    /// Builds the BSDF for a viewer in direction `wo`; both normals are flipped to face the viewer. Reflection is
+    /// two-sided for all materials, because walls of rooms are often modelled with outward-facing normals. `layered`
+    /// must be true if the material may have layers besides the diffuse one. `table` may be `None` if no material of
+    /// the scene has a top layer.
     #[inline]
     pub fn new(
         substance: &Substance,
@@ -192,8 +192,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Returns the non-specular lobes times the cosine, and the solid-angle pdf with which [`Bsdf::sample`] draws
-    /// `direction`.
+    /// Returns the values of the non-specular lobes times the cosine, and the solid-angle pdf with which
+    /// [`Bsdf::sample`] draws `direction`.
     #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let cosine = direction.dot(self.normal);

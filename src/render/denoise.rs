@@ -56,9 +56,9 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview: the root mean square of the bias averaged over squares of 8 × 8 pixels, relative
-    /// to the mean of the image. The square of this estimate is unbiased. Blur within a square of pixels goes
-    /// undetected.
+    /// Estimated bias of the preview, relative to the mean of the image. The bias is averaged within squares of 8 × 8
+    /// pixels; this is the root mean square of these averages. The square of this estimate is unbiased. Blur within a
+    /// square of pixels goes undetected.
     pub bias: f64,
 }
 

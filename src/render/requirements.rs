@@ -1,9 +1,10 @@
 //! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
 //! a bounce can reflect or transmit at most.
 //!
-//! For each material, the analysis considers all products of a factor and a texel of its texture. Only materials of
-//! meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate. The number of
-//! bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
+//! For each material, the analysis considers the product of each factor with every texel of the texture that belongs
+//! to the factor. Only materials of meshes with triangles count. Tracing skips features that cannot occur, which
+//! changes no estimate. The number of bounces that matter is reported, but limits no render, since paths end by
+//! Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -230,7 +231,7 @@ impl Requirements {
         }
     }
 
-    /// Adds the emission of a material whose emission texture has the range `emission`.
+    /// Sets the flags of surface emission for a material whose emission texture has values in the range `emission`.
     fn include_emission(&mut self, material: &Material, emission: Range) {
         if (material.emission * emission.high.truncate()).max_element() > 0.0 {
             self.surfaces = true;

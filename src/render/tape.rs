@@ -10,7 +10,7 @@ use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
-/// Adds up contributions, as an observer and as a tape.
+/// An observer and tape that only adds up contributions.
 #[derive(Clone, Copy, Default)]
 pub struct Sum(pub Vec3);
 

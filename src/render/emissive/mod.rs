@@ -156,7 +156,8 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
-    /// Returns the piece that contains a point of an emitter, given by its texture coordinates; `None` for dark tiles.
+    /// Returns the piece that contains the point of an emitter with the texture coordinates `uv`; `None` if the tile
+    /// or the triangle there is dark.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
             Division::Even(piece) => piece,

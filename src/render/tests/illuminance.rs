@@ -21,8 +21,8 @@ fn lit_floor() -> Scene {
 }
 
 /// Critical value for the deviation of a point in standard errors. The standard error is estimated from 16 batches, so
-/// the deviation follows Student's t with 15 degrees of freedom. Any of the 45 points below exceeds the value with a
-/// probability of 1/1000 in total (Šidák: 2.2e-5 for each).
+/// the deviation follows Student's t with 15 degrees of freedom. The probability that any of the 45 points below
+/// exceeds the critical value is 1/1000 (2.2e-5 for each point, by Šidák's formula).
 const T15: f64 = 6.02;
 
 #[test]
