@@ -38,8 +38,8 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` returns the weight of a
-    /// pair of pixels from their brightness in `guide`.
+    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` computes the weight of a
+    /// pair of pixels from the brightness of both pixels in `guide`.
     fn average(
         &self,
         light: &Image,

@@ -5,7 +5,7 @@ use super::position::{NONE, pack, unpack};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 
-/// For each patch of one image, its match in another image and their distance.
+/// For each patch of one image, its match in another image and the distance between patch and match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Number of patches along x and y.

@@ -13,7 +13,8 @@ use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// The occurrence map. A search on one thread updates it with every match that changes.
+/// The occurrence of every pixel of an image. A search updates it with every match that changes, and therefore runs on
+/// one thread.
 pub struct Occurrence {
     /// Width of the image (`width`) and of a patch (`patch`), in pixels.
     width: usize,

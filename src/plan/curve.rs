@@ -46,8 +46,8 @@ impl Curve {
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
 
-    /// Returns the decrease of the squared error per second in the allocation step from `seconds`; 0 at the end of the
-    /// curve.
+    /// Returns by how much the squared error falls per second during the allocation step that begins at `seconds`; 0
+    /// at the end of the curve.
     fn gain(&self, seconds: f64) -> f64 {
         let next = (seconds * STEP).min(self.max_seconds);
         if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }

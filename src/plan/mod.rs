@@ -73,7 +73,7 @@ pub fn wall() -> impl Fn() -> Duration + Sync {
     move || start.elapsed()
 }
 
-/// Runs `work` and returns the seconds it took by a clock, and its result.
+/// Runs `work`. Returns how many seconds `work` took, measured with `clock`, and its result.
 fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock();
     let value = work();

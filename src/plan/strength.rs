@@ -13,7 +13,7 @@ use glam::Vec3;
 /// that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Combined with the seed of the solution, so that the trials trace other random paths than the solution.
+/// Constant that is XORed with the seed of the solution, so that the trials trace different random paths.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
 /// must supply it. [convention]

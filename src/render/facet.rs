@@ -55,7 +55,8 @@ impl Facet {
         emitter: NONE,
     };
 
-    /// Builds triangle number `triangle` of mesh number `index`. `corners` are relative to the centre of the world.
+    /// Builds triangle number `triangle` of mesh number `index`. `corners` are in world coordinates (relative to
+    /// [`centre`]).
     pub fn new(corners: [Vec3; 3], index: u32, mesh: &Mesh, triangle: usize) -> Self {
         // Compute edges and normal in f64, because small triangles far from the centre suffer from cancellation in
         // f32.

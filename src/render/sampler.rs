@@ -11,7 +11,7 @@ use crate::rng;
 /// The random numbers of one path.
 #[derive(Clone)]
 pub struct Sampler {
-    /// Index of the path in the sequence of its seed, with reversed bits.
+    /// Index of the path in the point sequence of `seed`, with its bits reversed.
     index: u32,
     seed: u64,
     block: u64,

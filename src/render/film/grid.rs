@@ -36,7 +36,7 @@ impl Grid {
         (tile % self.across() * TILE, tile / self.across() * TILE)
     }
 
-    /// Returns the column and row in the image of a tile's pixel; `None` outside the image.
+    /// Returns the column and row, in the image, of pixel number `pixel` of a tile; `None` outside the image.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
         let (left, top) = self.corner(tile);
         let (x, y) = (left + pixel % TILE, top + pixel / TILE);

@@ -133,7 +133,7 @@ pub fn run(
     let area = (grid.width * grid.height) as f64;
     let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
 
-    // Measure the variance at three numbers of paths. Render only some of the tiles with the last number.
+    // Measure the variance at three numbers of paths. Use the last number only for some of the tiles.
     let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
     let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
     let part = |t: &TileSums| t.weight * t.variance;
