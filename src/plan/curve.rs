@@ -54,9 +54,9 @@ impl Curve {
     }
 }
 
-/// Returns the seconds for each stage. Each stage starts with its minimum time. Then small steps of time go to the
-/// stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more. Since
-/// gains fall along every curve, no other allocation is better by more than a step.
+/// Returns the time for each stage, in seconds. Each stage starts with its minimum time. Then small steps of time go
+/// to the stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more
+/// time. Since gains fall along every curve, no other allocation is better by more than a step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {

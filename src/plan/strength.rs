@@ -78,7 +78,7 @@ impl Strength {
     }
 
     /// Returns how much a solution contributes to the error of a picture, given the relative half-width of the
-    /// solution's interval.
+    /// solution's confidence interval.
     pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
@@ -89,7 +89,7 @@ impl Strength {
 
     /// Returns the settings, and the expected time and error. For a goal in seconds, the settings use the time
     /// `seconds`. For an error goal, they aim at the error expected after this time. The error is the relative
-    /// half-width of the solution's interval.
+    /// half-width of the solution's confidence interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);

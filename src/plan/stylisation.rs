@@ -1,4 +1,5 @@
-//! Plans a stylisation: chooses the most careful settings within a time, or the quickest for an error.
+//! Plans a stylisation: chooses the most careful settings that fit in a given time, or the quickest settings that
+//! reach a given error.
 
 use super::{Clock, Expected, Goal};
 use crate::error::Result;

@@ -1,8 +1,8 @@
 //! Layers: images that are rendered beside the main image, by light path expressions (`lpe`) or from surface
 //! attributes (`aov`).
 //!
-//! Layers use the paths of the main image and leave it unchanged bit by bit. A recorder sums the paths of a pass in
-//! f64. The totals of a pixel are in f32 and grow from pass to pass.
+//! Layers use the paths of the main image and do not change the main image by a single bit. A recorder sums the paths
+//! of a pass in f64. The totals of a pixel are in f32 and grow from pass to pass.
 
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Lobes, ScatterKind};

@@ -181,9 +181,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is corrected, because
-/// the selected tiles are not typical of the image: it is multiplied by the ratio of the weighted to the unweighted
-/// mean.
+/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is multiplied by the
+/// ratio of the weighted mean over the tiles to the unweighted mean, because the selected tiles are not typical of the
+/// image.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
