@@ -19,7 +19,7 @@ pub enum Code {
     LensDistortion = 3,
     /// View: the walls do not meet at right angles, or the pixels are not square.
     NotSquare = 4,
-    /// Features: the room was laid out from its lines with little confidence, and there is no depth map.
+    /// Features: the shape of the room, found from lines in the photo, is uncertain, and there is no depth map.
     LayoutUncertain = 5,
     /// Mask: much of it is unlike every stroke, or it leaves out regions that partly resemble the painted lamps.
     Unseen = 6,

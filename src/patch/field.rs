@@ -55,9 +55,9 @@ impl Field {
         Ok(field)
     }
 
-    /// Returns the inverse field: for each patch of `base`, the patch of this field that is matched to it, and their
-    /// distance. Hints, which have no distance yet, are left out. If several patches share a match, the closest one is
-    /// taken (the first, if equal).
+    /// Returns the inverse field: for each patch of `base`, the patch of this field that is matched to it, and the
+    /// distance between the two. Hints, which have no distance yet, are left out. If several patches share a match,
+    /// the closest one is taken (the first, if equal).
     pub fn invert(&self, base: &Domain) -> Result<Self> {
         let mut inverse = Self::new(base.width, base.height)?;
         for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {

@@ -107,7 +107,7 @@ fn widest(means: &Means, members: &[u32]) -> usize {
         let (low, high) = values.fold((i16::MAX, i16::MIN), |(l, h), v| (l.min(v), h.max(v)));
         i32::from(high) - i32::from(low)
     };
-    // Of equal ranges, take the first channel, so that padding is never chosen.
+    // If several channels have the widest range, take the first one, so that padding is never chosen.
     (0..means.lanes).rev().max_by_key(|&c| spread(c)).unwrap_or(0)
 }
 

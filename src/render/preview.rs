@@ -1,4 +1,4 @@
-//! Previews of a render in progress: adds the guide images that `denoise` needs to the requested outputs, and filters
+//! Previews of a render in progress: adds to the requested outputs the guide images that `denoise` needs, and filters
 //! the film.
 
 use super::aov::Aov;

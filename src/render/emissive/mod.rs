@@ -143,9 +143,9 @@ impl Emitters {
         Ok(())
     }
 
-    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). The density of the
-    /// samples is proportional to the emission at the point. Returns the index of the emitter and the barycentric
-    /// coordinates of the point.
+    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). Points of a tile are
+    /// sampled in proportion to the emission at the point, points of an undivided triangle uniformly. Returns the
+    /// index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {

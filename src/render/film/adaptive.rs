@@ -88,7 +88,7 @@ impl<'p> AdaptiveSampler<'p> {
         let target_paths = self.target_paths(canvas, &statistics, job)?;
         let whole = whole(&statistics);
 
-        // Sum up the missing paths of all tiles, limited by `samples` and the time budget.
+        // Sum up how many paths the tiles still need, within the limits set by `samples` and the time budget.
         let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
         let missing = |tile: usize| {
             (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)

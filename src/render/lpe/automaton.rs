@@ -128,8 +128,8 @@ impl Automaton {
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Separate states by the expressions they accept; then repeatedly by the groups of the states that follow
-        // them.
+        // Separate states by the expressions that they accept; then, repeatedly, by the groups to which their next
+        // states belong.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
