@@ -65,7 +65,8 @@ impl Quantiser {
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Add one half to round to nearest, as the value is non-negative: this needs no call of the C library.
+        // Add one half to round to the nearest integer. This is possible because the value is non-negative, and avoids
+        // a call of the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(allocate(&[short], Goal::Seconds(9.0)), [0.5]);
         assert_eq!(allocate(&[short], Goal::Error(1e-5)), [0.5]);
         assert_eq!(allocate(&[short, short], Goal::Seconds(0.001)), [0.01, 0.01]);
-        // A stage without error gets only its minimum.
+        // A stage without error gets only its minimum time.
         let exact = monte_carlo(0.0);
         assert_eq!(allocate(&[exact, monte_carlo(1.0)], Goal::Seconds(1.0))[0], 0.01);
     }

@@ -115,7 +115,7 @@ impl Aov {
     }
 
     /// Writes the value of a pixel to `out`, computed from the pixel's totals, number of hits and number of samples.
-    /// Positions stay relative to the origin of world coordinates ([`super::facet::centre`]).
+    /// Positions stay relative to the origin of world coordinates (`facet::centre`).
     pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
@@ -162,7 +162,7 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds these sums to the film's totals of the pixel.
+    /// Adds these sums to the f32 totals that the film keeps for the pixel.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),
