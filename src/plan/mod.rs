@@ -1,7 +1,7 @@
 //! Planning: chooses settings of the lighting stages and of a stylisation for a target error or time, before they run.
 //!
-//! The caller specifies the noise of the picture or the time it may take ([`Goal`]). The plan returns the settings of
-//! relighting and rendering, with the expected time and error of each.
+//! The caller specifies the error (noise) that the picture may have, or the time that it may take ([`Goal`]). The plan
+//! returns the settings of relighting and rendering, with the expected time and error of each.
 //!
 //! The cost of a path and the variance of paths depend on the machine and the scene and cannot be predicted by
 //! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few

@@ -8,10 +8,10 @@
 //! adaptive pass doubles the paths of the tiles whose required number of paths is largest relative to the paths they
 //! have.
 //!
-//! A tile in which no bright path has been found yet has a small variance by chance. If that stopped its sampling, the
-//! image would become too dark. Decisions are therefore made for whole tiles and take neighbouring tiles into account
-//! (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global illumination").
-//! The tests and `benches/error_control.rs` measure the remaining bias.
+//! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
+//! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring
+//! tiles into account (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
+//! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
 
 use super::canvas::Canvas;
 use super::clock::Clock;

@@ -31,7 +31,7 @@ pub struct LightTree {
     nodes: Vec<Node>,
     /// For each light its slot: 8 × the index of its node, plus its lane in the node.
     slots: Vec<u32>,
-    /// Smaller squared distances count as this one; see [`BoundsLanes::importance`].
+    /// Squared distances below this value count as this value; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
