@@ -251,7 +251,7 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
 /// Largest number of elements to sort without a check for cancellation; sorting them takes a few milliseconds.
 const SERIAL_SORT: usize = 1 << 16;
 
-/// Sorts in parallel and checks for cancellation. After a cancel, the order is unspecified.
+/// Sorts in parallel and checks for cancellation. After cancellation, the order is unspecified.
 pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
     job.check()?;
     if data.len() <= SERIAL_SORT {

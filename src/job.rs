@@ -1,4 +1,4 @@
-//! Progress reports and cancel requests of long work.
+//! Progress reports of long computations, and requests to cancel them.
 //!
 //! The thread that works and the threads that watch share a [`Monitor`]. The worker reports through a [`Job`], which
 //! stands for a span of the whole progress bar. A routine thus reports progress from 0 to 1 without knowing which span
@@ -8,7 +8,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Progress in `[0, 1]`, which never falls, and a cancel request, which cannot be withdrawn.
+/// The state of a job: its progress in `[0, 1]`, which never falls, and whether the job is cancelled, which cannot be
+/// undone.
 pub struct Monitor {
     cancelled: AtomicBool,
     /// Number of uses of the memory reserve when the job started.

@@ -9,10 +9,11 @@
 //! ```
 //!
 //! [`transfer`] runs the first pipeline and passes data between its stages. The stages do not depend on each other.
-//! [`plan`] chooses settings of its last two stages for a target error or time. `ffi` is the C boundary, and the only
-//! module that deals with C. Both pipelines use these modules: [`scene`] (description, glTF, acceleration), [`render`]
-//! (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour temperature,
-//! glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks the dependencies between modules.
+//! [`plan`] chooses the settings of the last two stages of this pipeline for a target error or time. `ffi` is the C
+//! boundary, and the only module that deals with C. Both pipelines use these modules: [`scene`] (description, glTF,
+//! acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`],
+//! [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks the
+//! dependencies between modules.
 //!
 //! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with an estimate
 //! of its own error; and a function that runs the stage. The function takes a [`job::Job`], which reports progress and
@@ -35,7 +36,7 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-// Warn of calls that panic, exit or write to the console.
+// Warn about calls that panic, exit or write to the console.
 #![cfg_attr(
     not(test),
     warn(

@@ -8,10 +8,10 @@
 //! cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`has_room`] tests
 //! whether the system has enough memory.
 //!
-//! The process can still be aborted in three cases: another thread takes the memory right after this test; the system
-//! cannot serve the 48 bytes that the standard library requests from it directly when a thread starts or first fails
-//! in the library; or it cannot serve the allocations of the system's C library when a thread first calls this
-//! library.
+//! The process can still be aborted in three cases: another thread takes the memory right after the test by
+//! [`has_room`]; the system cannot serve the 48 bytes that the standard library requests from it directly when a
+//! thread starts or first fails in the library; or it cannot serve the allocations of the system's C library when a
+//! thread first calls this library.
 //!
 //! Without the feature `reserve`, the program that links the library chooses the allocator.
 

@@ -42,8 +42,8 @@ impl Level {
     }
 }
 
-/// Defines a function that is compiled for every level and dispatched at run time. The function may have only plain
-/// arguments, and no generics.
+/// Defines a function that is compiled for every level and dispatched at run time. Every argument must have the form
+/// `name: type`; generics are not supported.
 macro_rules! widest {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block) => {
         $(#[$meta])*

@@ -1,8 +1,8 @@
 //! Warnings: reasons to doubt a result, with remedies.
 //!
-//! A warning arises when a figure of a result crosses a limit. Each stage computes its warnings from its result alone,
-//! and a scene computes them from its contents; `warnings.rs` in the folder of the stage holds the limits. Warnings
-//! are not stored.
+//! A warning arises when a number that describes a result (the severity) crosses a limit. Each stage computes its
+//! warnings from its result alone, and a scene computes them from its contents; `warnings.rs` in the folder of the
+//! stage holds the limits. Warnings are not stored.
 
 use glam::DVec2;
 use std::fmt;
@@ -19,9 +19,9 @@ pub enum Code {
     LensDistortion = 3,
     /// View: the walls do not meet at right angles, or the pixels are not square.
     NotSquare = 4,
-    /// Features: the room was laid out from its lines with little confidence, and there is no depth map.
+    /// Features: the shape of the room, found from lines in the photo, is uncertain, and there is no depth map.
     LayoutUncertain = 5,
-    /// Mask: a large share of it is unlike all strokes.
+    /// Mask: much of it is unlike every stroke, or it leaves out regions that partly resemble the painted lamps.
     Unseen = 6,
     /// Mask: strokes of both classes cover the same pixels.
     ContradictoryStrokes = 7,
@@ -41,7 +41,7 @@ pub enum Code {
     PlaneNearHorizon = 14,
     /// Emission: the statistics of the texture differ from those of the photo.
     PatternUncertain = 15,
-    /// Emission: the photo shows fewer whole lamps than determine a pattern.
+    /// Emission: the photo shows too few whole lamps to determine a pattern.
     FewLamps = 16,
     /// Emission: the lamps form no lattice, so the texture is continued patch by patch, and it differs much from the
     /// photo.
@@ -62,7 +62,7 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has points, spots or luminaires, which have no surface that images could show.
+    /// Scene: it has point lights, spot lights or luminaires. Images cannot show them, because they have no surface.
     NotInPicture = 26,
 }
 
@@ -101,11 +101,11 @@ impl Code {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     pub code: Code,
-    /// The figure that caused the warning.
+    /// The number that caused the warning.
     pub severity: f64,
-    /// The limit that the figure has crossed.
+    /// The limit that the severity has crossed.
     pub limit: f64,
-    /// Describes the defect, with the figure.
+    /// Describes the defect, with the severity.
     pub message: String,
     /// Describes the remedy.
     pub advice: String,
@@ -114,7 +114,7 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// Returns a warning if the figure `severity` lies above `limit` or is not a number.
+    /// Returns a warning if `severity` lies above `limit` or is not a number.
     pub fn above(
         code: Code,
         severity: f64,
@@ -126,7 +126,7 @@ impl Warning {
         (!is_good).then(|| Self::new(code, severity, limit, message(), advice))
     }
 
-    /// Returns a warning if the figure `severity` lies below `limit` or is not a number.
+    /// Returns a warning if `severity` lies below `limit` or is not a number.
     pub fn below(
         code: Code,
         severity: f64,

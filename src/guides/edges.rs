@@ -6,14 +6,14 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Neighbouring pixels whose normals differ by this (1 - cosine; about 40°) form an edge of full strength
-/// [origin not recorded].
+/// Neighbouring pixels whose normals differ by this (1 - cosine; about 40°) form an edge of full strength.
+/// [origin not recorded]
 const FULL_CREASE: f32 = 0.25;
 /// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
-/// the depth [origin not recorded].
+/// the depth. [origin not recorded]
 const FULL_STEP: f32 = 0.02;
-/// Standard deviation, in pixels, of the blur of the edges, which lets patches beside an edge sense it
-/// [origin not recorded].
+/// Standard deviation of the blur of the edges, in pixels. Because of the blur, patches beside an edge contain a part
+/// of the edge. [origin not recorded]
 const BLUR: f32 = 0.8;
 
 /// Returns the strength of the edge at each pixel, in `[0, 1]`.

@@ -123,7 +123,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     Ok(Guides { light, normals, edges, materials, camera: camera.clone(), depth })
 }
 
-/// Returns an image of the colour codes of the pixels' materials.
+/// Returns an image in which each pixel has the colour that stands for its material.
 fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     let code = |name: &str| {
         let letters: Vec<u64> = name.bytes().map(u64::from).collect();
@@ -144,7 +144,7 @@ fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     pub normals: bool,
-    /// The edges of shapes, for shapes finer than the strokes (Fig. 16).
+    /// The edges of shapes, for shapes finer than the strokes (StyLit, Fig. 16).
     pub edges: bool,
     /// The colours of the materials, for artworks that paint each material in a style of its own.
     pub materials: bool,
@@ -152,7 +152,7 @@ pub struct Extras {
     pub caustics: bool,
 }
 
-/// A guide, as images of the two scenes.
+/// A guide: its image of the exemplar's scene (`source`) and its image of the target scene (`target`).
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: &'static str,
@@ -196,10 +196,10 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     Ok(pairs)
 }
 
-/// The value that the 90th percentile of luminance gets at the common exposure [convention].
+/// The value that the 90th percentile of luminance gets at the common exposure. [convention]
 const BRIGHT: f32 = 0.8;
 
-/// Returns the factor from luminance in cd/m² to values at the common exposure.
+/// Returns the factor that converts luminance in cd/m² to values at the common exposure.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::image::Image;
 use glam::Vec3;
 
-/// A point was occluded in the previous frame if its depth exceeds the depth seen there by more than this share
-/// [origin not recorded].
+/// A point was occluded in the previous frame if its depth exceeds the depth seen there by more than this share.
+/// [origin not recorded]
 const DEPTH_TOLERANCE: f32 = 0.02;
 
 /// Computes the displacement in pixels from each pixel to the position of its surface point in the previous frame: two

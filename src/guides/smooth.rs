@@ -7,11 +7,11 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Number of passes; the distance between the pixels averaged doubles from pass to pass.
+/// Number of passes; the distance between the averaged pixels doubles from pass to pass.
 const PASSES: u32 = 3;
-/// The cubic B-spline that each pass applies along x and y [convention].
+/// The cubic B-spline that each pass applies along x and y. [convention]
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Relative difference in brightness at which the weight of a neighbour falls to 1/e [origin not recorded].
+/// Relative difference in brightness at which the weight of a neighbour falls to 1/e. [origin not recorded]
 const TOLERANCE: f32 = 0.25;
 
 /// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is
@@ -38,8 +38,8 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` returns the weight of a
-    /// pair of pixels from their brightness in `guide`.
+    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` computes the weight of a
+    /// pair of pixels from the brightness of both pixels in `guide`.
     fn average(
         &self,
         light: &Image,

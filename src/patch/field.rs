@@ -5,7 +5,7 @@ use super::position::{NONE, pack, unpack};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 
-/// For each patch of one image, its match in another image and their distance.
+/// For each patch of one image, its match in another image and the distance between patch and match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     /// Number of patches along x and y.
@@ -28,7 +28,8 @@ impl Field {
         Ok(Self { at: copy(&self.at)?, error: copy(&self.error)?, ..*self })
     }
 
-    /// Returns a field of hints: each patch points to the same relative position among the patches of `base`.
+    /// Returns a field of hints (initial positions for the search): each patch points to the same relative position
+    /// among the patches of `base`.
     pub fn proportional(width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -37,9 +38,9 @@ impl Field {
         Ok(field)
     }
 
-    /// Returns the field at twice the resolution, as hints. Each match is twice the coarse match plus the parity of
-    /// the fine position, clamped to `base`. If the finer image has more than twice the patches of the coarse image,
-    /// the extra patches continue the match of the last coarse patch.
+    /// Returns the field at twice the resolution. Its matches are hints, initial positions for the search. Each match
+    /// is twice the coarse match plus the parity of the fine position, clamped to `base`. If the finer image has more
+    /// than twice the patches of the coarse image, the extra patches continue the match of the last coarse patch.
     pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -54,8 +55,9 @@ impl Field {
         Ok(field)
     }
 
-    /// Returns the inverse field: for each patch of `base`, the patch of this field that is matched to it, and their
-    /// distance. Hints are left out. If several patches share a match, the closest one is taken (the first, if equal).
+    /// Returns the inverse field: for each patch of `base`, the patch of this field that is matched to it, and the
+    /// distance between the two. Hints, which have no distance yet, are left out. If several patches share a match,
+    /// the closest one is taken (the first, if equal).
     pub fn invert(&self, base: &Domain) -> Result<Self> {
         let mut inverse = Self::new(base.width, base.height)?;
         for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {

@@ -13,20 +13,21 @@ use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// The occurrence map. A search on one thread updates it with every match that changes.
+/// The occurrence of every pixel of an image. A search updates it with every match that changes, and therefore runs on
+/// one thread.
 pub struct Occurrence {
     /// Width of the image (`width`) and of a patch (`patch`), in pixels.
     width: usize,
     patch: usize,
     /// Ω of each pixel: the number of matches that contain it.
     uses: Vec<AtomicU32>,
-    /// Penalty of one use of each pixel.
+    /// Penalty of one use, for each pixel.
     each: Vec<f32>,
 }
 
 impl Occurrence {
-    /// Counts the matches of `field` among the `allowed` patches of width `patch`. Under uniform usage, the penalty of
-    /// a match is `weight`, in the units of a distance.
+    /// Counts the matches of `field` among the `allowed` patches of width `patch`. `weight` is the penalty that a
+    /// match has under uniform usage, in the units of a distance.
     pub fn new(field: &Field, allowed: &Domain, patch: usize, weight: f64) -> Result<Self> {
         let (width, height) = (allowed.width + patch - 1, allowed.height + patch - 1);
         let matched = field.at.iter().filter(|&&at| at != NONE);

@@ -9,7 +9,7 @@ use crate::job::Job;
 pub const LANES: usize = 8;
 
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
-/// differences equals the weighted sum of Eq. 1.
+/// differences equals the weighted sum of Eq. 1 of StyLit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuantisedImage {
     pub width: usize,
@@ -49,14 +49,15 @@ pub struct Quantiser {
 }
 
 impl Quantiser {
-    /// Returns quantisers for channels of the given weights (≥ 0, at least one positive), as fine as a patch of width
-    /// `patch` allows: the largest possible sum of squared differences stays below 2³¹.
+    /// Returns quantisers for channels of the given weights (≥ 0, at least one positive). The quantisers are as fine
+    /// as possible while the largest possible sum of squared differences between two patches of width `patch` stays
+    /// below 2³¹.
     pub fn for_weights(weights: &[f64], patch: usize) -> Vec<Self> {
         let unit = Self::unit(weights, patch);
         weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
     }
 
-    /// Returns the integer to which a value of 1 is quantised at weight 1, before rounding.
+    /// Returns the scale of a channel of weight 1: the number to which the value 1 is quantised, before rounding.
     pub fn unit(weights: &[f64], patch: usize) -> f64 {
         let total: f64 = weights.iter().sum();
         // Rounding can lengthen each difference by one step; the margin of two per cent leaves room for that.
@@ -64,7 +65,8 @@ impl Quantiser {
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Add one half to round to nearest, as the value is non-negative: this needs no call of the C library.
+        // Add one half to round to the nearest integer. This is possible because the value is non-negative, and avoids
+        // a call of the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

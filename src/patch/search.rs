@@ -83,7 +83,8 @@ impl Search<'_> {
         })
     }
 
-    /// Compares every active patch with every allowed patch: for images of a few thousand pixels.
+    /// Compares every active patch with every allowed patch. This is meant for images of at most a few thousand
+    /// pixels.
     pub fn exhaustive(&self, field: &mut Field, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let width = field.width;
         let rows = exec::map(field.height, job, |y| {
@@ -205,7 +206,7 @@ impl Tile {
             let total = self.error[i].saturating_add(search.cost(self.at[i]));
             let mut best = Best { at: self.at[i], error: total, x, y };
 
-            // Propagation: try the matches of the two neighbours visited last, shifted by one.
+            // Propagation: try the matches of the two neighbours already visited in this direction, shifted by one.
             let d = if backwards { 1 } else { -1 };
             for (dx, dy) in [(d, 0), (0, d)] {
                 if let Some(neighbour) = self.neighbour(before, x as isize + dx, y as isize + dy) {
@@ -300,8 +301,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet. Then tries positions around the best match, at
-    /// falling radii.
+    /// Tries uniformly random positions if there is no match yet. Then tries random positions around the best match,
+    /// within decreasing radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {

@@ -71,7 +71,7 @@ impl Table {
             let members = &mut order[low..high];
             let half = members.len() / 2;
             if !members.is_empty() {
-                // Split the channel of the widest range at its median; ties are ordered by position.
+                // Split the channel with the widest range at its median; ties are ordered by position.
                 let channel = widest(means, members);
                 let key = |&position: &u32| (means.of(position)[channel], position);
                 members.select_nth_unstable_by_key(half, key);
@@ -99,7 +99,7 @@ impl Table {
     }
 }
 
-/// Returns the channel of the widest range in a sample of the members.
+/// Returns the channel whose values have the widest range in a sample of the members.
 fn widest(means: &Means, members: &[u32]) -> usize {
     let step = (members.len() / 256).max(1);
     let spread = |channel: usize| {
@@ -107,12 +107,13 @@ fn widest(means: &Means, members: &[u32]) -> usize {
         let (low, high) = values.fold((i16::MAX, i16::MIN), |(l, h), v| (l.min(v), h.max(v)));
         i32::from(high) - i32::from(low)
     };
-    // Of equal ranges, take the first channel, so that padding is never chosen.
+    // If several channels have the widest range, take the first one, so that padding is never chosen.
     (0..means.lanes).rev().max_by_key(|&c| spread(c)).unwrap_or(0)
 }
 
 impl Search<'_> {
-    /// Compares each active patch with `tries` allowed patches that are nearest in tree order; no distance rises.
+    /// Compares each active patch with up to `tries` allowed patches, beginning with the nearest ones in tree order;
+    /// no distance rises.
     pub fn look_up(
         &self,
         field: &mut Field,

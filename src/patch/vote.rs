@@ -1,5 +1,5 @@
-//! Reconstructs the image from a field by Algorithm 1: averages the pixels that overlapping matches place at each
-//! position.
+//! Reconstructs the image from a field by Algorithm 1 of StyLit: averages the pixels that overlapping matches place at
+//! each position.
 
 use super::field::Field;
 use super::position::{NONE, pack, unpack};
@@ -11,7 +11,7 @@ use crate::job::Job;
 /// How the pixels placed at the same position are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vote {
-    /// The mean, as in the paper.
+    /// The mean, as in StyLit.
     Plain,
     /// The mean weighted by `1 / (1 + E / mean E)`, where E is the distance of a match.
     Weighted,

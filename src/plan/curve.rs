@@ -16,18 +16,18 @@ pub(super) struct Curve {
 
 /// Minimum and maximum exponents with which squared errors fall with time: the minimum holds for independent samples,
 /// the maximum for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth
-/// functions") [paper: Owen 1997].
+/// functions"). [paper: Owen 1997]
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, for which nets gain less
-/// [origin not recorded].
+/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, and there scrambled nets gain
+/// less. [origin not recorded]
 const MAX_EXTRAPOLATED: f64 = 2.0;
 
-/// Factor by which an allocation step lengthens the time of a stage [convention].
+/// Factor by which an allocation step lengthens the time of a stage. [convention]
 const STEP: f64 = 1.01;
 
 impl Curve {
-    /// Returns the curve of a squared error that falls with time as for independent samples; it is `square` after the
-    /// minimum time.
+    /// Returns the curve for independent samples: the squared error is `square` after the minimum time, and inversely
+    /// proportional to the time.
     pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
         let point = |times: f64| [times * min_seconds, square / times];
         Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
@@ -46,17 +46,17 @@ impl Curve {
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
 
-    /// Returns the decrease of the squared error per second in the allocation step from `seconds`; 0 at the end of the
-    /// curve.
+    /// Returns by how much the squared error falls per second during the allocation step that begins at `seconds`; 0
+    /// at the end of the curve.
     fn gain(&self, seconds: f64) -> f64 {
         let next = (seconds * STEP).min(self.max_seconds);
         if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
     }
 }
 
-/// Returns the seconds for each stage. Each stage starts with its minimum time. Then small steps of time go to the
-/// stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more. Since
-/// gains fall along every curve, no other allocation is better by more than a step.
+/// Returns the time for each stage, in seconds. Each stage starts with its minimum time. Then small steps of time go
+/// to the stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more
+/// time. Since gains fall along every curve, no other allocation is better by more than a step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn time_goes_where_it_lowers_the_error_most() {
-        // For squared errors a / t and b / t, the optimal times are proportional to the roots of a and b.
+        // For squared errors a / t and b / t, the optimal times are proportional to the square roots of a and b.
         let curves = [monte_carlo(1.0), monte_carlo(9.0)];
         let seconds = allocate(&curves, Goal::Seconds(8.0));
         assert!((seconds.iter().sum::<f64>() - 8.0).abs() < 1e-9);
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(allocate(&[short], Goal::Seconds(9.0)), [0.5]);
         assert_eq!(allocate(&[short], Goal::Error(1e-5)), [0.5]);
         assert_eq!(allocate(&[short, short], Goal::Seconds(0.001)), [0.01, 0.01]);
-        // A stage without error gets only its minimum.
+        // A stage without error gets only its minimum time.
         let exact = monte_carlo(0.0);
         assert_eq!(allocate(&[exact, monte_carlo(1.0)], Goal::Seconds(1.0))[0], 0.01);
     }

@@ -1,7 +1,7 @@
 //! Planning: chooses settings of the lighting stages and of a stylisation for a target error or time, before they run.
 //!
-//! The caller specifies the noise of the picture or the time it may take ([`Goal`]). The plan returns the settings of
-//! relighting and rendering, with the expected time and error of each.
+//! The caller specifies the error (noise) that the picture may have, or the time that it may take ([`Goal`]). The plan
+//! returns the settings of relighting and rendering, with the expected time and error of each.
 //!
 //! The cost of a path and the variance of paths depend on the machine and the scene and cannot be predicted by
 //! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few
@@ -12,7 +12,7 @@
 //! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
 //! [`crate::render::Film::error`]. An error of the emission's solution scales all light of the picture by a common
 //! factor; its contribution is its relative standard error times the picture's contrast, which is the root mean square
-//! divided by the mean. The error of a stylisation is the root of its energy.
+//! divided by the mean. The error of a stylisation is the square root of its energy (StyLit, Eq. 3).
 //!
 //! Assumption: the machine later performs as it does now, with the same number of threads, and is otherwise idle while
 //! the plan is made.
@@ -40,8 +40,8 @@ use std::time::{Duration, Instant};
 /// The goal of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or the root of
-    /// the energy of a stylisation.
+    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or, for a
+    /// stylisation, the square root of its energy (StyLit, Eq. 3).
     Error(f64),
     /// Total seconds of the planned stages, in `[1e-3, 1e6]`.
     Seconds(f64),
@@ -73,16 +73,16 @@ pub fn wall() -> impl Fn() -> Duration + Sync {
     move || start.elapsed()
 }
 
-/// Runs `work` and returns the seconds it took by a clock, and its result.
+/// Runs `work`. Returns how many seconds `work` took, measured with `clock`, and its result.
 fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock();
     let value = work();
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// A stage that stops at a target error may cost at most this many times the expected cost [origin not recorded].
+/// A stage that stops at a target error may cost at most this many times the expected cost. [origin not recorded]
 const MAX_COST: f64 = 4.0;
-/// A stage with a time budget may take at most this many times the expected time [origin not recorded].
+/// A stage with a time budget may take at most this many times the expected time. [origin not recorded]
 const MAX_OVERTIME: f64 = 1.25;
 
 /// Returns the time budget in milliseconds that stops a stage if it takes much longer than expected.

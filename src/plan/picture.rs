@@ -1,4 +1,4 @@
-//! Plans the rendering of the picture: predicts the time for an error from a few rendered tiles.
+//! Plans the rendering of the picture: predicts the time needed for a given error from a few rendered tiles.
 
 use super::curve::{Curve, allocate};
 use super::{Clock, Expected, Goal, MAX_COST, overtime};
@@ -8,12 +8,13 @@ use crate::render::pilot::{self, PATHS, REPLICATIONS, nets};
 use crate::render::{self, Pilot, World};
 use crate::scene::Camera;
 
-/// Minimum number of paths per pixel for which the error is estimated: one per replication [convention].
+/// Minimum number of paths per pixel of a planned rendering: one per replication (point sequence of a pixel).
+/// [convention]
 const MIN_PATHS: f64 = REPLICATIONS as f64;
-/// Maximum number of paths per pixel [convention].
+/// Maximum number of paths per pixel. [convention]
 const MAX_PATHS: f64 = (1u32 << 20) as f64;
-/// Number of paths per pixel after which adaptive sampling starts if there is a target error, as in the renderer
-/// [convention].
+/// Number of paths per pixel after which adaptive sampling starts if there is a target error, as in the renderer.
+/// [convention]
 const ADAPTIVE_FROM: f64 = pilot::MIN_UNIFORM_PATHS as f64;
 
 /// A planned rendering.
@@ -72,8 +73,8 @@ impl Picture {
         nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
-    /// Returns the factor by which adaptive sampling reduces the number of paths for an error. The pilot measures the
-    /// ideal reduction; doubling the paths of tiles one by one achieves its square root.
+    /// Returns the factor by which adaptive sampling reduces the number of paths needed for a given error. The pilot
+    /// measures the ideal reduction; doubling the paths of tiles one by one achieves its square root.
     fn saved(&self) -> f64 {
         self.pilot.adaptive_gain.sqrt()
     }
@@ -84,9 +85,8 @@ impl Picture {
         Curve { min_seconds: self.seconds(MIN_PATHS), max_seconds: self.seconds(MAX_PATHS), points }
     }
 
-    /// Returns the settings for a time in seconds, which is allocated on the curve of uniform sampling. For a goal in
-    /// seconds, the settings use this time. For an error goal, they aim at the error that the curve has after this
-    /// time.
+    /// Returns the settings of a rendering that gets the time `seconds`. For a goal in seconds, the settings use this
+    /// time. For an error goal, they aim at the error that uniform sampling reaches in this time.
     pub fn plan(&self, params: &render::Params, goal: Goal, seconds: f64) -> Rendering {
         let plain = render::Params {
             target_error: 0.0,

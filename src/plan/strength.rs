@@ -1,5 +1,5 @@
-//! Plans the solution for the strength of the emission: predicts the time for an error from a few short trial
-//! solutions.
+//! Plans the solution for the strength of the emission: predicts the time needed for a given error from a few short
+//! trial solutions.
 
 use super::curve::Curve;
 use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
@@ -13,14 +13,16 @@ use glam::Vec3;
 /// that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Seed that separates the trials' random paths from those of the solution.
+/// Constant that is XORed with the seed of the solution, so that the trials trace different random paths.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
-/// Radiance in cd/m² far above that of any other light [convention].
+/// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
+/// must supply it. [convention]
 const DOMINANT: f32 = 1e9;
 /// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
-/// [`relight::Params::paths`] [convention].
+/// [`relight::Params::paths`]. [convention]
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
-/// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
+/// Half-width of a 95 % confidence interval in standard errors: Student's factor for the number of batches used.
+/// [convention]
 const HALF_WIDTH: f64 = 2.04;
 
 /// Measured cost and error of the solution for the emission's strength.
@@ -31,9 +33,9 @@ pub(super) struct Strength {
 }
 
 impl Strength {
-    /// Runs the trials for an emitting material and the triangles of the target. They solve for the radiance that the
-    /// target currently receives from the emission and all other light; without other light, any target gives the same
-    /// relative error.
+    /// Runs the trials for an emitting material and the triangles of the target. After the first trial, the target
+    /// radiance is that which the emission and all other light currently produce; without other light, any target
+    /// gives the same relative error.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,
@@ -76,7 +78,7 @@ impl Strength {
     }
 
     /// Returns how much a solution contributes to the error of a picture, given the relative half-width of the
-    /// solution's interval.
+    /// solution's confidence interval.
     pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
@@ -87,7 +89,7 @@ impl Strength {
 
     /// Returns the settings, and the expected time and error. For a goal in seconds, the settings use the time
     /// `seconds`. For an error goal, they aim at the error expected after this time. The error is the relative
-    /// half-width of the solution's interval.
+    /// half-width of the solution's confidence interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);

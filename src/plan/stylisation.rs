@@ -1,4 +1,5 @@
-//! Plans a stylisation: chooses the most careful settings within a time, or the quickest for an error.
+//! Plans a stylisation: chooses the most careful settings that fit in a given time, or the quickest settings that
+//! reach a given error.
 
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
@@ -9,8 +10,8 @@ use crate::stylize::{Input, Mode, Params, PilotRuns};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stylisation {
     pub params: Params,
-    /// The error is the root of the energy (Eq. 3): the root mean square difference of matched patches in colours and
-    /// guides.
+    /// The expected time and error. The error is the square root of the energy (StyLit, Eq. 3): the root mean square
+    /// difference between matched patches in colours and guides.
     pub expected: Expected,
 }
 
@@ -36,8 +37,8 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
     }
 }
 
-/// Returns settings from quick to careful, from the Pareto front in `benches/stylit.rs`, and the index of the
-/// reference settings, those of `Params::fast`.
+/// Returns a list of settings, in the order from quick to careful, and the index of the reference settings
+/// (`Params::fast`) in this list. The settings come from the Pareto front in `benches/stylit.rs`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
     // These modes make at most one matching pass, so their settings offer no choice.
     if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {

@@ -17,7 +17,8 @@ use std::sync::Arc;
 pub struct Lighting {
     pub relight: relight::Params,
     pub render: render::Params,
-    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's interval.
+    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's
+    /// confidence interval.
     pub solving: Expected,
     /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,
@@ -60,7 +61,8 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     Ok(Lighting { relight, render, solving, rendering, whole })
 }
 
-/// Checks the preconditions of a plan, which takes negligible time. Returns the scene with the lamps to be solved for.
+/// Checks the preconditions of a plan; this takes negligible time. Returns the scene with the lamps whose strength is
+/// to be solved for.
 pub fn check(transfer: &Transfer, goal: Goal) -> Result<Arc<LitScene>> {
     goal.check()?;
     transfer.params.check(Stage::Relight)?;

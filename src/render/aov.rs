@@ -50,8 +50,8 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Returns the name of the attribute's layer in image files: the name that Blender or Nuke uses, if either has
-    /// one.
+    /// Returns the name of the attribute's layer in image files. It is the name that Blender or Nuke uses, where one
+    /// of these programs has the attribute.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -89,8 +89,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f64 values per pixel in which a rendered part accumulates this attribute (the lossless
-    /// sums, see [`Surfaces::add_to`]).
+    /// Returns the number of f64 values per pixel (the lossless sums, see [`Surfaces::add_to`]) in which a render in
+    /// parts (`super::parts`) accumulates this attribute.
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -98,7 +98,7 @@ impl Aov {
         }
     }
 
-    /// Computes the totals of a film's pixel from the lossless sums of the pixel.
+    /// Converts the lossless f64 sums of a pixel to the f32 totals that a film stores.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -115,7 +115,7 @@ impl Aov {
     }
 
     /// Writes the value of a pixel to `out`, computed from the pixel's totals, number of hits and number of samples.
-    /// Positions are relative to the centre of the world.
+    /// Positions stay relative to the origin of world coordinates (`facet::centre`).
     pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
@@ -127,7 +127,7 @@ impl Aov {
             Self::Albedo => (vector() / samples).as_vec3().write_to_slice(out),
             Self::Object | Self::Material => out[0] = if hits > 0.0 { totals[0] } else { 0.0 },
             Self::Alpha => out[0] = (hits / samples) as f32,
-            // The film computes the luminance from the main image.
+            // Nothing to write: the film computes the luminance from the main image.
             Self::Luminance => (),
         }
     }
@@ -162,7 +162,7 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds these sums to the film's totals of the pixel.
+    /// Adds these sums to the f32 totals that the film keeps for the pixel.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),
@@ -171,7 +171,7 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to the lossless f64 sums of a rendered part. Vote counts are exact for up to
+    /// Adds these sums to the lossless f64 sums of the pixel in a render in parts. Vote counts are exact for up to
     /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
@@ -181,7 +181,7 @@ impl Surfaces {
         }
     }
 
-    /// Returns the sum of an attribute that is not an index. A scalar attribute is in the first component.
+    /// Returns the sum of an attribute that is not an index. The sum of a scalar attribute is in the first component.
     fn sum(&self, aov: Aov) -> DVec3 {
         match aov {
             Aov::Depth => DVec3::splat(self.depth),

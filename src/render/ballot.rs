@@ -5,18 +5,19 @@
 //! merging. If it shows more, votes for rare candidates cancel votes for the others, but an index with a majority
 //! still wins.
 
-/// Largest number of different candidates that one ballot can hold. [origin not recorded]
+/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. [origin
+/// not recorded]
 const CANDIDATES: usize = 4;
 /// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;
 
-/// Adds `votes` votes for `candidate` to a ballot.
+/// Adds `votes` votes for `candidate` to a ballot, a list of candidates with their votes.
 pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     let (slots, _) = ballot.as_chunks_mut::<2>();
     let Some(place) =
         slots.iter().position(|s| s[1] > 0.0 && s[0] == candidate).or_else(|| slots.iter().position(|s| s[1] == 0.0))
     else {
-        // No slot is free: cancel the same number of votes of every candidate in the ballot and of the new one.
+        // No slot is free: cancel an equal number of votes for each candidate in the ballot and for the new candidate.
         let min_votes = slots.iter().fold(votes, |min_votes, s| min_votes.min(s[1]));
         slots.iter_mut().for_each(|s| s[1] -= min_votes);
         if votes > min_votes {

@@ -29,7 +29,8 @@ pub struct Substance {
     pub f0: Vec3,
     pub f90: f32,
     pub roughness: f32,
-    /// Straight transmittance, before the reflection loss at the top layer is subtracted; 0 for opaque materials.
+    /// Share of the light that continues in a straight line through the material, before the reflection loss at the
+    /// top layer is subtracted; 0 for opaque materials.
     pub transmission: Vec3,
     /// Reflectance of the dielectric part alone at normal incidence. It determines the attenuation of the diffuse
     /// layer.
@@ -37,7 +38,8 @@ pub struct Substance {
 }
 
 impl Substance {
-    /// Returns the straight transmittance for a ray whose angle to the normal has this cosine.
+    /// Returns the share of light that continues in a straight line for a ray whose angle to the normal has this
+    /// cosine.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
@@ -58,13 +60,13 @@ pub struct Bsdf<'a> {
     layers: Option<Layers<'a>>,
 }
 
-/// The top layer (GGX or mirror) and the straight transmission.
+/// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
 struct Layers<'a> {
     substance: Substance,
     /// The two tangents of the shading frame; its third axis is the shading normal.
     tangents: [Vec3; 2],
     wo: Vec3,
-    /// Straight transmittance towards the viewer.
+    /// Share of the light that passes through the material in a straight line towards the viewer.
     through: Vec3,
     /// Selection probabilities of the diffuse layer and the top layer; the rest selects transmission.
     shares: [f32; 2],
@@ -110,10 +112,10 @@ pub enum ScatterKind {
 }
 
 impl<'a> Bsdf<'a> {
-    /// Builds the BSDF towards the viewer, who lies in direction `wo`; both normals are flipped to face the viewer.
-    /// Reflection is two-sided for all materials, because walls of rooms are often modelled with outward-facing
-    /// normals. `layered` must be true if the material may have layers besides the diffuse one. `table` may be `None`
-    /// if no material of the scene has a top layer.
+    /// Builds the BSDF for a viewer in direction `wo`; both normals are flipped to face the viewer. Reflection is
+    /// two-sided for all materials, because walls of rooms are often modelled with outward-facing normals. `layered`
+    /// must be true if the material may have layers besides the diffuse one. `table` may be `None` if no material of
+    /// the scene has a top layer.
     #[inline]
     pub fn new(
         substance: &Substance,
@@ -190,8 +192,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Returns the non-specular lobes times the cosine, and the solid-angle pdf with which [`Bsdf::sample`] draws
-    /// `direction`.
+    /// Returns the values of the non-specular lobes times the cosine, and the solid-angle pdf with which
+    /// [`Bsdf::sample`] draws `direction`.
     #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let cosine = direction.dot(self.normal);
@@ -334,7 +336,7 @@ impl<'a> Layers<'a> {
 /// The directional albedo of a rough dielectric top layer, looked up in the albedo table.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
-    /// Factors of the two values of a table entry (scale and bias): `dielectric_f0` and `f90`.
+    /// Factors by which the two values of a table entry, scale and bias, are multiplied: `dielectric_f0` and `f90`.
     weights: Vec2,
 }
 

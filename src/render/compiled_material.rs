@@ -22,7 +22,7 @@ pub struct CompiledMaterial {
 }
 
 impl CompiledMaterial {
-    /// Returns a copy with all flags set, so that tracing assumes every shading feature.
+    /// Returns a copy with all flags set, so that tracing evaluates every shading feature.
     pub fn without_analysis(&self) -> Self {
         Self {
             is_textured: true,

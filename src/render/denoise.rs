@@ -56,9 +56,9 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview: the root mean square of the bias averaged over squares of 8 × 8 pixels, relative
-    /// to the mean of the image. The square of this estimate is unbiased. Blur within a square of pixels goes
-    /// undetected.
+    /// Estimated bias of the preview, relative to the mean of the image. The bias is averaged within squares of 8 × 8
+    /// pixels; this is the root mean square of these averages. The square of this estimate is unbiased. Blur within a
+    /// square of pixels goes undetected.
     pub bias: f64,
 }
 
@@ -67,11 +67,11 @@ const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Kernel weight of a neighbour in the same row or column, relative to the weight of the pixel itself: the binomial
 /// kernel. [convention]
 const TAP: f32 = 0.5;
-/// Ratio of two variances: of one half, and of the mean of both halves. It is exact for independent halves.
-/// [convention]
+/// Variance of one half of the paths, divided by the variance of the mean of both halves; exactly 2 if the halves are
+/// independent. [convention]
 const HALF: f32 = 2.0;
-/// Range weight: let the squared difference in luminance be this multiple of the sum of the two variances. Then, at
-/// strength 1, the weight of a neighbour falls by a factor e. [origin not recorded]
+/// Luminance weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in
+/// luminance is this multiple of the sum of the two variances. [origin not recorded]
 const RANGE: f32 = 12.0;
 /// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
 /// direction to the neighbour has this value. [origin not recorded]
@@ -152,8 +152,8 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Each row stores its
-/// channels one after the other.
+/// Returns the image of one half of the paths, divided by the albedo, with the variance of the resulting luminance as
+/// fourth channel. Each row stores its channels one after the other.
 fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
@@ -172,7 +172,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
     Ok(out)
 }
 
-/// One level of the filter, with the images that it reads.
+/// One level of the filter, with the data that it reads.
 struct Level<'a> {
     light: &'a [f32],
     guide: &'a [f32],

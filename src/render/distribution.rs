@@ -1,4 +1,4 @@
-//! A discrete distribution that is sampled in proportion to weights.
+//! A discrete distribution, which samples entries in proportion to their weights.
 
 use crate::error::Result;
 use crate::image::try_vec;

@@ -35,8 +35,9 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
 /// if its distance exceeds this multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// To locate the detail of a large scene, the corners of at least this many triangles are used, and of fewer than
-/// twice as many. The number is small, so that the list of corners fits in the memory reserve. [convention]
+/// Number of triangles from which the detail of a scene (the region where most triangles lie) is located. In a larger
+/// scene, every n-th triangle is used, so that at least this many and fewer than twice as many are used. The number is
+/// small, so that the list of their corners fits in the memory reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -54,7 +55,8 @@ impl Facet {
         emitter: NONE,
     };
 
-    /// Builds triangle number `triangle` of mesh number `index`. `corners` are relative to the centre of the world.
+    /// Builds triangle number `triangle` of mesh number `index`. `corners` are in world coordinates (relative to
+    /// [`centre`]).
     pub fn new(corners: [Vec3; 3], index: u32, mesh: &Mesh, triangle: usize) -> Self {
         // Compute edges and normal in f64, because small triangles far from the centre suffer from cancellation in
         // f32.
@@ -119,10 +121,10 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// origin, grid points are multiples of the f32 spacing there, so subtracting a grid point from the coordinates is
 /// exact. A scene nearer to the origin is not translated, because a translation would hardly gain precision.
 ///
-/// A stray object at the origin of a national grid makes the scene as large as the distance from that origin to the
-/// building. Therefore, if most triangles lie close together and far from the origin, the centre is the median
-/// position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the coordinates of
-/// the other triangles are rounded, to the f32 spacing that the building had in its file.
+/// A stray object at the origin of a country's map coordinates makes the scene as large as the distance from that
+/// origin to the building. Therefore, if most triangles lie close together and far from the origin, the centre is the
+/// median position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the
+/// coordinates of the other triangles are rounded, to the f32 spacing that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {

@@ -132,7 +132,7 @@ fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
     }
 }
 
-/// A luminaire with a luminous opening, which is therefore rated.
+/// A luminaire that is rated, because it has a luminous opening.
 struct Lamp {
     light: usize,
     position: DVec3,
@@ -140,7 +140,7 @@ struct Lamp {
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Factor on the intensity distribution: the luminance of the light's colour.
+    /// Luminance of the light's colour, by which the intensity distribution is multiplied.
     factor: f64,
 }
 
@@ -161,8 +161,8 @@ impl Lamp {
         self.position + self.frame[0] * p.x + self.frame[1] * p.y + self.frame[2] * p.z
     }
 
-    /// Returns direction, distance, projected area (m²) and intensity (cd) as seen from `eye`; `None` if the opening
-    /// is seen edge-on.
+    /// Returns direction, distance, projected area (m²) and intensity (cd) of the luminaire as seen from `eye`; `None`
+    /// if the eye sees the opening edge-on.
     fn sight(&self, world: &World, eye: DVec3) -> Option<Sight> {
         let (towards, distance) = (self.position - eye).normalize_and_length();
         let u = self.local(-towards);
@@ -173,7 +173,8 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(Sight { towards, distance, area, candela })
     }
 
-    /// Returns the visible share of the projected area, and the mean squared transmittance over the visible part.
+    /// Returns which share of the opening's projected area is visible, and the mean squared transmittance over the
+    /// visible part.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);

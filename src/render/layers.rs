@@ -1,8 +1,8 @@
 //! Layers: images that are rendered beside the main image, by light path expressions (`lpe`) or from surface
 //! attributes (`aov`).
 //!
-//! Layers use the paths of the main image and leave it unchanged bit by bit. A recorder sums the paths of a pass in
-//! f64. The totals of a pixel are in f32 and grow from pass to pass.
+//! Layers use the paths of the main image and do not change the main image by a single bit. A recorder sums the paths
+//! of a pass in f64. The totals of a pixel are in f32 and grow from pass to pass.
 
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Lobes, ScatterKind};
@@ -19,7 +19,7 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The layer totals of a tile, pixel after pixel, locked for one worker.
+/// The sums of all layers over the paths of a tile (the totals), pixel after pixel, locked for one worker.
 pub type TileTotals<'a> = MutexGuard<'a, Vec<f32>>;
 
 /// Longest name of a layer in bytes (`MAX_NAME_BYTES`), and largest number of light path expressions (`MAX_LAYERS`).
@@ -82,7 +82,7 @@ pub struct Layers<'a> {
     eye: Vec3,
     forward: Vec3,
     pub(super) automaton: Automaton,
-    /// Length of a pixel's totals in numbers.
+    /// How many totals are stored per pixel.
     width: usize,
     /// Totals of each tile. Only one worker at a time processes a tile, so no lock ever waits.
     tiles: Vec<Mutex<Vec<f32>>>,
@@ -226,7 +226,7 @@ pub struct Recorder<'a> {
     /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Light of the pixel's paths: one sum for each list in [`Automaton::lists`].
+    /// Sums of the light of the pixel's paths, one for each list of expressions in [`Automaton::lists`].
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
@@ -249,13 +249,13 @@ impl Recorder<'_> {
         self.beauty
     }
 
-    /// Moves the recorded sums to the totals of a pixel of the tile.
+    /// Adds the recorded sums to the totals of a pixel of the tile, and clears the recorded sums.
     pub fn add_to_totals(&mut self, totals: &mut TileTotals, pixel: usize) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
             totals[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        // Add the sum of each list to the totals of all expressions on the list.
+        // Add the sum of each list of expressions to the totals of the expressions on it.
         let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();
@@ -276,8 +276,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Moves the recorded sums of a pixel to f64 totals: three numbers per expression, then the number of primary
-    /// hits, then [`Aov::summed`] numbers per surface attribute.
+    /// Adds the recorded sums of a pixel to f64 totals, and clears the recorded sums. The totals have three numbers
+    /// per expression, then the number of primary hits, then [`Aov::summed`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());

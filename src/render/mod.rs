@@ -123,12 +123,12 @@ pub fn irradiance_in_air<S: PathSink>(
 /// (see `film::adaptive`).
 ///
 /// # Errors
-/// Parameters out of range; a degenerate camera; lights so bright that pixels overflow; no memory; cancelled. After a
-/// cancel the last published film is valid.
+/// Parameters out of range; a degenerate camera; lights so bright that pixels overflow; no memory; cancelled. After
+/// cancellation, the last published film is valid.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
-    // Assemble films with a separate job, because they are also needed after a cancel.
+    // Assemble films with a separate job, because they are also needed after cancellation.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);

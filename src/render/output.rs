@@ -5,7 +5,7 @@ use super::layers::Layer;
 use crate::error::Result;
 use crate::image::Image;
 
-/// The image rendered so far. It stays usable after a cancel and when the time budget is used up.
+/// The image rendered so far. It stays usable after cancellation and when the time budget is used up.
 #[derive(Clone, Debug)]
 pub struct Film {
     /// Mean radiance of each pixel, linear RGB in cd/m². A pixel without paths shows a nearby pixel that has paths.
@@ -25,7 +25,8 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of emissive points, spots and luminaires, which have no surface that the image could show.
+    /// Number of point lights, spot lights and luminaires that emit. The image cannot show them, because they have no
+    /// surface.
     pub unseen_lights: usize,
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.

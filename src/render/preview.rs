@@ -1,4 +1,4 @@
-//! Previews of a render in progress: adds the guide images that `denoise` needs to the requested outputs, and filters
+//! Previews of a render in progress: adds to the requested outputs the guide images that `denoise` needs, and filters
 //! the film.
 
 use super::aov::Aov;
@@ -12,7 +12,8 @@ use crate::job::Job;
 /// Guide images of the filter, in addition to the variance.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
-/// Returns the parameters of a render, with the guide images of the filter added after the requested outputs.
+/// Returns a copy of the parameters. If a preview is requested, the guide images of the filter are added after the
+/// requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {

@@ -1,9 +1,10 @@
 //! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
 //! a bounce can reflect or transmit at most.
 //!
-//! For each material, the analysis considers all products of a factor and a texel of its texture. Only materials of
-//! meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate. The number of
-//! bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
+//! For each material, the analysis considers the product of each factor with every texel of the texture that belongs
+//! to the factor. Only materials of meshes with triangles count. Tracing skips features that cannot occur, which
+//! changes no estimate. The number of bounces that matter is reported, but limits no render, since paths end by
+//! Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -69,7 +70,7 @@ impl Requirements {
     }
 
     /// Returns one sentence for each shading feature that the scene does not need and tracing therefore omits, and one
-    /// for each content of the scene that the renderer does not model.
+    /// for each feature of the scene that the renderer does not model.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -207,7 +208,7 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 
 impl Requirements {
     /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
-    /// parameter sets that bound the material (see `extremes`).
+    /// BSDF parameters that bound those of the material (see the function `extremes`).
     fn include_material(
         &mut self,
         index: usize,
@@ -230,7 +231,7 @@ impl Requirements {
         }
     }
 
-    /// Adds the emission of a material whose emission texture has the range `emission`.
+    /// Sets the flags of surface emission for a material whose emission texture has values in the range `emission`.
     fn include_emission(&mut self, material: &Material, emission: Range) {
         if (material.emission * emission.high.truncate()).max_element() > 0.0 {
             self.surfaces = true;
@@ -274,7 +275,7 @@ impl Requirements {
         };
     }
 
-    /// Adds the kinds of scattering that one parameter set causes.
+    /// Adds the kinds of scattering that occur with the BSDF parameters `s`.
     fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
@@ -321,8 +322,8 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the parameter sets of a material with the smallest and largest metalness and roughness. Between these sets,
-/// all parameters of the layers are linear or monotone.
+/// Returns the BSDF parameters of a material for each combination of its smallest or largest metalness and roughness.
+/// In between, all parameters of the layers are linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -334,7 +335,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
-/// Returns an upper bound of the albedo of a parameter set over all directions.
+/// Returns an upper bound, over all directions, of the albedo with the BSDF parameters `s`.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
     // Number of intervals between the cosines at which the albedo is evaluated. [origin not recorded]
     const STEPS: usize = 64;

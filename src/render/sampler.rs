@@ -11,7 +11,7 @@ use crate::rng;
 /// The random numbers of one path.
 #[derive(Clone)]
 pub struct Sampler {
-    /// Index of the path in the sequence of its seed, with reversed bits.
+    /// Index of the path in the point sequence of `seed`, with its bits reversed.
     index: u32,
     seed: u64,
     block: u64,
@@ -37,7 +37,7 @@ impl Block {
 }
 
 impl Sampler {
-    /// Starts the random numbers of path number `index` of a seed.
+    /// Returns a sampler that yields the random numbers of path number `index` in the point sequence of `seed`.
     #[inline]
     pub fn new(seed: u64, index: u32) -> Self {
         Self { index: index.reverse_bits(), seed: rng::mix(seed), block: 0 }

@@ -1,5 +1,5 @@
-//! Recorded subpaths for `shared`: one kind sums contributions, the other also tracks the states of light path
-//! expressions.
+//! Recorded subpaths for `shared`. [`Sum`] only adds up contributions; [`LpeTape`] also tracks the states of light
+//! path expressions.
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
@@ -10,7 +10,7 @@ use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
-/// Adds up contributions, as an observer and as a tape.
+/// An observer and tape that only adds up contributions.
 #[derive(Clone, Copy, Default)]
 pub struct Sum(pub Vec3);
 

@@ -14,7 +14,7 @@ pub struct Vertex {
     pub triangle: u32,
     pub id: u32,
     pub barycentric: Vec2,
-    /// Position relative to the centre of the world, in metres.
+    /// Position in world coordinates (relative to the centre of the [`World`]), in metres.
     pub position: Vec3,
     /// Unit geometric normal of the front side.
     pub normal: Vec3,

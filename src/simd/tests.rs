@@ -40,7 +40,7 @@ fn a_level_can_be_forced_and_ends_with_the_work() {
     same_at_all_levels(|| vec![("sum".into(), scaled_sum(&values, 0.1).to_string())]);
 }
 
-/// Renders a photo of the demonstration's office at a size suitable for a test. Returns it as input of a transfer to
+/// Renders a small photo of the demonstration's office. Returns the input of a lighting transfer from this photo to
 /// the demonstration's room, and the height of the ceiling above the camera in metres.
 fn input(pool: &Pool) -> (Input, f64) {
     let office = demo::exemplar_room().unwrap();

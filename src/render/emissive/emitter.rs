@@ -21,8 +21,8 @@ pub struct Emitter {
 }
 
 impl Emitter {
-    /// Returns `None` for a triangle that does not emit or has no area. `id` numbers the triangles of the whole scene;
-    /// `first` holds the id of each mesh's first triangle.
+    /// Returns `None` for a triangle that does not emit or has no area. `id` is the index of the triangle among all
+    /// triangles of the scene; `first` holds the id of each mesh's first triangle.
     pub(super) fn new(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Self> {
         let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
         let m = &scene.meshes[mesh as usize];

@@ -36,7 +36,7 @@ pub struct Emitters {
     /// All pieces. Piece indices count the undivided triangles (`even`) first, then the emissive tiles.
     even: Vec<Even>,
     tiles: Vec<Tile>,
-    /// Flux of all emitters in lumens; of a double-sided emitter only one side counts.
+    /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
 }
 
@@ -78,7 +78,7 @@ impl Emitters {
         Ok((this, bounds))
     }
 
-    /// Adds the pieces of the undivided emitters, and makes the tilings of all other emitters.
+    /// Adds one piece for each emitter that is not divided into tiles, and stores the tilings of the other emitters.
     fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
         for (index, emitter) in self.emitters.iter().enumerate() {
             let texture = emitter.texture.map(|t| &scene.textures[t]);
@@ -97,7 +97,7 @@ impl Emitters {
         }
     }
 
-    /// Adds a piece for every tile that emits.
+    /// Adds one piece for every tile that emits.
     fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
         // Collect rows of tiles, in the order of their emitters, to process them in parallel.
         let mut rows = Vec::new();
@@ -143,9 +143,9 @@ impl Emitters {
         Ok(())
     }
 
-    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). The density of the
-    /// samples is proportional to the emission at the point. Returns the index of the emitter and the barycentric
-    /// coordinates of the point.
+    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). Points of a tile are
+    /// sampled in proportion to the emission at the point, points of an undivided triangle uniformly. Returns the
+    /// index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
@@ -156,7 +156,8 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
-    /// Returns the piece that contains a point of an emitter, given by its texture coordinates; `None` for dark tiles.
+    /// Returns the piece that contains the point of an emitter with the texture coordinates `uv`; `None` if the tile
+    /// or the triangle there is dark.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
             Division::Even(piece) => piece,

@@ -1,4 +1,5 @@
-//! Overlap of a rectangle of texels with a triangle: its class, its area, and uniform sampling of its points.
+//! Overlap of a rectangle of texels with a triangle: whether the triangle covers none, part or all of the rectangle,
+//! the area of the overlap, and uniform sampling of its points.
 
 use glam::{DVec2, Vec2};
 
@@ -13,7 +14,8 @@ pub struct Rectangle {
 #[derive(Clone, Copy, PartialEq)]
 pub enum Overlap {
     None,
-    /// The rectangle overlaps partly, or so close to an edge of the triangle that only clipping can decide.
+    /// The triangle covers a part of the rectangle, or an edge passes so close to the rectangle that only clipping can
+    /// decide.
     Part,
     Whole,
 }

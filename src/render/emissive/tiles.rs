@@ -1,9 +1,9 @@
 //! Divides the part of an emission texture that a triangle covers into tiles of 8 × 8 texels. Each tile has a
 //! cumulative distribution of the emission over its texels.
 //!
-//! The tile grid starts at the first texel of the triangle's bounding box and continues beyond the texture as the
-//! texture wraps. At the edges of the triangle, only the covered part of a texel counts. The table of a tile takes
-//! four cache lines; dark tiles are not stored.
+//! The tile grid starts at the first texel of the triangle's bounding box. Tiles beyond the texture read the texels
+//! that the texture's wrap mode puts there. At the edges of the triangle, only the covered part of a texel counts. The
+//! table of a tile takes four cache lines; dark tiles are not stored.
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
@@ -35,8 +35,8 @@ pub struct Tiling {
     size: Vec2,
 }
 
-/// A tile that emits. Its distribution is stored inline and aligned to cache lines, so that sampling touches few of
-/// them.
+/// A tile that emits. Its distribution is stored inline and aligned to cache lines, so that sampling touches few cache
+/// lines.
 #[repr(align(64))]
 pub struct Tile {
     pub emitter: u32,
@@ -89,8 +89,8 @@ impl Tiling {
         tile(texel.y, self.start[1], self.rows) * self.columns + tile(texel.x, self.start[0], self.columns)
     }
 
-    /// Whether the triangle overlaps the tile and the texels of the tile may emit. This test rejects most tiles
-    /// cheaply, because most of them lie between the lamps.
+    /// Whether the triangle overlaps the tile and the texels of the tile may emit. This cheap test rejects most tiles,
+    /// because most tiles lie between the lamps.
     pub fn may_emit(&self, texture: &Texture, [column, row]: [usize; 2]) -> bool {
         let first = self.first_texel(column, row);
         rectangle(first, SIDE as f64).overlap(&self.triangle) != Overlap::None

@@ -8,10 +8,10 @@
 //! adaptive pass doubles the paths of the tiles whose required number of paths is largest relative to the paths they
 //! have.
 //!
-//! A tile in which no bright path has been found yet has a small variance by chance. If that stopped its sampling, the
-//! image would become too dark. Decisions are therefore made for whole tiles and take neighbouring tiles into account
-//! (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global illumination").
-//! The tests and `benches/error_control.rs` measure the remaining bias.
+//! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
+//! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring
+//! tiles into account (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
+//! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
 
 use super::canvas::Canvas;
 use super::clock::Clock;
@@ -88,7 +88,7 @@ impl<'p> AdaptiveSampler<'p> {
         let target_paths = self.target_paths(canvas, &statistics, job)?;
         let whole = whole(&statistics);
 
-        // Sum up the missing paths of all tiles, limited by `samples` and the time budget.
+        // Sum up how many paths the tiles still need, within the limits set by `samples` and the time budget.
         let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
         let missing = |tile: usize| {
             (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)

@@ -43,7 +43,7 @@ impl<'a> Canvas<'a> {
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// Builds a canvas that holds the pixels of a rendered part, filled with the part's sums.
+    /// Builds a canvas for the pixels of one part of a distributed render, filled with the sums of this part.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
         let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;

@@ -13,7 +13,7 @@ pub struct Clock {
     budget: Option<Duration>,
     /// Total time spent on tracing paths.
     sampling: Duration,
-    /// Time that publishing the last image took.
+    /// Time that publishing the most recent image took.
     publishing: Duration,
     published: Option<Instant>,
 }
@@ -25,7 +25,7 @@ impl Clock {
         Self { start: Instant::now(), budget, sampling: Duration::ZERO, publishing: Duration::ZERO, published: None }
     }
 
-    /// Runs a pass with a deadline that leaves time for publishing the last image. The first pass, which is coarse,
+    /// Runs a pass with a deadline that leaves time for publishing the final image. The first pass, which is coarse,
     /// has no deadline, so that every render yields an image.
     pub fn sample(&mut self, pass: impl FnOnce(Option<Instant>) -> Result<()>) -> Result<()> {
         let start = Instant::now();

@@ -7,7 +7,7 @@ use crate::render::output::Film;
 use std::sync::atomic::Ordering;
 
 impl Canvas<'_> {
-    /// Returns the film of all paths so far.
+    /// Returns the film computed from all paths so far.
     pub fn film(&self, job: Job) -> Result<Film> {
         let beauty = self.image(3, job, |x, y, out| {
             let (x, y) = self.nearest(x, y);

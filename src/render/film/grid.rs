@@ -36,7 +36,7 @@ impl Grid {
         (tile % self.across() * TILE, tile / self.across() * TILE)
     }
 
-    /// Returns the column and row in the image of a tile's pixel; `None` outside the image.
+    /// Returns the column and row, in the image, of pixel number `pixel` of a tile; `None` outside the image.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
         let (left, top) = self.corner(tile);
         let (x, y) = (left + pixel % TILE, top + pixel / TILE);
@@ -68,7 +68,8 @@ impl Grid {
     }
 }
 
-/// Returns the stride of the pixels of the coarsest image, a power of two.
+/// Returns the distance between the pixels of the coarsest image along each axis: a power of two, in pixels of the
+/// full image.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {

@@ -20,9 +20,9 @@ pub const NORMAL_95: f64 = 1.959_964;
 
 impl Film {
     /// Returns the half-width of the 95 % confidence interval of each pixel's radiance, per channel, in cd/m²;
-    /// infinite for pixels with fewer than two paths. Measured in rooms, the intervals contain the truth for 93 to 97
-    /// % of the pixels. The coverage is lower where light arrives by paths so rare that no pixel nearby has found one,
-    /// such as caustics of small lamps.
+    /// infinite for pixels with fewer than two paths. Measured in rooms, the intervals contain the truth for 93 % to
+    /// 97 % of the pixels. The coverage is lower where light arrives by paths so rare that no pixel nearby has found
+    /// one, such as caustics of small lamps.
     pub fn interval(&self, job: Job) -> Result<Image> {
         let mut out = pooled(&self.variance, job)?;
         exec::for_rows(&mut out.data, out.width * out.channels, job, |_, row| {

@@ -6,9 +6,9 @@
 //!   survival weights of Russian roulette.
 //! - `develop` assembles the images of a film; `interval` and `pooling` compute confidence intervals.
 //!
-//! A pass extends the paths of each pixel to a given number, so that an interrupted pass leaves a valid image in which
-//! some pixels have fewer paths. These numbers depend only on the pixels after the previous pass, so they are the same
-//! for any number of threads.
+//! A pass adds paths to each pixel until the pixel has a given number of paths. An interrupted pass therefore leaves a
+//! valid image, in which some pixels have fewer paths. The given numbers depend only on the pixels after the previous
+//! pass, so they are the same for any number of threads.
 //!
 //! For renders in parts, `sums` adds up the paths of each pixel independently of all other pixels; the weights of
 //! Russian roulette then come from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of

@@ -54,7 +54,7 @@ const SALT: u64 = 0x7072_6f62_6564_2121;
 pub struct Pilot {
     /// Time per path in seconds, with all threads busy.
     pub seconds_per_path: f64,
-    /// Square of [`super::super::Film::error`] that the image would have with each number of [`PATHS`] in every pixel.
+    /// Predicted square of [`super::super::Film::error`] for each number of paths per pixel in [`PATHS`].
     pub squared_errors: [f64; 3],
     /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,
@@ -133,7 +133,7 @@ pub fn run(
     let area = (grid.width * grid.height) as f64;
     let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
 
-    // Measure the variance at three numbers of paths. Render only some of the tiles with the last number.
+    // Measure the variance at three numbers of paths. Use the last number only for some of the tiles.
     let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
     let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
     let part = |t: &TileSums| t.weight * t.variance;
@@ -158,7 +158,8 @@ pub fn run(
     })
 }
 
-/// Extends the paths of the tiles in the current pass to `count` per pixel. Returns the sums of all pilot tiles.
+/// Traces paths in the tiles of positive `deep_weight` until each of their pixels has `count` paths. Returns the sums
+/// of all pilot tiles.
 fn render_tiles(
     context: TileContext,
     chosen: &mut [PilotTile],
@@ -180,9 +181,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is corrected, because
-/// the selected tiles are not typical of the image: it is multiplied by the ratio of the weighted to the unweighted
-/// mean.
+/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is multiplied by the
+/// ratio of the weighted mean over the tiles to the unweighted mean, because the selected tiles are not typical of the
+/// image.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -234,8 +235,9 @@ impl SystematicSampler {
         Self { step, next: rng.next_f64() * step, end: 0.0 }
     }
 
-    /// Returns the weight of the next item, which has this chance: the number of items that it represents, or 0 if it
-    /// is not selected. An item whose chance exceeds the distance between marks may be selected more than once.
+    /// Returns the weight of the next item, whose chance is `chance`. The weight is the number of items that this item
+    /// represents, or 0 if it is not selected. An item whose chance exceeds the distance between marks may be selected
+    /// more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;

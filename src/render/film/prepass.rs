@@ -20,7 +20,8 @@ use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
-/// Paths per sampled pixel for the median radiance of the image. [origin not recorded]
+/// Number of paths through each pixel of a coarse grid, from which the median radiance of the image is estimated.
+/// [origin not recorded]
 const PATHS: u32 = 4;
 /// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of
 /// this stride. [origin not recorded]

@@ -21,7 +21,7 @@ const PRIOR_PATHS: f64 = 8.0;
 /// not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
-/// Returns the median over all tiles of the tile's mean radiance, per channel; `None` if no pixel has paths.
+/// Returns the median of the mean radiances of the tiles, per channel; `None` if no pixel has paths.
 pub fn median_radiance(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
@@ -105,7 +105,7 @@ mod tests {
         };
         assert!((weight(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
         assert!((weight(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
-        // The tile dominates the weight of a pixel that has few paths and is dark by chance.
+        // If a pixel has few paths and is dark by chance, its weight is mainly that of its tile.
         let dark = weight(0, &pixel(DVec3::ZERO, 1)).x;
         assert!(dark > 1.0 && dark < 1.2, "{dark}");
         // Weights are bounded on both sides.

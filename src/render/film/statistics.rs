@@ -25,11 +25,11 @@ pub struct Statistics {
     pub pixels: u32,
     /// Largest number of paths in a pixel.
     pub max_paths: u32,
-    /// Sum over the pixels of their mean radiance, averaged over the channels.
+    /// Sum of the mean radiances of the pixels, averaged over the channels.
     mean: f64,
-    /// Sum over the pixels of the variance of their mean radiance.
+    /// Sum of the variances of these mean radiances.
     variance: f64,
-    /// Sum over the pixels of the variance of single paths.
+    /// Sum, over the pixels, of the variance of a single path.
     pub path_variance: f64,
 }
 
@@ -48,7 +48,7 @@ impl Statistics {
         self.mean / f64::from(self.pixels.max(1))
     }
 
-    /// Returns the root mean square of the pixels' standard errors, divided by their mean radiance.
+    /// Returns the root mean square of the pixels' standard errors, divided by the mean radiance of the pixels.
     pub fn error(&self) -> f64 {
         let variance = self.variance / f64::from(self.pixels.max(1));
         if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
@@ -79,8 +79,8 @@ impl Canvas<'_> {
         self.statistics(weight, job)
     }
 
-    /// Returns the statistics of each tile. `weight` computes the factor on the error of a pixel from the pixel and
-    /// the mean radiance of its tile.
+    /// Returns the statistics of each tile. `weight` gets a pixel and the mean radiance of its tile, and returns the
+    /// factor by which the pixel's error is multiplied.
     pub fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut sum = Statistics::default();

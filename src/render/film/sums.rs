@@ -1,5 +1,5 @@
-//! Lossless sums of a rendered part: some paths of some pixels. Added to the sums of all other paths and pixels, they
-//! give the image.
+//! Lossless sums for one part of a render. A part is a rectangle of the image and a range of its pixels' paths. The
+//! sums of all parts together give the image.
 //!
 //! The path with a given index in a pixel is the same in every part; it belongs to the same replication and has the
 //! same position in the point sequence. The sums are in f64, so that the f32 image hardly ever depends on how the
@@ -23,7 +23,7 @@ use crate::scene::Camera;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Length of the radiance sums of a pixel: three channels for each replication.
+/// Number of radiance sums of a pixel: one for each channel of each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
 /// Number of paths of a pixel between two checks for cancellation. [convention]
 const SLICE: u32 = 16;
@@ -34,7 +34,7 @@ pub struct Sums {
     /// First pixel of the tile that contains the part's first pixel; `grid` starts there.
     corner: [usize; 2],
     grid: Grid,
-    /// Length of a pixel's sums in numbers: radiance sums, then the sums of the layers.
+    /// How many numbers are stored per pixel: radiance sums, then the sums of the layers.
     width: usize,
     /// The sums of all pixels in `grid`, tile by tile, `width` numbers for each pixel.
     numbers: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Returns the sums of a part without any paths.
+    /// Returns the sums of a part before any of its paths is traced.
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
@@ -146,7 +146,7 @@ impl Sums {
         self.discarded = discarded;
     }
 
-    /// Returns the length of a pixel's sums in numbers.
+    /// Returns how many numbers are stored per pixel.
     pub fn width(&self) -> usize {
         self.width
     }

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const SLICE: u32 = 64;
 const BLOCK_SLICE: u32 = 16;
 
-/// The data that the tracing of all tiles shares.
+/// The data that is the same for all tiles of a pass.
 #[derive(Clone, Copy)]
 pub struct TileContext<'a> {
     pub world: &'a World,
@@ -36,7 +36,7 @@ pub struct Tile<'a> {
     number: usize,
     pixels: &'a mut [Pixel],
     roulette: Option<RouletteWeights>,
-    /// The film totals of the tile's layers.
+    /// The totals of the layers for the pixels of the tile.
     totals: Option<TileTotals<'a>>,
     tracer: BlockTracer<'a>,
 }

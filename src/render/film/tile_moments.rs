@@ -32,8 +32,8 @@ pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileM
 }
 
 impl TileMoments {
-    /// Traces one path in each of `along` × `along` squares of a tile. The position within the square differs from
-    /// square to square in a row.
+    /// Traces one path through one pixel of each of `along` × `along` squares of a tile. Which pixel of a square is
+    /// used varies from square to square.
     fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
         let (left, top) = grid.corner(tile);
         let (mut sum, mut squares) = (0.0, 0.0);

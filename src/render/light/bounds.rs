@@ -130,8 +130,8 @@ pub struct BoundsLanes {
     intensity: Lanes,
 }
 
-/// The true cosine may be positive if its computed upper bound exceeds minus this margin, because the bound is
-/// rounded. [rounding]
+/// Computed upper bounds of a cosine are rounded: the true cosine is certainly negative only if its bound is below
+/// -`MARGIN`. [rounding]
 const MARGIN: f32 = 1e-4;
 
 impl BoundsLanes {

@@ -29,9 +29,10 @@ pub struct Lights {
     /// emitters, then the points, spots and luminaires.
     tree: LightTree,
     pieces: usize,
-    /// For each light of the tree after the pieces, its index among the punctual lights of the scene.
+    /// For each point, spot and luminaire in the tree, its index among the punctual lights of the scene.
     near: Vec<u32>,
-    /// Selects among the directional lights. It has an entry for every punctual light; all others have zero weight.
+    /// Selects among the directional lights. It has an entry for every punctual light; lights that are not directional
+    /// have zero weight.
     directional: Distribution,
     environment: Option<EnvironmentSampler>,
     /// Selection probabilities of the three groups: lights at a finite distance, directional lights, environment.

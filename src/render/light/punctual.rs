@@ -38,7 +38,7 @@ pub struct Measured {
     luminaire: Arc<Luminaire>,
 }
 
-/// The spot cone of glTF: the factor on the intensity is the square of `(cosine - outer) * scale`, clamped to [0, 1].
+/// The spot cone of glTF: the intensity is multiplied by the square of `(cosine - outer) * scale`, clamped to [0, 1].
 pub struct Cone {
     axis: Vec3,
     outer: f32,

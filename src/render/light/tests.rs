@@ -178,7 +178,8 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
     stated[8] = counts[8];
     stated[6] = f64::from(n) - stated.iter().sum::<f64>();
     assert_follows(&stated, &counts, 1, "kinds of lights");
-    // The lamp is a square of 1 m² at a height of 2 m, slightly off centre. A sample of it is a Bernoulli trial.
+    // The lamp is a square of 1 m² at a height of 2 m, slightly off centre. Each sample either hits the lamp or does
+    // not (a Bernoulli trial).
     let (expected, share) = (solid_angle_of_lamp(), counts[6] / f64::from(n));
     let error = expected * ((1.0 - share) / (share * f64::from(n))).sqrt();
     assert!((surface - expected).abs() < 4.0 * error + 1e-3 * expected, "{surface} ± {error}, expected {expected}");

@@ -31,7 +31,7 @@ pub struct LightTree {
     nodes: Vec<Node>,
     /// For each light its slot: 8 × the index of its node, plus its lane in the node.
     slots: Vec<u32>,
-    /// Smallest squared distance that counts; see [`BoundsLanes::importance`].
+    /// Squared distances below this value count as this value; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
@@ -200,7 +200,7 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
     (first + at) as u32
 }
 
-/// Sums over a cluster from which the split heuristic is computed.
+/// Sums over the lights of a cluster; the split heuristic is computed from them.
 #[derive(Clone, Copy)]
 struct Extent {
     low: Vec3A,

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub const DEAD: u16 = 0;
 
 /// Limits of the construction: number of states of the nondeterministic automaton, number of states before
-/// minimisation, and number of visited transitions. [convention]: bounds time and memory.
+/// minimisation, and number of visited transitions. They bound time and memory. [convention]
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
@@ -95,7 +95,7 @@ impl Automaton {
         }
     }
 
-    /// Returns the index of the light event of a light.
+    /// Returns the index, among the light events of the alphabet, of the event with which a path ends at this light.
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         self.alphabet.light(source)
@@ -128,8 +128,8 @@ impl Automaton {
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Separate states by the expressions they accept; then repeatedly by the groups of the states that follow
-        // them.
+        // Separate states by the expressions that they accept; then, repeatedly, by the groups to which their next
+        // states belong.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
@@ -246,8 +246,8 @@ struct SubsetConstruction<'a> {
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// For each NFA state, the number of the last call of `closure` that visited it (`visited`), and the number of
-    /// calls so far (`rounds`).
+    /// For each NFA state, the number of the last call of `closure` that visited the state (`visited`), and the number
+    /// of calls of `closure` so far (`rounds`).
     visited: Vec<u32>,
     rounds: u32,
     transitions_left: usize,

@@ -52,7 +52,7 @@ pub struct EventSet {
     pub negated: bool,
 }
 
-/// The pattern `<type mode labels>`, which an event matches if all its parts match.
+/// The pattern `<type mode labels>`. An event matches the pattern if it matches all parts of the pattern.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     kinds: Bits,

@@ -1,5 +1,5 @@
-//! Tracks a light path through the automaton of light path expressions, as components. A component is a state of the
-//! automaton with its share of the path's light.
+//! Tracks a light path through the automaton of light path expressions. The path is a list of components. Each
+//! component is a state of the automaton with its share of the path's light.
 //!
 //! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
 //! layers (Veach 1997, 9.2.4). A component therefore splits in two, in proportion to the values of the layers, channel
@@ -48,7 +48,7 @@ pub struct Trail<'a> {
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
-    /// Light from the light event `rest_light` that has arrived since all states became absorbing. `flush_rest`
+    /// Light that has arrived from the light event `rest_light` since all states became absorbing. `flush_rest`
     /// distributes it to the components.
     rest: Vec3A,
     rest_light: usize,
@@ -253,7 +253,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Ends the path. Calls `take` with the index of each list of expressions and its light.
+    /// Ends the path. Calls `take` with the index of each list of expressions and the light that the path adds to that
+    /// list.
     #[inline]
     pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.flush_rest();

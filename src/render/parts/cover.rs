@@ -7,8 +7,8 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Checks the cover. Returns the order in which to add up the parts: by their first path, then from top to bottom,
-/// then from left to right.
+/// Checks that the parts cover the image. Returns the order in which to add up the parts: by their first path, then
+/// from top to bottom, then from left to right.
 pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {
     check_overlaps(files, job)?;
     check_holes(files, params, job)?;

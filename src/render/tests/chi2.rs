@@ -2,7 +2,7 @@
 
 /// Bins with a smaller expected count are merged with the next bins. [convention]
 const MIN_EXPECTED: f64 = 10.0;
-/// Probability that at least one of all tests of a routine fails by chance. [convention]
+/// Probability that at least one of the chi-squared tests of a test function fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
 /// Asserts that the observed counts of all bins follow the expected counts. The test is one of `tests` tests; the
@@ -19,7 +19,8 @@ pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], test
     }
 }
 
-/// Merges bins. Returns pairs of expected and observed counts; a remainder joins the last bin.
+/// Merges neighbouring bins until each has at least the expected count `MIN_EXPECTED`; a remainder joins the last bin.
+/// Returns pairs of expected and observed counts.
 fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     let (mut bins, mut open) = (Vec::new(), (0.0, 0.0));
     for (&e, &o) in expected.iter().zip(observed) {

@@ -104,7 +104,7 @@ fn one_pixel_and_very_wide_and_very_high_images() {
         assert_eq!(film.beauty.count_non_finite() + film.variance.count_non_finite(), 0);
         assert!(film.beauty.data.iter().any(|&v| v > 0.0));
     }
-    // The middle columns of a wide image equal a narrow image with the same number of rows.
+    // The middle columns of a wide image agree, up to noise, with a narrow image that has the same number of rows.
     let params = |width| Params { width, height: 8, samples: 4096, ..Params::default() };
     let (narrow, wide) = (render(&world, &viewer(), &params(2)), render(&world, &viewer(), &params(4)));
     for y in 0..8 {
@@ -163,7 +163,7 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
-    // With white walls of albedo 1 and a black lamp, all radiances approach the radiance of the lamp.
+    // With white walls of albedo 1 and a lamp that reflects nothing, all radiances approach the radiance of the lamp.
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
     // Let the lamp cover nearly the whole ceiling. It emits downwards only.
@@ -209,7 +209,8 @@ fn surfaces_in_the_same_place_are_one_or_the_other() {
     for ((&d, &v), &b) in dark.data.iter().zip(&both.data).zip(&bright.data) {
         assert!(v >= d * 0.99999 && v <= b * 1.00001, "{d} {v} {b}");
     }
-    // Alone, the surfaces reflect a fifth and four fifths of the light of the sky, which is all they receive.
+    // Alone, the surfaces reflect a fifth and four fifths of the light of the sky, which is the only light in the
+    // scene.
     for (image, albedo) in [(&dark, 0.2), (&bright, 0.8)] {
         let mean = image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
         assert!((mean / albedo - 1.0).abs() < 0.01, "{mean} of {albedo}");

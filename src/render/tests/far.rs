@@ -66,7 +66,8 @@ fn lamps_as_thin_as_a_hair_give_their_whole_light() {
         };
         let world = world(scene);
         let at = Vertex::new(&world, world.id(0, 0), receiver.barycentric).position.as_dvec3();
-        // Treat the lamp as a line of light, and integrate both cosines / squared distance along it.
+        // Treat the lamp as a line of light, and integrate along it the product of both cosines, divided by the
+        // squared distance.
         let steps = 200_000;
         let integral: f64 = (0..steps)
             .map(|i| {

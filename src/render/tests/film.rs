@@ -219,8 +219,8 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
 
 #[test]
 fn paths_that_are_not_finite_are_dropped_and_counted() {
-    // The room is so small that the irradiance from the brightest allowed lamp overflows f32: intensity / squared
-    // distance.
+    // The room is so small that the irradiance from the brightest allowed lamp, intensity / squared distance,
+    // overflows f32.
     let radius = 1e-13;
     let lamp = PunctualLight::Point { position: Vec3::Y * 0.3 * radius, intensity: Vec3::splat(1e15) };
     let (meshes, materials) = (vec![inward_sphere(radius, 0)], vec![matt(0.9, 0.0)]);

@@ -21,14 +21,15 @@ fn lit_floor() -> Scene {
 }
 
 /// Critical value for the deviation of a point in standard errors. The standard error is estimated from 16 batches, so
-/// the deviation follows Student's t with 15 degrees of freedom. Any of the 45 points below exceeds the value with a
-/// probability of 1/1000 in total (Šidák: 2.2e-5 for each).
+/// the deviation follows Student's t with 15 degrees of freedom. The probability that any of the 45 points below
+/// exceeds the critical value is 1/1000 (2.2e-5 for each point, by Šidák's formula).
 const T15: f64 = 6.02;
 
 #[test]
 fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
     let world = world(lit_floor());
-    // Compute the closed form at a point `d` below the lamp and (x, z) off its centre: four rectangles with signs.
+    // Compute the closed form at a point `d` below the lamp and (x, z) off its centre: the signed sum over four
+    // rectangles, each of which has a corner above the point.
     let expected = |x: f64, z: f64, d: f64| {
         let part = |a: f64, b: f64| a.signum() * b.signum() * parallel_form_factor(a.abs(), b.abs(), d);
         let (l, r, n, f) = (0.5 + x, 0.5 - x, 0.75 + z, 0.75 - z);

@@ -68,7 +68,8 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{wrap:?}: {mean} and {expected}");
     }
 
-    // With texture coordinates without area, the triangle emits uniformly, with the texel at its coordinates.
+    // If the texture coordinates of a triangle have no area, the whole triangle emits like the texel at these
+    // coordinates.
     let mut flat = scene.clone();
     flat.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::new(5.5, 2.5) / 8.0);
     let even = 5000.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(1.0, 1.0, 1.0);

@@ -216,8 +216,8 @@ fn the_layers_of_a_paint_are_separated() {
 
 #[test]
 fn mirrors_and_panes_are_specular_however_their_light_is_found() {
-    // Test a mirror floor that reflects a lamp: LSE is the lamp's radiance times the Fresnel reflectance at that
-    // angle.
+    // Test a mirror floor that reflects a lamp: LSE is the lamp's radiance times the Fresnel reflectance at the angle
+    // of reflection.
     let lamp = || Mesh::parallelogram(Vec3::new(-1.5, 1.0, -1.0), Vec3::X, Vec3::Z * 2.0, 1);
     let metal = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.0, ..Material::default() };
     let scene = Scene {
@@ -241,7 +241,7 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
         let mut scene = Scene { meshes: vec![scene.meshes[0].clone(), lamp, pane], ..scene.clone() };
         scene.meshes[2].name = "Pane".into();
         scene.materials[0] = matt(0.5, 0.0);
-        // An index of refraction of 1 transmits all light at any angle.
+        // Glass with an index of refraction of 1 reflects nothing at any angle.
         let glass = Material { base_color: Vec3::new(0.5, 0.7, 0.9), ior: 1.0, transmission: 1.0, ..matt(0.0, 0.0) };
         scene.materials.push(glass.clone());
         let camera = Camera::look_at(Vec3::new(0.4, 0.3, 0.0), Vec3::ZERO, 0.01);

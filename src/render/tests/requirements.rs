@@ -3,8 +3,8 @@
 
 use super::*;
 
-/// Renders with and without the scene analysis. Returns the largest difference of a value, relative to the mean of the
-/// image.
+/// Renders with and without the scene analysis. Returns the largest difference between corresponding values of the two
+/// images, relative to the mean of the image.
 fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
     let params = Params { width: 48, height: 32, samples, ..Params::default() };
     let mut world = world(scene);

@@ -111,8 +111,8 @@ fn shared_paths_bring_the_same_light() {
             }
         }
     }
-    // Of 720 deviations that follow Student's t with at least 62 degrees of freedom, one exceeds 6 in one of ten
-    // thousand runs.
+    // The 720 deviations follow Student's t with at least 62 degrees of freedom. The probability that any of them
+    // exceeds 6 is about 1e-4.
     assert!(tests == 720 && worst < 6.0, "{worst}");
 }
 
