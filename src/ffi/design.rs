@@ -164,7 +164,7 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     })
 }
 
-/// Gets the number of presets: kinds of rooms with requirements. Any thread.
+/// Gets the number of presets. A preset holds the lighting requirements for one kind of room. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {

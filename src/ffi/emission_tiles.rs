@@ -87,8 +87,9 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
 
 /// Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
 /// texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
-/// bit to the texture and mask of luxfer_emission_start, for any size and order of the tiles. The call takes up to a
-/// second per megapixel. The caller releases *tile. Any thread; several threads may render tiles at the same time.
+/// bit to the texture and mask of luxfer_emission_start, whatever the sizes of the tiles and the order in which they
+/// are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads
+/// may render tiles at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
 /// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

@@ -1,7 +1,7 @@
 //! Placement
 //!
-//! Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
-//! radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
+//! Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
+//! a given radiance. The search is a gradient descent on the map of luxfer_importance and traces no more paths.
 
 use super::guard::enter;
 use super::handle::{self, Owned};

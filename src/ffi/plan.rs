@@ -28,7 +28,7 @@ use crate::render;
 #[cfg(feature = "stylize")]
 use crate::stylize;
 
-/// A plan: settings for a goal. See luxfer_plan_create.
+/// A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create.
 pub struct luxfer_plan {
     _opaque: [u8; 0],
 }
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn luxfer_plan_create(
     })
 }
 
-/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
-/// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
-/// releases *job. Any thread.
+/// Starts a job that plans a rendering with the scene and the camera of the object render. settings gives the size of
+/// the picture and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal.
+/// The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
 /// such camera.
