@@ -295,10 +295,11 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Sets strokes that guide the fit of a box-shaped room to the lines of luxfer_features_set_view; they have no effect
-/// if the depth comes from another source. The fit prefers a box with a face, such as the ceiling, that contains all
-/// positive strokes, on the plane and on lights, and no negative stroke for LUXFER_PHASE_PLANE. The call copies the
-/// strokes, which replace earlier strokes; NULL removes them. Any thread.
+/// Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
+/// prefers a room in which one surface, such as the ceiling, contains every positive stroke, whether for the plane or
+/// for the lights, and no stroke that is negative for the plane (LUXFER_PHASE_PLANE). The strokes have no effect if
+/// the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes them.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

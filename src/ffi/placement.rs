@@ -156,8 +156,7 @@ pub unsafe extern "C" fn luxfer_importance_start_placement(
 }
 
 /// Gets the placement that was found. size is sizeof *placement. Any thread.
-/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
-/// started.
+/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded with the current map.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_placement(
     importance: *mut luxfer_importance,

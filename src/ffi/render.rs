@@ -54,8 +54,8 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target error this is the maximum of the mean number of
-    /// paths over all pixels.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the mean
+    /// number of paths per pixel reaches this value.
     pub samples: u32,
     /// Stop when the field error of luxfer_render_report falls to this value, >= 0; paths then go to the pixels where
     /// they reduce the error most. Default 0: no target.
@@ -194,7 +194,7 @@ impl Handle for luxfer_render {
     const NAME: &'static str = "luxfer_render";
 }
 
-/// Creates a rendering without inputs. The caller releases *render. Any thread.
+/// Creates a rendering. It has no inputs yet. The caller releases *render. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_create(
     context: *mut luxfer_context,
@@ -269,7 +269,8 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
 }
 
-/// Gets an image of the rendering in its current state; which is a LUXFER_RENDER_ value. The caller releases *image.
+/// Gets an image of the rendering in its current state. The parameter which selects the image: a LUXFER_RENDER_ value.
+/// The caller releases *image.
 /// Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
 /// 0.

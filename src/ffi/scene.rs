@@ -256,7 +256,8 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through a function of the caller, write, which receives user. Any thread.
+/// Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+/// thread.
 /// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(

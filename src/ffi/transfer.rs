@@ -211,7 +211,7 @@ fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
     found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
 }
 
-/// Creates a transfer without inputs. The caller releases *transfer. Any thread.
+/// Creates a transfer. It has no inputs yet. The caller releases *transfer. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_create(
     context: *mut luxfer_context,
@@ -282,10 +282,10 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
 
 /// Sets the triangles of the scene that receive the lights, instead of the named surface. triangles holds the mesh
 /// index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes the
-/// plane that faces most of the room, as for a named surface. They replace earlier triangles, and
-/// luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface receives the
-/// lights again. Any thread.
-/// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
+/// plane that faces most of the room, as for a named surface. These triangles replace the triangles of an earlier
+/// call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface
+/// receives the lights again. Any thread. A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these
+/// triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(
     transfer: *mut luxfer_transfer,
@@ -456,8 +456,8 @@ fn use_segmentation(
 /// stages before first must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
 /// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
-/// jobs; the message names the stage. It ends at once if the scene does not have the surface. Stages that have ended
-/// keep their results.
+/// jobs; the message names the stage. The job ends at once if the scene does not have the surface. Stages that have
+/// ended keep their results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,
