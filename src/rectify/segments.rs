@@ -50,8 +50,8 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
 }
 
 /// Returns the indices of the pixels whose gradient magnitude is at least `MIN_GRADIENT`, strongest first. A counting
-/// sort orders them; its classes are so narrow that two pixels of an edge rarely share a class. Pixels of one class
-/// stay in row-major order.
+/// sort orders them; its bins are so narrow that two pixels of an edge rarely share a bin. Pixels in one bin stay in
+/// row-major order.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
     let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
@@ -151,9 +151,9 @@ impl Grower<'_> {
         }
     }
 
-    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Grows ring by
-    /// ring and compares each ring with the mean direction of the rings before it, so that the result does not depend
-    /// on the order of pixels.
+    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Adds the
+    /// neighbours of the region one layer at a time. Each layer is compared with the mean direction of all layers
+    /// before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let min_cos = tolerance.cos() as f32;

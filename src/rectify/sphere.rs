@@ -21,8 +21,8 @@ const SINE_LIMIT: f64 = 0.06;
 /// [rounding]
 const COINCIDENT: f64 = 1e-18;
 
-/// Prior standard deviation of the endpoint noise, in units of half the image's longer side, and the number of
-/// segments to which the prior is equivalent. [origin not recorded]
+/// Prior of the endpoint noise. `PRIOR_NOISE`: its standard deviation in units of half the image's longer side.
+/// `PRIOR_COUNT`: the number of segments to which the prior is equivalent. [origin not recorded]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
@@ -31,11 +31,12 @@ const PRIOR_COUNT: f64 = 2.0;
 /// [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
-/// Limits of the estimate of the endpoint noise. The estimate alternates `NOISE_ROUNDS` times between the noise and
-/// the share of the noise that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share, and
-/// `MIN_SLOPE` the minimum of the biweight's expected slope: below them, the noise exceeds the limit and cannot be
-/// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
-/// lines are more precise than their residuals suggest. [bench vp]
+/// Settings of the estimate of the endpoint noise. Residuals beyond the biweight's limit are cut off, so the other
+/// residuals show only a share of the noise variance. This share depends on the noise: `NOISE_ROUNDS` rounds estimate
+/// the share and the noise in turn. `MIN_SHOWN` is the minimum of the share, and `MIN_SLOPE` the minimum of the
+/// biweight's expected slope. Below these minima, the noise exceeds the limit and cannot be estimated. `MIN_SLOPE` is
+/// the smallest value that loses no vanishing point of the development sets, in which short lines are more precise
+/// than their residuals suggest. [bench vp]
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
@@ -81,7 +82,8 @@ impl Frame {
 pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
-    /// Squared residual divided by squared sine; a line belongs to a point if its squared residual is at most 1.
+    /// Squared residual divided by the squared sine of the angle between the line and the direction to a vanishing
+    /// point. A line belongs to the point if its squared residual is at most 1.
     pub stiffness: f64,
 }
 
@@ -214,7 +216,8 @@ struct Row {
     /// Variance of the sine under unit endpoint noise: the variance of the segment's direction, plus the variance of
     /// the direction from the segment's midpoint to the vanishing point, which matters for segments near the point.
     variance: f64,
-    /// Variance of the normalised residual (limit 1) under unit endpoint noise.
+    /// Variance, under unit endpoint noise, of the line's residual. The residual is scaled so that lines whose
+    /// residual is above 1 are rejected.
     residual_variance: f64,
     sine: f64,
 }

@@ -16,8 +16,8 @@ const MIN_PIXELS: f64 = 12.0;
 const MAX_SHAPES: usize = 32;
 /// Minimum sine of the angle between a plane and the ray through a shape's centre. [bench photos:tune]
 const MIN_INCIDENCE: f64 = 0.05;
-/// Cost of assuming that all shapes are stretched alike: the assumption adds two parameters, and most lamps are not
-/// stretched. [bench photos:tune]
+/// Cost of the assumption that all lamps are elongated by the same ratio in the same direction: it adds two
+/// parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
 /// Squared deviation of a shape, in variances, above which its cost grows more slowly, because the shape is probably
 /// of another kind. [convention]
@@ -25,8 +25,8 @@ const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
-/// Widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`], and the
-/// prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
+/// `BLOOMS`: widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`].
+/// `BLOOM_SPREAD`: prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
 /// [bench photos:tune]
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
