@@ -29,14 +29,15 @@ const RATIO: f64 = 1.068;
 const GRID: usize = 64;
 /// Maximum number of candidates per side from segments.
 const PEAKS: usize = 24;
-/// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than the factor `MIN_RATIO`. [origin not recorded]
+/// Two boxes are clearly different if more than this share of the view's rays meet different faces in the two boxes,
+/// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
 /// Boxes are compared along a grid of rays: number of rays along each side of the photo.
 const RAYS: usize = 9;
-/// Number of boxes that are refined; ratio of neighbouring values in each of the two refinements; and number of values
-/// on either side of the current one. [origin not recorded]
+/// `STARTS`: maximum number of boxes that are refined. `REFINEMENTS`: ratio of neighbouring values of a side in each
+/// of the two refinements. `VALUES_EITHER_SIDE`: number of values tried on either side of the current value. [origin
+/// not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;
@@ -161,7 +162,7 @@ impl Tables {
         Ok(Self { values, parts })
     }
 
-    /// Returns the best box for every pair of left and right, sorted by falling score.
+    /// Returns the best box for every pair of distances to the left and to the right wall, sorted by decreasing score.
     fn best(&self, job: Job) -> Result<Vec<ScoredBox>> {
         let [lefts, rights, tops, bottoms] = self.values.each_ref().map(Vec::len);
         let found = exec::map(lefts, job, |left| -> Vec<ScoredBox> {

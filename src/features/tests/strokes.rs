@@ -244,8 +244,8 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // The search infers which face is the plane. With the two kinds swapped, the plane is the back wall, and the
-    // ceiling is found at the same height.
+    // The search infers which face is the plane. With positive and negative strokes swapped, the plane is the back
+    // wall, and the ceiling is found at the same height.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }
