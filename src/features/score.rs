@@ -104,7 +104,7 @@ impl Evidence {
         }
         quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
 
-        // Strokes elsewhere are uninformative without a stroke on the plane.
+        // Negative strokes, which lie off the plane, are uninformative without a stroke on the plane.
         let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
         let has_plane = stroke_samples.iter().any(|s| s.positive);
         for sample in stroke_samples.iter().filter(|_| has_plane) {

@@ -126,7 +126,8 @@ struct Tables {
 
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
-        // Without strokes on a plane, one set of tables suffices; otherwise each face may be the plane.
+        // Without positive strokes, one set of tables suffices. Otherwise each face may be the plane on which these
+        // strokes lie, and gets its own set of tables.
         let planes = if evidence.has_plane { &Face::ALL[..] } else { &Face::ALL[..1] };
         // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());

@@ -178,9 +178,10 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 }
 
 /// Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
-/// The parameter guides holds the current frame, before the previous frame. For each pixel of the current frame,
-/// motion holds the offset, x and y in pixels, to the position of the pixel's surface point in the previous frame; NaN
-/// where the previous frame does not show the point. The caller releases *motion. Any thread.
+/// The parameter guides is the current frame; the parameter before is the previous frame. For each pixel of the
+/// current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
+/// in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
+/// thread.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

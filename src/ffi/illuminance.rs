@@ -171,8 +171,8 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
 }
 
 /// Starts a job that computes the illuminance on a mesh at texels of its first set of texture coordinates: columns
-/// along u, rows along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side.
-/// params may be NULL for the defaults. The caller releases *job. Any thread.
+/// along u, rows along v. The parameter back is 0 for the front side of the triangles (by their winding), 1 for the
+/// back side. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
 /// if a setting is out of range.

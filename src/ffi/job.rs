@@ -123,8 +123,8 @@ impl Drop for Job {
 }
 
 /// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
-/// call reports to progress, which may be NULL, and passes user to it. Any thread; several threads may wait for one
-/// job.
+/// call reports to the function progress, which may be NULL, and passes the pointer user to it. Any thread; several
+/// threads may wait for one job.
 ///
 /// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
 /// message of this call.

@@ -197,7 +197,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level; level and index start at 0. size is sizeof *round. Any thread.
+/// Describes a round of a level; the numbers level and index start at 0. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -218,7 +218,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a matching pass of a round; level, round and index start at 0. size is sizeof *pass. Any thread.
+/// Describes a matching pass of a round; the numbers level, round and index start at 0. size is sizeof *pass. Any
+/// thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]

@@ -299,7 +299,7 @@ fn strokes_of_one_kind_outside_the_photo_or_contradictory() {
     let room = Cluttered::new(3);
     let plain = layout_of(&room.camera, &room.segments, &[]);
     let beyond = vec![(SIZE[0] * SIZE[1]) as u32, u32::MAX];
-    // Strokes elsewhere are uninformative without a stroke on the plane.
+    // Negative strokes, which lie off the plane, are uninformative without a stroke on the plane.
     let others: Vec<_> = room.strokes.iter().filter(|s| !s.1).cloned().collect();
     for silent in [vec![(beyond.clone(), true)], vec![(vec![], true)], others, vec![(beyond, false)]] {
         assert_eq!(layout_of(&room.camera, &room.segments, &silent), plain);
