@@ -11,7 +11,7 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Maximum number of segments used, the longest ones; further segments do not change the layout.
+/// Only this number of the longest segments is used; the other segments are ignored.
 pub const MAX_SEGMENTS: usize = 160;
 /// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];

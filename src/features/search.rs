@@ -27,7 +27,7 @@ const PRIOR_COST: f64 = 0.01;
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
-/// Maximum number of candidates per side from segments.
+/// Maximum number of candidate distances that the segments suggest for each side of the box.
 const PEAKS: usize = 24;
 /// Two boxes are clearly different if more than this share of the view's rays meet different faces in the two boxes,
 /// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]

@@ -153,7 +153,8 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report the progress, also to the job whose function waits here; the fraction 1 is reserved for the end.
+            // Report the progress to the job whose function waits here, if any, and to the progress function. Only the
+            // last report has the fraction 1.
             if let Some(caller) = &caller {
                 caller.job().report(job.shared.monitor.progress());
             }

@@ -57,8 +57,8 @@ pub struct luxfer_render_params {
     /// Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the mean
     /// number of paths per pixel reaches this value.
     pub samples: u32,
-    /// Stop when the field error of luxfer_render_report falls to this value, >= 0; paths then go to the pixels where
-    /// they reduce the error most. Default 0: no target.
+    /// Stop when the field error of luxfer_render_report falls to this value, >= 0. With this target, paths go to the
+    /// pixels where they reduce the error most. Default 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -75,9 +75,9 @@ pub struct luxfer_render_params {
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
-    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0; paths then go to the
-    /// pixels where they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright
-    /// ones. Default 0: no target. With several targets, rendering stops when all are reached.
+    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0. With this target, paths
+    /// go to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
+    /// as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 

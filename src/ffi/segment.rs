@@ -57,9 +57,9 @@ pub struct luxfer_segment_params {
     /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
     pub samples_per_class: u32,
     /// Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
-    /// tries colour, colour and position, colour and normal, and all channels, and uses the set with the smallest
-    /// error on held-out strokes. With another number of channels, 0 uses all of them. For lights use 7, colour only,
-    /// since lights and plane have one geometry.
+    /// tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
+    /// smallest error on held-out strokes. With another number of channels, 0 uses all channels. For lights use 7,
+    /// colour only, since lights and plane have one geometry.
     pub channels: u32,
     /// Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
     /// The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three

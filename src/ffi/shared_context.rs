@@ -82,7 +82,8 @@ impl Context {
         read(messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str()))
     }
 
-    /// Makes `monitor` the monitor of all calls of the current thread until the returned guard is dropped.
+    /// Makes all calls of the current thread report to `monitor` and obey its cancel requests, until the returned
+    /// guard is dropped.
     pub(super) fn watch_thread(&self, monitor: Arc<Monitor>) -> WatchedThread<'_> {
         lock(&self.callers).push((thread::current().id(), monitor));
         WatchedThread(self)

@@ -30,14 +30,15 @@ const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// The edge must be found along at least this share of a segment's length. [origin not recorded]
+/// A segment is used only if its edge is found along at least this share of its length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
-/// Minimum number of lines for an estimate.
+/// Minimum number of lines; with fewer lines there is no estimate.
 const MIN_LINES: usize = 12;
 /// The part of an edge's position error, in pixels, that its residuals do not show; its square is added to their
 /// variance. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
-/// Maximum root mean square residual, in pixels, of an edge about its parabola. [origin not recorded]
+/// A segment is ignored if the root mean square residual of its edge about the fitted parabola is above this, in
+/// pixels. [origin not recorded]
 const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;

@@ -8,8 +8,8 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Minimum gradient magnitude of the pixels used, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
-/// [bench vp]
+/// Pixels with a smaller gradient magnitude are ignored. The unit is encoded luma per pixel; the value corresponds to
+/// an edge of about 9 of 255 grey levels. [bench vp]
 const MIN_GRADIENT: f32 = 0.01;
 
 /// Maximum angle, in radians, between the gradient of a pixel and the mean gradient direction of the region that the
@@ -19,8 +19,8 @@ const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 /// Length, in pixels, that the line fit leaves out at each end of a region. [origin not recorded]
 const TRIM: f64 = 2.0;
 
-/// Minimum share of a region's bounding rectangle that the region's pixels cover. Regions that arise from noise have
-/// gaps and cover less. [bench lines]
+/// A region is dense enough if its pixels cover at least this share of its bounding rectangle; otherwise it is grown
+/// again with a tighter tolerance, or cut. Regions that arise from noise have gaps and cover less. [bench lines]
 const MIN_DENSITY: f64 = 0.6;
 
 /// Finds the straight edges of a photo: statistically significant regions of similar gradient direction.

@@ -9,12 +9,13 @@ use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Maximum distance of a segment's endpoints from the line through its midpoint and its vanishing point, in units of
-/// half the image's longer side: about 2 pixels in an image of 640 pixels. [origin not recorded]
+/// A segment does not belong to a vanishing point if its endpoints lie farther than this from the line through its
+/// midpoint and the point. The unit is half the image's longer side, so this is about 2 pixels in an image of 640
+/// pixels. [origin not recorded]
 const ENDPOINT_LIMIT: f64 = 0.006;
 
-/// Maximum sine of the angle between a segment and the line through its midpoint and its vanishing point. This second
-/// limit matters for short segments. [origin not recorded]
+/// A segment does not belong to a vanishing point if the sine of the angle between the segment and the line through
+/// its midpoint and the point is above this. This second limit matters for short segments. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
 /// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.

@@ -16,7 +16,8 @@ const DIRECTIONS: usize = 1000;
 /// ratio between neighbouring focal lengths. [convention]
 const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
-/// A focal length counts as known if the standard deviation of its logarithm is below this. [bench photos:tune]
+/// A focal length counts as known if the standard deviation of its logarithm is below this; it is then not refined.
+/// [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
 /// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
 /// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
@@ -34,8 +35,8 @@ const MAX_LINES_COST: f64 = 9.0;
 /// variances. Most photographers hold the camera upright. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// Minimum cosine of the angle between the normal found and the normal from the lines: both normals must put the plane
-/// on the same side of the camera. [bench photos:tune]
+/// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this,
+/// because both normals must put the plane on the same side of the camera. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.
