@@ -38,9 +38,8 @@ pub const LUXFER_ARTWORK_STIPPLE: luxfer_artwork = 1;
 /// Paint: oil on canvas.
 pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 
-/// Generates a scene. The parameter which selects the scene: a LUXFER_DEMO_ value. The caller releases *scene. Any
-/// thread.
-/// LUXFER_INVALID_ARGUMENT if the parameter which has another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
+/// LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,

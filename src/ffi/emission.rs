@@ -436,8 +436,7 @@ pub unsafe extern "C" fn luxfer_emission_start(
     })
 }
 
-/// Gets an image of the texture. The parameter which selects the image: a LUXFER_EMISSION_ value. The caller releases
-/// *image. Any thread.
+/// Gets the image of the texture that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(

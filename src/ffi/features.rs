@@ -349,8 +349,7 @@ pub unsafe extern "C" fn luxfer_features_start(
     })
 }
 
-/// Gets an image of the result. The parameter which selects the image: a LUXFER_FEATURES_ value. The caller releases
-/// *image. Any thread.
+/// Gets the image of the result that a LUXFER_FEATURES_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a
 /// network.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! The guard of each entry point: it keeps panics and their messages from the host, and turns every error into a
+//! The guard of each entry point: it hides panics and their messages from the host, and turns every error into a
 //! status.
 
 pub(super) use super::entry::enter;

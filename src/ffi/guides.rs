@@ -149,8 +149,7 @@ pub unsafe extern "C" fn luxfer_guides_start(
     })
 }
 
-/// Gets a guide image. The parameter which selects the image: a LUXFER_GUIDES_ value. The caller releases *image. Any
-/// thread.
+/// Gets the guide image that a LUXFER_GUIDES_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_image(

@@ -209,8 +209,8 @@ fn start(
     })
 }
 
-/// Gets the image of the illuminances or of their errors. The parameter which selects the image: a LUXFER_ILLUMINANCE_
-/// value. The caller releases *image. Any thread.
+/// Gets the image that a LUXFER_ILLUMINANCE_ value selects: the illuminances or their errors. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_image(

@@ -28,10 +28,10 @@ pub struct luxfer_job {
     _opaque: [u8; 0],
 }
 
-/// Receives the progress of a job: fraction starts at 0 and never falls. It is exactly 1 only once: in the last call,
-/// after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the
-/// function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer function.
-/// It must not throw an exception or leave by longjmp.
+/// Receives the progress of a job: fraction starts at 0 and never falls. The fraction is exactly 1 only once: in the
+/// last call, after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait
+/// calls the function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer
+/// function. The function must not throw an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// Interval between two calls of the progress function by a waiting thread.

@@ -2,7 +2,7 @@
 //!
 //! Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
 //! is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
-//! light that the goal receives from each of the lamps, all lamps at once, even to thousands.
+//! light that the goal receives from each lamp, for all lamps at once, even for thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;

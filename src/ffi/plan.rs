@@ -172,8 +172,7 @@ pub unsafe extern "C" fn luxfer_plan_create(
 
 /// Starts a job that plans a rendering with the scene and the camera of the object render. The struct settings gives
 /// the size of the picture and the other settings that do not affect quality; NULL stands for the defaults. The struct
-/// params gives the goal.
-/// The caller releases *job. Any thread.
+/// params gives the goal. The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
 /// such camera.

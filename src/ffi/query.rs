@@ -25,7 +25,8 @@ pub struct luxfer_ray {
     pub origin: [f32; 3],
     /// Direction of the ray; any length but 0. Its length is the unit of distances along the ray.
     pub direction: [f32; 3],
-    /// Only hits at distances in (0, t_max) count, in units of the length of direction; may be infinite.
+    /// Maximum distance of a hit, in units of the length of direction; may be infinite. Only hits at distances in (0,
+    /// t_max) count.
     pub t_max: f32,
 }
 

@@ -386,8 +386,8 @@ pub unsafe extern "C" fn luxfer_rectify_start(
     })
 }
 
-/// Gets the unwarped plane or its mask. The parameter which selects the image: a LUXFER_RECTIFY_ value. The caller
-/// releases *image. Any thread.
+/// Gets the image that a LUXFER_RECTIFY_ value selects: the unwarped plane or its mask. The caller releases *image.
+/// Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_image(

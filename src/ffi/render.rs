@@ -40,8 +40,8 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
 /// The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
-/// show, such as soft shadows; preview_bias of the report estimates the error. Only if luxfer_render_params.preview is
-/// not 0.
+/// show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
+/// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -269,9 +269,8 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
 }
 
-/// Gets an image of the rendering in its current state. The parameter which selects the image: a LUXFER_RENDER_ value.
-/// The caller releases *image.
-/// Any thread.
+/// Gets the image of the rendering that a LUXFER_RENDER_ value selects, in its current state. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
 /// 0.
 #[unsafe(no_mangle)]

@@ -21,7 +21,7 @@ pub const LUXFER_SCATTERING_GLOSSY: u32 = 2;
 pub const LUXFER_SCATTERING_MIRROR: u32 = 4;
 /// At least one surface is a clear pane of glass.
 pub const LUXFER_SCATTERING_GLASS: u32 = 8;
-/// At least one surface is partly transparent by its alpha.
+/// At least one surface is partly transparent because of its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
 /// At least one surface emits.

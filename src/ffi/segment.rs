@@ -249,8 +249,8 @@ pub unsafe extern "C" fn luxfer_segment_start(
     })
 }
 
-/// Gets the mask or another image of the result. The parameter which selects the image: a LUXFER_SEGMENT_ value. The
-/// caller releases *image. Any thread.
+/// Gets the image of the result that a LUXFER_SEGMENT_ value selects, for example the mask. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_image(

@@ -53,8 +53,8 @@ pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 /// The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
-/// The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
-/// their seams.
+/// The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork stay whole
+/// up to their seams.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults

@@ -129,9 +129,9 @@ versioned!(luxfer_stylize_pass, [32], {
     Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
 });
 
-/// Gets the picture or another image of the result. The parameter which selects the image: a LUXFER_STYLIZE_IMAGE_
-/// value. luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last
-/// full run. The caller releases *image. Any thread.
+/// Gets the image of the result that a LUXFER_STYLIZE_IMAGE_ value selects, for example the picture.
+/// luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
+/// The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
 /// level is finished.
 #[unsafe(no_mangle)]

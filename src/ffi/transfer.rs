@@ -284,8 +284,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
 /// the mesh index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes
 /// the plane that faces most of the room, as for a named surface. These triangles replace the triangles of an earlier
 /// call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface
-/// receives the lights again. Any thread. A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these
-/// triangles.
+/// receives the lights again. Any thread.
+/// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(
     transfer: *mut luxfer_transfer,

@@ -229,8 +229,8 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     })
 }
 
-/// Gets an image that a stage has made. The parameter which selects the image: a LUXFER_TRANSFER_ value. The caller
-/// releases *image. Any thread.
+/// Gets the image that a LUXFER_TRANSFER_ value selects, which a stage has made. The caller releases *image. Any
+/// thread.
 /// LUXFER_NOT_READY before the stage that makes the image has ended; LUXFER_NOT_FOUND for a preview if
 /// luxfer_render_params.preview was 0.
 #[unsafe(no_mangle)]
@@ -269,9 +269,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
     })
 }
 
-/// Gets a scene that the transfer has made. The parameter which selects the scene: a LUXFER_SCENE_ value. The scene is
-/// independent of the transfer.
-/// The caller releases *scene. Any thread.
+/// Gets the scene that a LUXFER_SCENE_ value selects, which the transfer has made. The scene is independent of the
+/// transfer. The caller releases *scene. Any thread.
 /// LUXFER_NOT_READY if the stage that makes the scene has not ended: EMISSION for LUXFER_SCENE_UNSOLVED, RELIGHT for
 /// the other scenes.
 #[unsafe(no_mangle)]

@@ -58,8 +58,8 @@ impl Frame {
         Self { principal, scale: width.max(height) as f64 / 2.0 }
     }
 
-    /// Converts segments to weighted lines of the frame, each with the index of its segment. Leaves out segments of
-    /// zero length and segments that are not finite.
+    /// Converts segments to weighted lines in the coordinates of the frame, each with the index of its segment. Leaves
+    /// out segments of zero length and segments that are not finite.
     pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
