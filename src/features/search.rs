@@ -3,8 +3,9 @@
 //! The face that a ray meets depends on two of the four sides: a side wall, and either the ceiling or the floor. The
 //! score of a box is therefore a sum over the four quadrants of the view (see [`Quadrant`](super::score::Quadrant)).
 //! The score of a quadrant is a table over the values of its two sides. This allows an exact optimum over all
-//! combinations of many values: for every pair of left and right, the best ceiling and the best floor are found
-//! independently. The best boxes that clearly differ from each other are then refined on finer grids of values.
+//! combinations of many values: for every pair of distances to the left and to the right wall, the best ceiling and
+//! the best floor are found independently. The best boxes that clearly differ from each other are then refined on
+//! finer grids of values.
 
 use super::box_room::{Face, Layout, faces, facing_axes};
 use super::input::RoomView;

@@ -20,7 +20,8 @@ const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 const TRIM: f64 = 2.0;
 
 /// A region is dense enough if its pixels cover at least this share of its bounding rectangle; otherwise it is grown
-/// again with a tighter tolerance, or cut. Regions that arise from noise have gaps and cover less. [bench lines]
+/// again with a tighter tolerance, or its pixels far from the seed are cut off. Regions that arise from noise have
+/// gaps and cover less. [bench lines]
 const MIN_DENSITY: f64 = 0.6;
 
 /// Finds the straight edges of a photo: statistically significant regions of similar gradient direction.

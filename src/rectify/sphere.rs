@@ -27,9 +27,9 @@ const COINCIDENT: f64 = 1e-18;
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Number of segments that count as one independent observation: both sides of a bar, the pieces of one edge and rows
-/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants.
-/// [bench vp]
+/// Number of segments that count as one independent observation, because the errors of segments are correlated: those
+/// of both sides of a bar, of the pieces of one edge and of rows of equal objects. Calibrated on photos with exactly
+/// known cameras, like the next constants. [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
 /// Settings of the estimate of the endpoint noise. Residuals beyond the biweight's limit are cut off, so the other

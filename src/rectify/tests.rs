@@ -350,7 +350,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
             let found = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
             let (found, exact) =
                 (centred(found), centred(flat.corners.map(|c| on_ceiling(&truth, c) / flat.pixel_size)));
-            // Which axis is right and which is down follows from the photo: compare with the nearest pair of true
+            // The photo decides which axis runs right and which runs down, so compare with the nearest pair of true
             // axes.
             let turns = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
                 .into_iter()
