@@ -57,8 +57,8 @@ pub struct luxfer_emission_params {
     pub block: u32,
     /// Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1.
     pub scale: f64,
-    /// Length in pixels to which the longest side of the exemplar is reduced while patches are compared, in [16,
-    /// 2048]; default 256.
+    /// Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
+    /// 256.
     pub working_side: u32,
     /// Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
     /// in [0, 1e3]; default 1; 0 is plain image quilting.
@@ -498,9 +498,8 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 }
 
 /// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
-/// described with the outline that it has in the exemplar, cut at the edges of the texture. Only lights that run
-/// through the whole exemplar, such as light bands, are described as the texture will show them. size is sizeof
-/// *luminaire. Any thread.
+/// described as it appears in the exemplar, cut at the edges of the texture. Only lights that run through the whole
+/// exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(

@@ -94,8 +94,8 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Distance in metres of the photo's camera from the plane, from which the size of the pattern on the surface
-    /// follows; NaN before the stage EMISSION has ended, and if the caller gave the texture.
+    /// Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has the size
+    /// that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
     pub plane_distance: f64,
     /// Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
     /// lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
