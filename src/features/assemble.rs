@@ -1,5 +1,5 @@
-//! Assembles the feature channels of one row, the last step of the features: colour, screen depth, position by Eq. 1,
-//! and normal.
+//! Assembles the feature channels of one row of pixels, as the last step of computing the features: colour, screen
+//! depth, position by Eq. 1, and normal.
 
 use super::depth::Surface;
 use super::frustum::Frustum;

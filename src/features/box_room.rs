@@ -44,10 +44,11 @@ impl Face {
 pub struct Layout {
     /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
     pub sides: [f64; 4],
-    /// Agreement of the segments with the box: at most 1 if no segment lies on a seam between faces, higher otherwise.
+    /// Agreement of the segments with the box: at most 1 if no segment lies on a seam, an edge at which two faces
+    /// meet; it may be higher otherwise.
     pub score: f64,
-    /// Confidence in the box as a whole, in `[0, 1]`. It depends on the lead in score over every clearly different
-    /// box, and on the number of segments.
+    /// Confidence in the box as a whole, in `[0, 1]`. It rises with the number of segments, and with the lead of the
+    /// box's score over the score of the best clearly different box.
     pub trust: f64,
 }
 
@@ -73,12 +74,12 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     }
 }
 
-/// An enlarged room extends beyond the pixels that it must show by this ratio, so that lamps at these pixels are
-/// surrounded by the plane. [convention]
+/// When the room is enlarged to make a face include given pixels, it becomes larger than necessary by this factor, so
+/// that the face also surrounds lamps at these pixels. [convention]
 const MARGIN: f64 = 1.05;
 
 impl Layout {
-    /// Returns the face that shows most of the given pixels.
+    /// Returns the face on which most of the given pixels lie.
     pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
@@ -87,9 +88,9 @@ impl Layout {
         Face::ALL[most]
     }
 
-    /// Enlarges the room as little as needed for `face` to show the given pixels. The face itself keeps its place.
-    /// Returns the new room, and the largest factor by which another face has moved away. Pixels whose rays do not
-    /// meet the face are left out.
+    /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns the
+    /// new room, and the largest factor by which a face has moved away. Pixels whose rays do not meet the plane of
+    /// `face` are ignored.
     pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;

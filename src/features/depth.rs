@@ -124,7 +124,8 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
     if !has_holes.contains(&true) {
         return Ok(());
     }
-    // Channels: inverse depth and normal, premultiplied by the known flag, and the flag itself as the fifth.
+    // Channels: inverse depth and normal, both multiplied by a flag that is 1 for known pixels and 0 for holes; the
+    // flag itself is the fifth channel.
     let mut base = Image::new(width, height, 5)?;
     for (i, out) in base.data.chunks_exact_mut(5).enumerate() {
         if surface.confidence.data[i] > 0.0 {

@@ -35,7 +35,7 @@ pub struct RoomView<'a> {
     pub segments: &'a [(Segment, Option<usize>)],
     /// The user's strokes: positive ones lie on a single plane of the room (any plane), the others on other surfaces.
     pub strokes: &'a [PlaneStroke<'a>],
-    /// The layout of the room if it is known. If `None`, the room is laid out from the segments and the strokes.
+    /// The box of the room if it is known. If `None`, a box is fitted to the segments and the strokes.
     pub layout: Option<Layout>,
 }
 

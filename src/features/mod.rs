@@ -63,7 +63,7 @@ pub struct Features {
     /// network, below 1 for the built-in layout, 0.05 for the neutral prior.
     pub depth_confidence: Image,
     pub depth_source: DepthSource,
-    /// The box room from which the depth was laid out, if any.
+    /// The box room from which the depth was computed, if any.
     pub layout: Option<Layout>,
     /// Number of photo pixels with a NaN, infinite or negative value, which were replaced from their neighbours.
     pub non_finite: usize,

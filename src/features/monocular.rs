@@ -45,7 +45,7 @@ pub struct DepthNetwork {
 /// sides are multiples (`MULTIPLE`).
 const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
-/// Maximum number of rows and of columns of a network's input.
+/// Maximum number of rows and of columns of a network's input; networks with larger inputs are refused.
 const MAX_INPUT_SIDE: usize = 4096;
 /// Confidence in depth estimated by a network; measured depth has confidence 1. [convention]
 const CONFIDENCE: f32 = 0.5;

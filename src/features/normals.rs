@@ -104,8 +104,8 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
 }
 
 widest! {
-    /// Selects for each pixel the window of lowest cost: its mean squared residual plus the squared residual at the
-    /// pixel itself.
+    /// Selects for each pixel the window of lowest cost. The cost is the window's factor `favour`, times the sum of
+    /// the mean squared residual over the window and `off_weight` times the squared residual at the pixel itself.
     fn best_of(w: &[f32], windows: &[Option<Windows>; 9], off_weight: f32) -> Best {
         let mut best = Best { cost: [f32::INFINITY; TILE], dx: [0.0; TILE], dy: [0.0; TILE] };
         for start in (0..w.len()).step_by(LANES) {

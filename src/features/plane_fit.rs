@@ -1,6 +1,6 @@
-//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums. Sums over the columns of a
-//! window are updated from row to row; sums over its rows are differences of running sums. The sums are `f64`, because
-//! the differences cancel.
+//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums. The sums over the part of a
+//! column inside the window are updated from row to row; the sums over all columns of a window are differences of
+//! prefix sums. The sums are `f64`, because the differences cancel.
 
 use crate::image::Image;
 use crate::simd::widest;

@@ -11,7 +11,7 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Maximum number of segments used, the longest ones; further segments do not change the layout.
+/// Only this number of the longest segments is used; the other segments are ignored.
 pub const MAX_SEGMENTS: usize = 160;
 /// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
@@ -19,8 +19,8 @@ const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
 const IMPOSSIBLE: f64 = 1.5;
 /// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [origin not recorded]
 const SEAM: f64 = 2.0;
-/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share.
-/// [origin not recorded]
+/// A segment lies on the seam of two faces if the distances to both faces along its rays differ by less than this
+/// share. [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
 /// this face too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes
@@ -104,7 +104,7 @@ impl Evidence {
         }
         quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
 
-        // Strokes elsewhere are uninformative without a stroke on the plane.
+        // Negative strokes, which lie off the plane, are uninformative without a stroke on the plane.
         let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
         let has_plane = stroke_samples.iter().any(|s| s.positive);
         for sample in stroke_samples.iter().filter(|_| has_plane) {
@@ -126,7 +126,7 @@ impl Evidence {
     }
 
     /// Returns candidate distances of one side (left, right, ceiling, floor), at each of which a segment would be an
-    /// edge of the back wall. Sorted by falling support.
+    /// edge of the back wall. They are sorted by decreasing support.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
@@ -161,7 +161,8 @@ fn quadrant(ray: DVec3) -> (usize, DVec3) {
 }
 
 impl Quadrant {
-    /// Returns the agreement of the segments with a side wall and a ceiling or floor at the given inverse distances.
+    /// Returns the agreement of the segments with a box whose side wall is at the inverse distance `wall`, and whose
+    /// ceiling or floor is at the inverse distance `level`.
     pub fn lines(&self, wall: f64, level: f64) -> f64 {
         let inverse = [wall, level, 1.0];
         let agreement = self.points.iter().zip(OTHERS).enumerate().map(|(axis, (points, [p, q]))| {
@@ -170,8 +171,9 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// Returns the score of the strokes for each face that the plane may be: the side wall, the ceiling or floor, and
-    /// the back wall.
+    /// Returns for each face of the room on which the user may have painted the plane (the side wall; the ceiling or
+    /// floor; the back wall) the total weight of the stroke samples on the face. Samples of strokes elsewhere have
+    /// negative weights.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
         for (size, weight) in &self.stroke_samples {

@@ -3,8 +3,9 @@
 //! The face that a ray meets depends on two of the four sides: a side wall, and either the ceiling or the floor. The
 //! score of a box is therefore a sum over the four quadrants of the view (see [`Quadrant`](super::score::Quadrant)).
 //! The score of a quadrant is a table over the values of its two sides. This allows an exact optimum over all
-//! combinations of many values: for every pair of left and right, the best ceiling and the best floor are found
-//! independently. The best boxes that clearly differ from each other are then refined on finer grids of values.
+//! combinations of many values: for every pair of distances to the left and to the right wall, the best ceiling and
+//! the best floor are found independently. The best boxes that clearly differ from each other are then refined on
+//! finer grids of values.
 
 use super::box_room::{Face, Layout, faces, facing_axes};
 use super::input::RoomView;
@@ -27,16 +28,17 @@ const PRIOR_COST: f64 = 0.01;
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
-/// Maximum number of candidates per side from segments.
+/// Maximum number of candidate distances that the segments suggest for each side of the box.
 const PEAKS: usize = 24;
-/// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than the factor `MIN_RATIO`. [origin not recorded]
+/// Two boxes are clearly different if more than this share of the view's rays meet different faces in the two boxes,
+/// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
 /// Boxes are compared along a grid of rays: number of rays along each side of the photo.
 const RAYS: usize = 9;
-/// Number of boxes that are refined; ratio of neighbouring values in each of the two refinements; and number of values
-/// on either side of the current one. [origin not recorded]
+/// `STARTS`: maximum number of boxes that are refined. `REFINEMENTS`: ratio of neighbouring values of a side in each
+/// of the two refinements. `VALUES_EITHER_SIDE`: number of values tried on either side of the current value. [origin
+/// not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;
@@ -125,7 +127,8 @@ struct Tables {
 
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
-        // Without strokes on a plane, one set of tables suffices; otherwise each face may be the plane.
+        // Without positive strokes, one set of tables suffices. Otherwise each face may be the plane on which these
+        // strokes lie, and gets its own set of tables.
         let planes = if evidence.has_plane { &Face::ALL[..] } else { &Face::ALL[..1] };
         // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
@@ -161,7 +164,7 @@ impl Tables {
         Ok(Self { values, parts })
     }
 
-    /// Returns the best box for every pair of left and right, sorted by falling score.
+    /// Returns the best box for every pair of distances to the left and to the right wall, sorted by decreasing score.
     fn best(&self, job: Job) -> Result<Vec<ScoredBox>> {
         let [lefts, rights, tops, bottoms] = self.values.each_ref().map(Vec::len);
         let found = exec::map(lefts, job, |left| -> Vec<ScoredBox> {

@@ -1,5 +1,5 @@
-//! Turns strokes into evidence about the room: at most one sample of each kind per cell of a grid, so that neither
-//! brush width nor the number of strokes affects the result.
+//! Turns strokes into evidence about the room. Each cell of a grid yields at most one sample of the strokes on the
+//! plane and one of the other strokes, so that neither brush width nor the number of strokes affects the result.
 
 use super::input::RoomView;
 use crate::error::Result;
@@ -11,17 +11,18 @@ use glam::{DMat3, DVec2, DVec3};
 /// mirrored photo has mirrored cells.
 const CELLS: usize = 15;
 
-/// The strokes of one kind within a cell.
+/// One sample of the strokes within a grid cell: of the strokes on the plane, or of the other strokes.
 pub struct StrokeSample {
     /// Ray through the mean of the strokes' pixels in the cell, in room axes.
     pub ray: DVec3,
     /// True for strokes on the plane, false for strokes elsewhere.
     pub positive: bool,
-    /// Weight: one over the number of samples of this kind in the view.
+    /// Weight: one over the number of samples with the same value of `positive` in the view.
     pub weight: f64,
 }
 
-/// Samples the strokes of a view. Pixels outside the image are ignored; pixels covered by both kinds count for both.
+/// Samples the strokes of a view. Pixels outside the image are ignored; pixels covered by strokes on the plane and by
+/// other strokes count for both.
 pub fn stroke_samples(
     room: &RoomView,
     to_room: &DMat3,

@@ -1,4 +1,4 @@
-//! Tests on exact rooms: the analytic depth of a box seen by a known camera.
+//! Tests on box rooms seen by a known camera, whose true depth is computed analytically.
 
 mod strokes;
 

@@ -3,7 +3,7 @@
 use super::{DepthSource, Features};
 use crate::warning::{Code, Warning, percent};
 
-/// Minimum confidence of the box layout from which the depth was computed. [judged on 38 photos]
+/// A box room with a confidence (`Layout::trust`) below this raises a warning. [judged on 38 photos]
 const MIN_LAYOUT_TRUST: f64 = 0.2;
 
 impl Features {

@@ -43,10 +43,11 @@ pub struct luxfer_candidate {
     pub triangles: u32,
     /// Area of all triangles in m².
     pub area: f32,
-    /// Area in m² of the level triangles: those inclined by at most 15 degrees to the horizontal, facing up or down.
+    /// Area in m² of the level triangles. A triangle is level if it faces up or down and is inclined by at most 15
+    /// degrees to the horizontal.
     pub level_area: f32,
-    /// Mean height (y coordinate) in metres of the level triangles, weighted by area; of all triangles if none is
-    /// level.
+    /// Mean height (y coordinate) in metres, weighted by area, of the level triangles, or of all triangles if no
+    /// triangle is level.
     pub height: f32,
     /// Height (y coordinate) of the lowest point, in metres.
     pub low: f32,

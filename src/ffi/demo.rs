@@ -1,7 +1,7 @@
 //! Demonstration
 //!
-//! Scenes and artworks for examples and tests. The library generates them without any files, and equal to the bit in
-//! every call.
+//! Scenes and artworks for examples and tests. The library generates them without any files, and every call gives
+//! results that are equal to the bit.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -38,8 +38,8 @@ pub const LUXFER_ARTWORK_STIPPLE: luxfer_artwork = 1;
 /// Paint: oil on canvas.
 pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 
-/// Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
-/// LUXFER_INVALID_ARGUMENT if which is another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
+/// LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,
@@ -53,9 +53,10 @@ pub unsafe extern "C" fn luxfer_demo_create_scene(
     })
 }
 
-/// Generates an artwork of the scene that guides show, as an artist would paint it. The artwork has the size of the
-/// guides and is aligned with them. The styles are designed for LUXFER_DEMO_SPHERE_ON_TABLE. style is a
-/// LUXFER_ARTWORK_ value. The call takes up to a few seconds. The caller releases *image. Any thread.
+/// Generates a picture of a scene as an artist would paint it. The parameter guides holds the rendered guide images of
+/// the scene; the artwork has their size and is aligned with them. The styles are designed for
+/// LUXFER_DEMO_SPHERE_ON_TABLE. style is a LUXFER_ARTWORK_ value. The call takes up to a few seconds. The caller
+/// releases *image. Any thread.
 /// LUXFER_INVALID_ARGUMENT if style is another value; LUXFER_NOT_READY before the guides are rendered.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_artwork(

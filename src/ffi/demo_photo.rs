@@ -100,7 +100,8 @@ pub unsafe extern "C" fn luxfer_demo_photo_start(
     })
 }
 
-/// Gets the photo or its strokes; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+/// Gets the image that a LUXFER_DEMO_PHOTO_ value selects: the photo or its strokes. The caller releases *image. Any
+/// thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_get_image(

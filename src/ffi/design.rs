@@ -87,11 +87,11 @@ versioned!(luxfer_preset, [56], {
     Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
 });
 
-/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
-/// three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative for LEDs outside
-/// the gamut of Rec.709. count is in [1, 64]. drives receives count drive levels in [0, max_drive]; max_drive is >= 0
-/// and may be infinite. If several mixtures give the colour, the result is the mixture with the smallest sum of
-/// squared drive levels. size is sizeof *mixture. Any thread.
+/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
+/// primaries holds three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative
+/// for LEDs outside the gamut of Rec.709. count is in [1, 64]. The array drives receives count drive levels in [0,
+/// max_drive]; max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture
+/// with the smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -164,7 +164,7 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     })
 }
 
-/// Gets the number of presets: kinds of rooms with requirements. Any thread.
+/// Gets the number of presets. A preset holds the lighting requirements for one kind of room. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {

@@ -47,8 +47,8 @@ pub struct luxfer_distribution_report {
     /// Electric power in watts; 0 if unknown.
     pub watts: f64,
     /// Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
-    /// for a round opening, as in IES: its absolute value is the diameter. The three values are the length, width and
-    /// height of an IES file, and the width, length and height of a EULUMDAT file.
+    /// for a round opening, as in IES: its absolute value is the diameter. IES files name the three values length,
+    /// width and height; EULUMDAT files name them width, length and height.
     pub size: [f64; 3],
 }
 

@@ -34,10 +34,12 @@ pub type luxfer_emission_image = i32;
 pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 /// The mask of the texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
-/// Metadata of the exemplar, at the resolution that working_side gives: confidence of light, and signed x and y
-/// distance to the nearest light in pixels of this image; 3 channels.
+/// The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a pixel
+/// shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3 channels, at the
+/// resolution that working_side gives.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// Metadata of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch like the texture.
+/// The guide channels of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch in the
+/// same way as the colours of the texture.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
 /// Settings of an emissive texture. Fill them with luxfer_emission_params_init.
@@ -50,16 +52,16 @@ pub struct luxfer_emission_params {
     pub width: u32,
     /// Height of the texture in texels, in [1, 65536]; default 1024.
     pub height: u32,
-    /// Side of the square patches that are copied, in pixels of the exemplar at working size, in [0, 65536]; 0, the
-    /// default: chosen from the spacing of the lights.
+    /// Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its reduction to
+    /// working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights.
     pub block: u32,
     /// Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1.
     pub scale: f64,
-    /// Working size: length in pixels to which the longest side of the exemplar is reduced during synthesis, in [16,
-    /// 2048]; default 256.
+    /// Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
+    /// 256.
     pub working_side: u32,
-    /// Weight of the metadata channels relative to colour when patches are compared, in [0, 1e3]; default 1; 0 is
-    /// plain image quilting.
+    /// Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
+    /// in [0, 1e3]; default 1; 0 is plain image quilting.
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
@@ -91,16 +93,16 @@ pub struct luxfer_emission_params {
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// The law by which the texture continues the lights: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default
-    /// LUXFER_LAW_BEST.
+    /// The law, which is the rule by which the texture continues the lights: a LUXFER_LAW_ value other than
+    /// LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
     /// 1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is exact at
     /// any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
     /// lamp has the outline of the mask.
     pub clean_lamps: u32,
-    /// Parts of the exemplar with a magnification above this value, in [1, 1e6], count as not shown in the photo; 0,
-    /// the default: all parts are used. The magnification of a pixel is the factor in length by which the photo is
-    /// magnified there, relative to the least magnified pixel of the exemplar.
+    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out, as if
+    /// the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the factor in
+    /// length by which unwarping has magnified the photo there, relative to the least magnified pixel of the exemplar.
     pub max_magnification: f64,
 }
 
@@ -158,7 +160,8 @@ impl luxfer_emission_params {
     }
 }
 
-/// Quality of the texture, or contents of a plan.
+/// Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no texels are
+/// set.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -182,11 +185,11 @@ pub struct luxfer_emission_report {
     pub sampling_error: f32,
     /// The law by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
-    /// The law that scored best among the other laws: a LUXFER_LAW_ value.
+    /// The law with the best score among all laws but the field law: a LUXFER_LAW_ value.
     pub runner_up: luxfer_emission_law,
-    /// Score of law in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps weigh in
-    /// proportion to their pixels in the photo. NaN if the laws were not compared, for example because too few of the
-    /// lights are whole lamps.
+    /// Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps. Lamps
+    /// weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
+    /// few of the lights are whole lamps.
     pub law_score: f64,
     /// law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly better.
     pub margin: f64,
@@ -363,7 +366,7 @@ impl Handle for luxfer_emission {
     const NAME: &'static str = "luxfer_emission";
 }
 
-/// Creates a synthesis of an emissive texture, without inputs. The caller releases *emission. Any thread.
+/// Creates a synthesis of an emissive texture. It has no inputs yet. The caller releases *emission. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_create(
     context: *mut luxfer_context,
@@ -433,7 +436,7 @@ pub unsafe extern "C" fn luxfer_emission_start(
     })
 }
 
-/// Gets an image of the texture; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
+/// Gets the image of the texture that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(
@@ -495,7 +498,7 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 }
 
 /// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
-/// described as the exemplar shows it, cut at the edges of the texture. Only lights that run through the whole
+/// described as it appears in the exemplar, cut at the edges of the texture. Only lights that run through the whole
 /// exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]

@@ -7,11 +7,11 @@ use crate::error::{Error, Result};
 
 /// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best. The law that LUXFER_LAW_CORRELATION gives is kept unless another
-/// law is clearly better.
+/// The law that predicts the lamps of the photo best. If no law is clearly better than the law that
+/// LUXFER_LAW_CORRELATION selects, the latter is used.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the autocorrelation of the lights suggests. min_regularity of luxfer_emission_params is the least
-/// correlation that counts.
+/// The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a shift by
+/// this period is at least min_regularity of luxfer_emission_params.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;

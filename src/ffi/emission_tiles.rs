@@ -18,12 +18,12 @@ use crate::emission::{Composition, LampList, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 
-/// Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
-/// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
-/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3].
-/// weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are added,
-/// their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar has
-/// the rest.
+/// Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
+/// and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. The
+/// image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
+/// added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
+/// has the rest.
 ///
 /// Each lamp of the texture comes from one exemplar, chosen at random with the weights as probabilities, so that the
 /// light per area blends linearly. The lattice of each exemplar keeps its own period and phase. Any thread.
@@ -87,8 +87,9 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
 
 /// Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
 /// texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
-/// bit to the texture and mask of luxfer_emission_start, for any size and order of the tiles. The call takes up to a
-/// second per megapixel. The caller releases *tile. Any thread; several threads may render tiles at the same time.
+/// bit to the texture and mask of luxfer_emission_start, whatever the sizes of the tiles and the order in which they
+/// are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads
+/// may render tiles at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
 /// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

@@ -57,8 +57,8 @@ pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
 /// channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// How the photo's colours are normalised for a network, which an ONNX file does not state: a LUXFER_NORMALISATION_
-/// value.
+/// How the photo's colours are normalised for a network: a LUXFER_NORMALISATION_ value. An ONNX file does not state
+/// it.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.
@@ -93,8 +93,8 @@ pub struct luxfer_features_params {
     /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
     /// near_plane; default 10.
     pub far_plane: f32,
-    /// Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
-    /// size.
+    /// Normals come from planes fitted in a square window; this is half the width of the window in pixels, in [0, 64];
+    /// default 0: chosen by the photo's size.
     pub normal_radius: u32,
 }
 
@@ -157,7 +157,7 @@ pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
     }
 }
 
-/// Creates an object that computes features, without inputs. The caller releases *features. Any thread.
+/// Creates an object that computes features. It has no inputs yet. The caller releases *features. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_create(
     context: *mut luxfer_context,
@@ -295,10 +295,11 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Sets strokes that guide the fit of a box-shaped room to the lines of luxfer_features_set_view; they have no effect
-/// if the depth comes from another source. The fit prefers a box with a face, such as the ceiling, that contains all
-/// positive strokes, on the plane and on lights, and no negative stroke for LUXFER_PHASE_PLANE. The call copies the
-/// strokes, which replace earlier strokes; NULL removes them. Any thread.
+/// Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
+/// prefers a room in which one surface, such as the ceiling, contains every positive stroke, whether for the plane or
+/// for the lights, and no stroke that is negative for the plane (LUXFER_PHASE_PLANE). The strokes have no effect if
+/// the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes them.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(
@@ -348,7 +349,7 @@ pub unsafe extern "C" fn luxfer_features_start(
     })
 }
 
-/// Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
+/// Gets the image of the result that a LUXFER_FEATURES_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a
 /// network.
 #[unsafe(no_mangle)]

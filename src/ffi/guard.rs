@@ -1,4 +1,4 @@
-//! The guard of each entry point: it keeps panics and their messages from the host, and turns every error into a
+//! The guard of each entry point: it hides panics and their messages from the host, and turns every error into a
 //! status.
 
 pub(super) use super::entry::enter;
@@ -49,7 +49,7 @@ mod tests {
     use crate::ffi::status::{LUXFER_FORMAT, LUXFER_INTERNAL};
     use crate::job::Monitor;
 
-    /// Panics on the calling thread, on a worker and on a job's thread, which the guard catches.
+    /// Causes panics on the calling thread, on a worker and on a job's thread; the guard catches all of them.
     #[test]
     #[ignore = "a program of its own: a_defect_is_silent runs it and looks at its stderr"]
     fn has_defects() {
@@ -64,7 +64,7 @@ mod tests {
             Ok(())
         });
         assert_eq!(of_thread, LUXFER_OK);
-        // Panics of the host's own code still print their message, also in a callback that the library calls.
+        // Panics of the host's own code still print their message, even in a callback that the library calls.
         assert_eq!(guard(|| crate::quiet::outside(|| panic!("of the host, within"))), LUXFER_INTERNAL);
         assert!(catch_unwind(|| panic!("of the host, after")).is_err());
     }

@@ -1,8 +1,8 @@
 //! Guides
 //!
-//! Renders the guide images of a stylisation: images of one scene that show different kinds of light in it. A
-//! stylisation needs the guides of the exemplar scene and of the target scene. Guides from another renderer do not
-//! need this object: see luxfer_stylize_add_guide.
+//! Renders the guide images of a stylisation: images of one scene, each of which shows one kind of its light, its
+//! normals, its edges or its materials. A stylisation needs the guides of the exemplar scene and of the target scene.
+//! Guides from another renderer do not need this object: see luxfer_stylize_add_guide.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -24,7 +24,7 @@ pub struct luxfer_guides {
     _opaque: [u8; 0],
 }
 
-/// A guide image: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m².
+/// A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m².
 pub type luxfer_guides_image = i32;
 /// All light, reflected any number of times.
 pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
@@ -90,7 +90,7 @@ impl Handle for luxfer_guides {
     const NAME: &'static str = "luxfer_guides";
 }
 
-/// Creates an object that renders guides, without inputs. The caller releases *guides. Any thread.
+/// Creates an object that renders guides. It has no inputs yet. The caller releases *guides. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_create(
     context: *mut luxfer_context,
@@ -149,7 +149,7 @@ pub unsafe extern "C" fn luxfer_guides_start(
     })
 }
 
-/// Gets a guide; which is a LUXFER_GUIDES_ value. The caller releases *image. Any thread.
+/// Gets the guide image that a LUXFER_GUIDES_ value selects. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_image(
@@ -177,8 +177,10 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 }
 
 /// Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
-/// For each pixel of this frame, motion holds the offset to the position of its surface point in the frame before, x
-/// and y in pixels; NaN where the frame before does not show the point. The caller releases *motion. Any thread.
+/// The parameter guides is the current frame; the parameter before is the previous frame. For each pixel of the
+/// current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
+/// in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
+/// thread.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

@@ -1,7 +1,7 @@
 //! Illuminance
 //!
-//! Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates. Each point has its
-//! standard error, and a report has the mean, the minimum and the maximum.
+//! Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. An image gives the
+//! standard error of each point, and a report gives the mean, the minimum and the maximum.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -125,7 +125,7 @@ pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
 }
 
-/// Creates an object that computes illuminance, without inputs. The caller releases *illuminance. Any thread.
+/// Creates an object that computes illuminance. It has no inputs yet. The caller releases *illuminance. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_create(
     context: *mut luxfer_context,
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     })
 }
 
-/// Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
-/// along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
-/// for the defaults. The caller releases *job. Any thread.
+/// Starts a job that computes the illuminance on a mesh at texels of its first set of texture coordinates: columns
+/// along u, rows along v. The parameter back is 0 for the front side of the triangles (by their winding), 1 for the
+/// back side. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
 /// if a setting is out of range.
@@ -209,7 +209,7 @@ fn start(
     })
 }
 
-/// Gets the image of the illuminances or of their errors; which is a LUXFER_ILLUMINANCE_ value. The caller releases
+/// Gets the image that a LUXFER_ILLUMINANCE_ value selects: the illuminances or their errors. The caller releases
 /// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]

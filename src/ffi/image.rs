@@ -69,8 +69,8 @@ pub struct luxfer_image_view {
     pub pixel_stride: usize,
     /// Bytes from one row to the next, at least the size of a row; 0, the default: rows are packed.
     pub row_stride: usize,
-    /// Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the layout
-    /// needs more.
+    /// Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the pixels
+    /// and the strides need more.
     pub byte_size: usize,
     /// The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
     /// touched.
@@ -149,7 +149,7 @@ enum Source {
     Result(Arc<dyn Holder>),
 }
 
-/// The result of a stage that contains an image.
+/// A stage's result, which contains an image.
 trait Holder: Send + Sync {
     fn image(&self) -> &Image;
 }

@@ -1,8 +1,8 @@
 //! Importance
 //!
-//! An importance map: for each point of an emitting surface, the light that it would send to a target. The map is
-//! traced once. From the map, the light that the target receives from any emissive texture on that surface, at any
-//! scale, rotation and offset, is computed within milliseconds and with a confidence interval.
+//! An importance map holds, for each point of an emitting surface, the light that the point would send to a target.
+//! The map is traced once. From the map, the light that the target receives from any emissive texture on that surface,
+//! at any scale, rotation and offset, is computed within milliseconds and with a confidence interval.
 
 use super::context::luxfer_context;
 use super::geometry::numbers;
@@ -33,16 +33,16 @@ pub struct luxfer_importance {
 pub struct luxfer_importance_params {
     /// sizeof(luxfer_importance_params), set by luxfer_importance_params_init.
     pub struct_size: u32,
-    /// Number of cells along u of the surface, in [1, 512]; default 64.
+    /// Number of cells of the map along the texture coordinate u of the surface, in [1, 512]; default 64.
     pub width: u32,
-    /// Number of cells along v of the surface, in [1, 512]; default 64.
+    /// Number of cells of the map along the texture coordinate v of the surface, in [1, 512]; default 64.
     pub height: u32,
     /// Quantity of the target that the map predicts: a LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the relative half-width of the 95 % confidence interval of the response to a uniform emission is at
-    /// most this value, in [0, 1]; default 0.01; 0: no target.
+    /// Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
+    /// relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -79,8 +79,8 @@ pub struct luxfer_importance_report {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response, noise included, that cells of twice the width and height would cause. The error that comes
-    /// from the size of the cells is about a third of this change.
+    /// Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
+    /// the cells had twice the width and height. The error is about a third of this change.
     pub band_error: [f64; 3],
 }
 
@@ -105,7 +105,7 @@ impl Handle for luxfer_importance {
     const NAME: &'static str = "luxfer_importance";
 }
 
-/// Creates an importance map, without inputs. The caller releases *importance. Any thread.
+/// Creates an importance map. It has no inputs yet. The caller releases *importance. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_create(
     context: *mut luxfer_context,
@@ -118,8 +118,8 @@ pub unsafe extern "C" fn luxfer_importance_create(
     })
 }
 
-/// Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is
-/// the target. The current emission of the material does not count. Any thread.
+/// Sets the scene, the material of the surfaces that will emit, and the mesh that is the target. The surfaces need
+/// texture coordinates. The current emission of the material is ignored. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_set_scene(
@@ -137,8 +137,8 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
     })
 }
 
-/// Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
-/// releases *job. Any thread.
+/// Starts a job that traces the map. The new map replaces the earlier one and the placement that was found with it.
+/// params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
 /// range.
@@ -182,7 +182,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
 }
 
 /// Gets the map as an image of 3 channels. Each cell holds the mean radiance of the target, per channel, if only this
-/// cell emitted, with 1 cd/m². The caller releases *image. Any thread.
+/// cell emitted light, with a radiance of 1 cd/m². The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_image(

@@ -28,10 +28,10 @@ pub struct luxfer_job {
     _opaque: [u8; 0],
 }
 
-/// Receives the progress of a job: fraction starts at 0 and never falls. It is exactly 1 only once: in the last call,
-/// after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the
-/// function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer function.
-/// It must not throw an exception or leave by longjmp.
+/// Receives the progress of a job: fraction starts at 0 and never falls. The fraction is exactly 1 only once: in the
+/// last call, after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait
+/// calls the function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer
+/// function. The function must not throw an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// Interval between two calls of the progress function by a waiting thread.
@@ -123,8 +123,8 @@ impl Drop for Job {
 }
 
 /// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
-/// call reports to progress, which may be NULL, and passes user to it. Any thread; several threads may wait for one
-/// job.
+/// call reports to the function progress, which may be NULL, and passes the pointer user to it. Any thread; several
+/// threads may wait for one job.
 ///
 /// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
 /// message of this call.
@@ -153,7 +153,8 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report the progress, also to the job whose function waits here; the fraction 1 is reserved for the end.
+            // Report the progress to the job whose function waits here, if any, and to the progress function. Only the
+            // last report has the fraction 1.
             if let Some(caller) = &caller {
                 caller.job().report(job.shared.monitor.progress());
             }

@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds powers for the lamps of an emission, within bounds, with which the scene comes nearest to several goals. A
-//! goal is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures
-//! the goal's response to all lamps at once, even to thousands.
+//! Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
+//! is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
+//! light that the goal receives from each lamp, for all lamps at once, even for thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -43,8 +43,8 @@ pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of one type form a group: lamps of about equal area. Among punctual lights, all point lights are one type,
-/// all spot lights are one type, and luminaires with the same distribution are one type.
+/// Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot lights
+/// form another, and luminaires with the same distribution form one group for each distribution.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the solver for lamps. Fill them with luxfer_lamps_params_init.
@@ -71,8 +71,9 @@ pub struct luxfer_lamps_params {
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of its response to
-    /// all lamps together is at most this value, in [0, 1]; default 0.01; 0: no target.
+    /// Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is known
+    /// to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0: do not
+    /// stop for this reason.
     pub target_error: f32,
     /// Stop tracing after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -126,7 +127,7 @@ impl Handle for luxfer_lamps {
     const NAME: &'static str = "luxfer_lamps";
 }
 
-/// Creates a solver for lamps, without inputs. The caller releases *lamps. Any thread.
+/// Creates a solver for the powers of lamps. It has no inputs yet. The caller releases *lamps. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_create(
     context: *mut luxfer_context,

@@ -77,8 +77,8 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
 }
 
 /// Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
-/// For a goal in lux, the three values must be equal. goal is its number: goals are numbered from 0 in the order in
-/// which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
+/// For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
+/// from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_constraint(
@@ -104,10 +104,10 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     })
 }
 
-/// Sets the dimming levels of the lamps' drivers: count factors for the emission, each finite and >= 0, in any order.
-/// count is at most 4096; 0 stands for drivers without steps. The solution then gives each group one of these levels,
-/// chosen for all groups together so that the goals are met best. The half-widths of the powers then include the
-/// distance from the level to the power without steps. Any thread.
+/// Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
+/// and >= 0, in any order. At most 4096 factors are allowed; if count is 0, the drivers have no steps. The solution
+/// then gives each group one of these levels, chosen for all groups together so that the goals are met best. The
+/// half-widths of the powers then include the distance from the level to the power without steps. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(

@@ -206,7 +206,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
 }
 
 /// Gets the light that the surface or grid of a goal receives from one lamp, for hosts that mix the light of the lamps
-/// themselves; goal and lamp start at 0. size is sizeof *response. Any thread.
+/// themselves; the indices goal and lamp start at 0. size is sizeof *response. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_response(

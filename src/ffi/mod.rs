@@ -1,6 +1,6 @@
 //! The C boundary: the only place with `extern "C"` and raw pointers. One file per handle; nothing here computes.
 //!
-//! The parts of every entry point:
+//! The parts from which the entry points are built:
 //! - [`guard`] turns panics and errors into a status and keeps the message for the calling thread;
 //! - [`handle`] checks the tag behind every pointer that should be a handle, and counts references;
 //! - [`params`] copies the caller's versioned structs, old or new, after a check of their size;
@@ -10,7 +10,8 @@
 //! The comments of the exported items, and the module comments of their files, become `include/luxfer/*.h`; the test
 //! `abi_header` generates these headers. No macro may make an exported item: cbindgen would not see it.
 
-// Exported types have C names. The safety contract of an exported function is its comment, which becomes the header's.
+// Exported types have C names. The comment of an exported function is its safety contract and becomes its comment in
+// the header.
 #![allow(non_camel_case_types, clippy::missing_safety_doc)]
 
 #[cfg(panic = "abort")]

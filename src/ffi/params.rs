@@ -1,4 +1,5 @@
-//! Structs of the caller in several versions, which differ in the size that the caller's compiler gave them.
+//! Reads and fills structs of the caller. A struct may exist in several versions, which differ in size; the caller
+//! passes the size that its compiler gave the struct.
 //!
 //! A struct starts with `uint32_t struct_size` and grows only at its end, never into padding. The struct of an older
 //! caller is shorter: its missing fields keep their defaults. The struct of a newer caller is longer: it is accepted
@@ -17,7 +18,7 @@ const LARGEST: usize = 4096;
 pub(super) unsafe trait Versioned: Copy {
     /// Name of the C type.
     const NAME: &'static str;
-    /// Sizes of the struct in all versions up to this one, rising; the last is `size_of::<Self>()`.
+    /// Sizes of the struct in all versions up to this one, in increasing order; the last is `size_of::<Self>()`.
     const SIZES: &'static [usize];
     /// A struct with every field at its default.
     fn defaults() -> Self;

@@ -98,10 +98,10 @@ pub unsafe extern "C" fn luxfer_temperature_to_colour(
     })
 }
 
-/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). A level camera with the
-/// vertical angle of view fov_y, in radians, sees the image. Glare sources are the connected patches with a luminance
-/// of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better estimate of
-/// the background luminance. size is sizeof *report. Any thread.
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
+/// level camera whose vertical angle of view is fov_y in radians. Glare sources are the connected patches with a
+/// luminance of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better
+/// estimate of the background luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_glare(

@@ -1,7 +1,7 @@
 //! Placement
 //!
-//! Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
-//! radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
+//! Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
+//! a given radiance. The search is a gradient descent on the map of luxfer_importance and traces no more paths.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -113,8 +113,8 @@ pub struct luxfer_placement {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response, noise included, that cells of twice the width and height would cause. The error that comes
-    /// from the size of the cells is about a third of this change.
+    /// Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
+    /// the cells had twice the width and height. The error is about a third of this change.
     pub band_error: [f64; 3],
 }
 
@@ -156,8 +156,7 @@ pub unsafe extern "C" fn luxfer_importance_start_placement(
 }
 
 /// Gets the placement that was found. size is sizeof *placement. Any thread.
-/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
-/// started.
+/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded with the current map.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_placement(
     importance: *mut luxfer_importance,

@@ -28,7 +28,7 @@ use crate::render;
 #[cfg(feature = "stylize")]
 use crate::stylize;
 
-/// A plan: settings for a goal. See luxfer_plan_create.
+/// A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create.
 pub struct luxfer_plan {
     _opaque: [u8; 0],
 }
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn luxfer_plan_create(
     })
 }
 
-/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
-/// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
-/// releases *job. Any thread.
+/// Starts a job that plans a rendering with the scene and the camera of the object render. The struct settings gives
+/// the size of the picture and the other settings that do not affect quality; NULL stands for the defaults. The struct
+/// params gives the goal. The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
 /// such camera.
@@ -197,9 +197,10 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 }
 
 /// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
-/// made. settings are the settings with which the transfer will be started; NULL stands for the defaults. After the
-/// job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and point the
-/// fields relight and render of settings at them. params gives the goal. The caller releases *job. Any thread.
+/// made. The struct settings holds the settings with which the transfer will be started; NULL stands for the defaults.
+/// After the job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and
+/// point the fields relight and render of the struct settings at them. The struct params gives the goal. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
 /// with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.

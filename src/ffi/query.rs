@@ -25,7 +25,8 @@ pub struct luxfer_ray {
     pub origin: [f32; 3],
     /// Direction of the ray; any length but 0. Its length is the unit of distances along the ray.
     pub direction: [f32; 3],
-    /// Only hits at distances in (0, t_max) count, in units of the length of direction; may be infinite.
+    /// Maximum distance of a hit, in units of the length of direction; may be infinite. Only hits at distances in (0,
+    /// t_max) count.
     pub t_max: f32,
 }
 
@@ -48,10 +49,10 @@ pub struct luxfer_hit {
 /// Rays per parallel task.
 const BLOCK: usize = 4096;
 
-/// Finds the nearest hits of count rays; hits receives count elements. All surfaces count as opaque and two-sided. Of
-/// hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays that are not
-/// finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares the scene
-/// for tracing, which takes longer. Any thread.
+/// Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
+/// two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
+/// that are not finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares
+/// the scene for tracing, which takes longer. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_intersect(

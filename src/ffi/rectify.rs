@@ -205,8 +205,9 @@ pub struct luxfer_rectify_report {
     /// Standard deviation of distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
     /// For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
-    /// estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point show
-    /// here; axes is orthogonal in any case. NaN if one of the two axes has no lines.
+    /// estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point make
+    /// it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other axes
+    /// has no lines.
     pub squareness: [f64; 3],
     /// Standard deviations of squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
@@ -304,7 +305,7 @@ fn unwarped(output: &Output) -> Result<&Arc<Unwarped>> {
     })
 }
 
-/// Creates a rectification without inputs. The caller releases *rectify. Any thread.
+/// Creates a rectification. It has no inputs yet. The caller releases *rectify. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_create(
     context: *mut luxfer_context,
@@ -385,7 +386,8 @@ pub unsafe extern "C" fn luxfer_rectify_start(
     })
 }
 
-/// Gets the unwarped plane or its mask; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+/// Gets the image that a LUXFER_RECTIFY_ value selects: the unwarped plane or its mask. The caller releases *image.
+/// Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_image(

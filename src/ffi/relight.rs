@@ -36,17 +36,19 @@ pub type luxfer_fit = i32;
 /// By the mean over the target surface.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
-/// more, so the emission is dimmer than with LUXFER_FIT_MEAN: without other light by the factor 1 / (1 + CV²), where
-/// CV is the coefficient of variation of the response over the target.
+/// more, so the emission is dimmer than with LUXFER_FIT_MEAN. If there is no other light, it is dimmer by the factor 1
+/// / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives from
+/// the emission.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
 pub type luxfer_constraint = i32;
 /// The light should equal the value.
 pub const LUXFER_CONSTRAINT_EQUAL: luxfer_constraint = 0;
-/// The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
+/// The light should be at least the value, for example because a standard requires it on a desk, or because the photo
+/// clips this channel.
 pub const LUXFER_CONSTRAINT_AT_LEAST: luxfer_constraint = 1;
-/// The light should be at most the value, as a limit against glare.
+/// The light should be at most the value, for example to limit glare.
 pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 
 /// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value.
@@ -71,7 +73,7 @@ pub struct luxfer_relight_params {
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
     /// Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the scale,
-    /// in [0, 1]; default 0.01; 0: no target.
+    /// in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -142,8 +144,9 @@ pub struct luxfer_relight_report {
     /// The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
     /// channels.
     pub error: f64,
-    /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this value, at
-    /// the exposure that shows the target as middle grey.
+    /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the colour that
+    /// the target has and the colour that it should have is below this value, at the exposure that shows the target as
+    /// middle grey.
     pub delta_e: f64,
 }
 
@@ -225,7 +228,7 @@ impl Handle for luxfer_relight {
     const NAME: &'static str = "luxfer_relight";
 }
 
-/// Creates a relighting without inputs. The caller releases *relight. Any thread.
+/// Creates a relighting. It has no inputs yet. The caller releases *relight. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_create(
     context: *mut luxfer_context,
@@ -238,8 +241,9 @@ pub unsafe extern "C" fn luxfer_relight_create(
 }
 
 /// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
-/// luxfer_scene_place_emission returns the indices of this material and of a new mesh that has it. The solution is a
-/// factor for the emission that the material has in the scene. Any thread.
+/// luxfer_scene_place_emission returns the index of the emitting material, and the index of the mesh with this
+/// material, which can serve as the target. The solution is a factor for the emission that the material has in the
+/// scene. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(

@@ -40,8 +40,8 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
 /// The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
-/// show, such as soft shadows; preview_bias of the report estimates the error. Only if luxfer_render_params.preview is
-/// not 0.
+/// show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
+/// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -54,11 +54,11 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target error this is the maximum of the mean number of
-    /// paths over all pixels.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the mean
+    /// number of paths per pixel reaches this value.
     pub samples: u32,
-    /// Stop when the field error of luxfer_render_report falls to this value, >= 0; paths then go to the pixels where
-    /// they reduce the error most. Default 0: no target.
+    /// Stop when the field error of luxfer_render_report falls to this value, >= 0. With this target, paths go to the
+    /// pixels where they reduce the error most. Default 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -75,9 +75,9 @@ pub struct luxfer_render_params {
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
-    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0; paths then go to the
-    /// pixels where they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright
-    /// ones. Default 0: no target. With several targets, rendering stops when all are reached.
+    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0. With this target, paths
+    /// go to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
+    /// as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 
@@ -194,7 +194,7 @@ impl Handle for luxfer_render {
     const NAME: &'static str = "luxfer_render";
 }
 
-/// Creates a rendering without inputs. The caller releases *render. Any thread.
+/// Creates a rendering. It has no inputs yet. The caller releases *render. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_create(
     context: *mut luxfer_context,
@@ -269,8 +269,8 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
 }
 
-/// Gets an image of the rendering in its current state; which is a LUXFER_RENDER_ value. The caller releases *image.
-/// Any thread.
+/// Gets the image of the rendering that a LUXFER_RENDER_ value selects, in its current state. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
 /// 0.
 #[unsafe(no_mangle)]

@@ -62,11 +62,12 @@ impl luxfer_render_part {
     }
 }
 
-/// Gets one part of a rendering that is split into columns x rows rectangles and into ranges of paths, all of about
-/// equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
-/// of one range come before the next range. params may be NULL for the defaults. size is sizeof *part. Any thread.
-/// LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
-/// parts would be empty.
+/// Gets one part of a rendering. The image is split into columns x rows rectangles, and the paths of each pixel into
+/// as many ranges as the parameter ranges says; all parts have about equal size. index is less than columns * rows *
+/// ranges. It counts the rectangles row by row, and all rectangles of one range come before those of the next range.
+/// params may be NULL for the defaults. size is sizeof *part. Any thread.
+/// LUXFER_INVALID_ARGUMENT if there is no such part, or if some parts would be empty because there are more columns,
+/// rows or ranges than pixels or paths to split.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_split(
     render: *mut luxfer_render,

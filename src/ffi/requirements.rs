@@ -21,12 +21,12 @@ pub const LUXFER_SCATTERING_GLOSSY: u32 = 2;
 pub const LUXFER_SCATTERING_MIRROR: u32 = 4;
 /// At least one surface is a clear pane of glass.
 pub const LUXFER_SCATTERING_GLASS: u32 = 8;
-/// At least one surface is partly transparent by its alpha.
+/// At least one surface is partly transparent because of its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
 /// At least one surface emits.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
-/// At least one surface emits by a texture.
+/// At least one surface has an emission texture.
 pub const LUXFER_LIGHTS_TEXTURE: u32 = 2;
 /// At least one point light has an intensity above 0.
 pub const LUXFER_LIGHTS_POINT: u32 = 4;
@@ -75,9 +75,9 @@ versioned!(luxfer_requirements, [40], {
     }
 });
 
-/// Gets the features that a scene requires of the renderer. error, in [0, 1), is the share of light that the field
-/// bounces neglects. The first call after a change of the scene prepares the scene for tracing. size is sizeof
-/// *requirements. Any thread.
+/// Gets the features that a scene requires of the renderer. The parameter error, in [0, 1), is the share of the
+/// scattered light that may be neglected when the field bounces is computed. The first call after a change of the
+/// scene prepares the scene for tracing. size is sizeof *requirements. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_requirements(

@@ -31,7 +31,7 @@ pub struct luxfer_scene {
 
 /// Receives the next size bytes of a file at data, and the pointer user of the caller. The export calls it one or more
 /// times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to continue, any other
-/// value to stop: the export then returns LUXFER_IO. It must not throw an exception or leave by longjmp.
+/// value to stop: the export then returns LUXFER_IO. The function must not throw an exception or leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
 /// Number of objects of each kind in a scene.
@@ -256,7 +256,8 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through a function of the caller, write, which receives user. Any thread.
+/// Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+/// thread.
 /// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(

@@ -38,9 +38,9 @@ pub struct luxfer_light_params {
     pub position: [f32; 3],
     /// Direction in which a spot or directional light shines; any length but 0; default (0, -1, 0).
     pub direction: [f32; 3],
-    /// Per channel, each in [0, 1e15]; default (1, 1, 1). For a point light the luminous intensity in cd; for a spot
-    /// light the luminous intensity in cd on its axis; for a directional light the illuminance in lux on a surface
-    /// that faces it.
+    /// Strength of the light per channel, each in [0, 1e15]; default (1, 1, 1). For a point light it is the luminous
+    /// intensity in cd; for a spot light, the luminous intensity in cd on its axis; for a directional light, the
+    /// illuminance in lux on a surface that faces the light.
     pub intensity: [f32; 3],
     /// Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle]; default
     /// 0.
@@ -177,11 +177,11 @@ impl luxfer_luminaire_params {
     }
 }
 
-/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by distribution.
-/// *index, unless NULL, receives its index among the punctual lights. A point is a good model of a luminaire only if
-/// the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The luminaire itself is
-/// invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the defaults. Any
-/// thread.
+/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction comes from the object
+/// distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
+/// luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
+/// luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the
+/// defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

@@ -16,7 +16,7 @@ use std::ffi::{c_char, c_void};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Settings of loading a scene file. Fill them with luxfer_scene_load_params_init.
+/// Settings for loading a scene file. Fill them with luxfer_scene_load_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_load_params {
@@ -60,8 +60,9 @@ impl luxfer_scene_load_params {
     }
 }
 
-/// Loads a scene from a glTF 2.0 file: .glb, or .gltf with the files that it names, which must lie in its folder or
-/// below. path is UTF-8. params may be NULL for the defaults. The caller releases *scene. Any thread.
+/// Loads a scene from a glTF 2.0 file: .glb, or .gltf with the files that it names. These files must lie in its folder
+/// or below, unless allow_external_files is 1. path is UTF-8. params may be NULL for the defaults. The caller releases
+/// *scene. Any thread.
 /// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
 /// LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
 /// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
@@ -83,9 +84,9 @@ pub unsafe extern "C" fn luxfer_scene_load(
     })
 }
 
-/// Loads a scene from a GLB or glTF file in memory of size bytes at data. Other files that it names are read from the
-/// folder base_path (UTF-8); if base_path is NULL, it must not name any. Settings, ownership, threads and errors are
-/// as for luxfer_scene_load.
+/// Loads a scene from a GLB or glTF file in memory of size bytes at data. If the scene file names other files, they
+/// are read from the folder base_path (UTF-8); if base_path is NULL, it must not name other files. Settings,
+/// ownership, threads and errors are as for luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
     context: *mut luxfer_context,

@@ -360,7 +360,7 @@ fn material_mut(scene: &mut Scene, index: u32) -> Result<&mut Material> {
     scene.materials.get_mut(index as usize).ok_or_else(|| missing("material", index, count))
 }
 
-/// Returns the field of a material that holds the texture of a role, which is a LUXFER_TEXTURE_ value.
+/// Returns the field of a material that holds its texture for the purpose `role`, a LUXFER_TEXTURE_ value.
 fn slot(material: &mut Material, role: luxfer_texture_role) -> Result<&mut Option<TextureRef>> {
     match role {
         LUXFER_TEXTURE_BASE_COLOR => Ok(&mut material.base_color_texture),

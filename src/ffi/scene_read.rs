@@ -104,8 +104,8 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
     enter(scene, |object| copy_text(&mesh(&object.snapshot(), index)?.name, buffer, capacity, needed))
 }
 
-/// Copies an attribute of a mesh's vertices into values, a packed array of the caller with room for capacity vertices.
-/// attribute is a LUXFER_VERTEX_ value. Any thread.
+/// Copies an attribute of a mesh's vertices into the array values, a packed array of the caller with room for capacity
+/// vertices. attribute is a LUXFER_VERTEX_ value. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
 /// unknown, the capacity is too small, or values is NULL though the mesh has vertices.
 #[unsafe(no_mangle)]
@@ -137,8 +137,8 @@ pub unsafe extern "C" fn luxfer_scene_read_vertices(
     })
 }
 
-/// Copies the triangles of a mesh into indices, a packed array of the caller with room for capacity triangles: three
-/// vertex indices per triangle. Any thread.
+/// Copies the triangles of a mesh into the array indices, a packed array of the caller with room for capacity
+/// triangles: three vertex indices per triangle. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if the capacity is too small, or indices is
 /// NULL though the mesh has triangles.
 #[unsafe(no_mangle)]
@@ -159,7 +159,7 @@ fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
     scene.meshes.get(index as usize).ok_or_else(|| missing("mesh", index, scene.meshes.len()))
 }
 
-/// Copies elements of `numbers` values each into the caller's array, which has room for `capacity` elements.
+/// Copies `data`, elements of `numbers` values each, into the caller's array, which has room for `capacity` elements.
 fn copy<T: bytemuck::NoUninit>(data: &[T], numbers: usize, place: *mut T, capacity: usize, name: &str) -> Result<()> {
     let needed = data.len() / numbers;
     if needed == 0 {

@@ -30,8 +30,8 @@ pub type luxfer_segment_image = i32;
 pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
 /// The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
-/// The difference of a pixel from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another stroke
-/// helps.
+/// The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another
+/// stroke helps.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
 /// The subject of a segmentation: a LUXFER_SUBJECT_ value.
@@ -40,8 +40,8 @@ pub type luxfer_subject = i32;
 /// luxfer_features makes them; else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
-/// restricted to the face of the room that the strokes lie on, or else to the connected parts of the mask that strokes
-/// touch.
+/// restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of
+/// these, the mask is restricted to its connected parts that positive strokes touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -57,9 +57,9 @@ pub struct luxfer_segment_params {
     /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
     pub samples_per_class: u32,
     /// Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
-    /// tries colour, colour and position, colour and normal, and all channels, and uses the set with the smallest
-    /// error on held-out strokes. With another number of channels, 0 uses all of them. For lights use 7, colour only,
-    /// since lights and plane have one geometry.
+    /// tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
+    /// smallest error on held-out strokes. With another number of channels, 0 uses all channels. For lights use 7,
+    /// colour only, since lights and plane have one geometry.
     pub channels: u32,
     /// Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
     /// The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three
@@ -156,7 +156,7 @@ impl Handle for luxfer_segment {
     const NAME: &'static str = "luxfer_segment";
 }
 
-/// Creates a segmentation without inputs. The caller releases *segment. Any thread.
+/// Creates a segmentation. It has no inputs yet. The caller releases *segment. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_create(
     context: *mut luxfer_context,
@@ -185,9 +185,9 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     })
 }
 
-/// Restricts the segmentation to the pixels where region is 1. region is a mask of the features' size, 1 channel, with
-/// 1 and 0, such as the mask of the plane for a segmentation of lights. region may be NULL: no restriction. Any
-/// thread.
+/// Restricts the segmentation to the pixels where the mask region is 1. The mask has 1 channel, values of 0 and 1, and
+/// the size of the features; for a segmentation of lights, it is the mask of the plane. region may be NULL: no
+/// restriction. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_region(
     segment: *mut luxfer_segment,
@@ -222,9 +222,10 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
 }
 
 /// Starts a job that computes the mask. If strokes are missing and the features come from luxfer_features, the job
-/// proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive
-/// strokes, or else the ceiling; for lamps it proposes lamps among the brightest regions of the mask of
-/// luxfer_segment_set_region. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the wall, the floor or the ceiling under
+/// the positive strokes; without positive strokes it proposes the ceiling. For lamps it proposes lamps among the
+/// brightest regions of the mask of luxfer_segment_set_region. params may be NULL for the defaults. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the features are missing or a job is already running. The job may end with
 /// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ,
 /// a feature is not finite or a setting is out of range.
@@ -248,8 +249,8 @@ pub unsafe extern "C" fn luxfer_segment_start(
     })
 }
 
-/// Gets the mask or another image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any
-/// thread.
+/// Gets the image of the result that a LUXFER_SEGMENT_ value selects, for example the mask. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_image(

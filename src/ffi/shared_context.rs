@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// The context keeps the last messages of at most this many threads: of those that failed last.
+/// The context keeps the last error message of each thread for at most this many threads, the threads that failed
+/// last.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.
@@ -27,7 +28,7 @@ pub(super) struct Context {
     process: u32,
 }
 
-/// The message of calls in a forked child on objects of its parent.
+/// The error message of a call, made in a forked child process, on an object that its parent process created.
 pub(super) const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
                          create a context and its objects in the child process";
 
@@ -81,7 +82,8 @@ impl Context {
         read(messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str()))
     }
 
-    /// Makes `monitor` the monitor of all calls of the current thread until the returned guard is dropped.
+    /// Makes all calls of the current thread report to `monitor` and obey its cancel requests, until the returned
+    /// guard is dropped.
     pub(super) fn watch_thread(&self, monitor: Arc<Monitor>) -> WatchedThread<'_> {
         lock(&self.callers).push((thread::current().id(), monitor));
         WatchedThread(self)

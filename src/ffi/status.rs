@@ -13,7 +13,7 @@ pub type luxfer_status = i32;
 pub const LUXFER_OK: luxfer_status = 0;
 /// An error that has no status value of its own.
 pub const LUXFER_UNKNOWN: luxfer_status = 1;
-/// A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another.
+/// A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another parameter.
 pub const LUXFER_INVALID_ARGUMENT: luxfer_status = 2;
 /// The call is not allowed in the object's present state: a job is still running on it, or an input is missing.
 pub const LUXFER_INVALID_OPERATION: luxfer_status = 3;

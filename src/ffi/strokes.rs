@@ -21,7 +21,7 @@ pub struct luxfer_strokes {
     _opaque: [u8; 0],
 }
 
-/// The mask that strokes are for: a LUXFER_PHASE_ value.
+/// The mask for which strokes are painted: a LUXFER_PHASE_ value.
 pub type luxfer_phase = i32;
 /// The mask of the plane that carries the lights: positive strokes lie on the plane; strokes on lights count as
 /// positive strokes too.
@@ -157,10 +157,10 @@ pub unsafe extern "C" fn luxfer_strokes_create(
     })
 }
 
-/// Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. positive is 1 for a stroke
-/// on the plane or on lights, 0 for a stroke beside them. points is an array of point_count pairs of float x, y in
-/// pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. Where positive and
-/// negative strokes overlap, the later stroke counts. Any thread.
+/// Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
+/// for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
+/// floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096].
+/// Where positive and negative strokes overlap, the later stroke counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(
     strokes: *mut luxfer_strokes,

@@ -127,7 +127,7 @@ impl Handle for luxfer_stylize {
     const NAME: &'static str = "luxfer_stylize";
 }
 
-/// Creates a stylisation without inputs. The caller releases *stylize. Any thread.
+/// Creates a stylisation. It has no inputs yet. The caller releases *stylize. Any thread.
 /// LUXFER_UNSUPPORTED if stylisation was left out of this build.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_create(
@@ -156,9 +156,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the guide with that name. source shows the exemplar scene and target the scene to paint.
-/// source and target have the same number of channels, and all guides together have at most 60 channels. If target is
-/// NULL, source serves as the target too: for a picture of which one part is painted already
+/// Adds a guide, or replaces the guide with that name. The image source shows the exemplar scene, and the image target
+/// shows the scene to paint. Both have the same number of channels, and all guides together have at most 60 channels.
+/// If target is NULL, source serves as the target too; use this for a picture of which one part is painted already
 /// (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
 /// All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
 /// pixels of a source with such values are not used. Any thread.
@@ -182,11 +182,11 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the rendered guides of two scenes: source of the exemplar scene, target of the scene to paint. The call adds
-/// the five light guides LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full",
-/// "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags
-/// in extras it adds the guide "caustics", "normals", "edges" or "materials" with weight extra_weight, in [0, 1e6].
-/// Any thread.
+/// Adds the rendered guides of two scenes: the parameter source is for the exemplar scene, the parameter target for
+/// the scene to paint. The call adds the five guides of light LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a
+/// common exposure, under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1.
+/// For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or
+/// "materials", each with weight extra_weight, in [0, 1e6]. Any thread.
 /// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
 /// range.
 #[unsafe(no_mangle)]
@@ -263,9 +263,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
 }
 
 /// Sets the pixels of the target to paint: the pixels where mask is above 0.5. mask has 1 channel and the size of the
-/// guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from known (linear, with the
-/// number of channels of the artwork), and the new paint is fitted to them; if known is NULL they are black. Any
-/// thread.
+/// guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from the image known (linear,
+/// with the number of channels of the artwork), and the new paint is fitted to them; if known is NULL, the other
+/// pixels are black. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     stylize: *mut luxfer_stylize,
@@ -282,11 +282,11 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     })
 }
 
-/// Makes each job start from the previous result, for the frames of an animation. motion has 2 channels and the size
-/// of the guides' targets. It holds for each pixel the offset to the position of its surface point in the previous
-/// frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves along and
-/// stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any
-/// thread.
+/// Makes each job start from the previous result, for the frames of an animation. The image motion has 2 channels and
+/// the size of the guides' targets. It holds for each pixel the offset to the position of its surface point in the
+/// previous frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves with
+/// the surfaces and stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from
+/// nothing. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -336,10 +336,10 @@ pub unsafe extern "C" fn luxfer_stylize_start(
     })
 }
 
-/// Starts a job that updates the picture after a change of the artwork. artwork is the changed artwork, with the size
-/// and channels of the first artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the
-/// picture that were painted from there are painted again. The job takes a fraction of the time of
-/// luxfer_stylize_start. The caller releases *job. Any thread.
+/// Starts a job that updates the picture after a change of the artwork. The image artwork is the changed artwork, with
+/// the size and channels of the first artwork. The mask changed (1 channel) is above 0.5 where the artwork has new
+/// paint; the pixels of the picture that were painted from these places are painted again. The job takes a fraction of
+/// the time of luxfer_stylize_start. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end
 /// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
 /// too.
@@ -369,10 +369,11 @@ pub unsafe extern "C" fn luxfer_stylize_update(
     })
 }
 
-/// Lets the library paint the rest of a half-painted picture. The artwork is the picture. painted has 1 channel and
-/// the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the scene of the
-/// picture, and their targets are NULL. The call is a shorthand: it sets painted as the source mask, the inverse of
-/// painted as the target mask, and the artwork as known. Any thread.
+/// Lets the library paint the rest of a half-painted picture. The artwork is the picture. The mask painted has 1
+/// channel and the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the
+/// scene of the picture, and their targets are NULL. The call is a shorthand: it sets the mask painted as the source
+/// mask, its inverse as the target mask, and the artwork as the image known of luxfer_stylize_set_target_mask. Any
+/// thread.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

@@ -1,6 +1,7 @@
 //! Settings of a stylisation
 //!
-//! Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
+//! Presets and settings. The defaults were chosen from the curves of quality against time that benches/stylit.rs
+//! draws.
 
 use super::guard::guard;
 use super::params::{self, versioned};
@@ -9,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::patch::Vote;
 use crate::stylize::{self, Finder, Mode};
 
-/// Presets that trade quality for speed: a LUXFER_STYLIZE_ preset.
+/// A preset of the settings, which trades quality for speed: one of the four values below.
 pub type luxfer_stylize_preset = i32;
 /// Full quality, the default.
 pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;
@@ -52,8 +53,8 @@ pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 /// The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
-/// The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
-/// their seams.
+/// The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork stay whole
+/// up to their seams.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
@@ -82,15 +83,15 @@ pub struct luxfer_stylize_params {
     /// each target patch takes its nearest match in these rounds, without the error budget. In other modes these are
     /// additional rounds of that mode.
     pub polish: u32,
-    /// PatchMatch sweeps of one search, in [1, 100]; default 1.
+    /// Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1.
     pub sweeps: u32,
     /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
     /// default 0.9.
     pub coverage: f32,
     /// Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6.
     pub passes: u32,
-    /// Sweeps after a matching in which a target patch may continue the match of its neighbour, for fewer seams, in
-    /// [0, 100]; default 2; the paper has 0.
+    /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target patch
+    /// may continue the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
     /// Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
     /// default 0.2.
@@ -109,8 +110,8 @@ pub struct luxfer_stylize_params {
     /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
     /// luxfer_stylize_set_motion; without it, it has no effect.
     pub coherence: f32,
-    /// How far the brightness and contrast of the exemplar's light guides are adapted to those of the target's light
-    /// guides, in [0, 1]; 0, the default: not at all.
+    /// Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
+    /// guides of light, in [0, 1]; 0, the default: not at all.
     pub match_appearance: f32,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -134,7 +135,7 @@ const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Gree
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
 const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
-/// Converts an integer of the C interface to the setting of that index; an error beyond the end of `values`.
+/// Returns the setting at `index`, an integer of the C interface, in `values`; an error if `index` is out of range.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
     let value = usize::try_from(index).ok().and_then(|i| values.get(i));
     value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))

@@ -129,9 +129,9 @@ versioned!(luxfer_stylize_pass, [32], {
     Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
 });
 
-/// Gets the picture or another image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update
-/// changes the picture and the sources only; the guide error remains that of the last full run. The caller releases
-/// *image. Any thread.
+/// Gets the image of the result that a LUXFER_STYLIZE_IMAGE_ value selects, for example the picture.
+/// luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
+/// The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
 /// level is finished.
 #[unsafe(no_mangle)]
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level; level and index start at 0. size is sizeof *round. Any thread.
+/// Describes a round of a level; the numbers level and index start at 0. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -218,7 +218,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a matching pass of a round; level, round and index start at 0. size is sizeof *pass. Any thread.
+/// Describes a matching pass of a round; the numbers level, round and index start at 0. size is sizeof *pass. Any
+/// thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]

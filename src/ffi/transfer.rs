@@ -211,7 +211,7 @@ fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
     found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
 }
 
-/// Creates a transfer without inputs. The caller releases *transfer. Any thread.
+/// Creates a transfer. It has no inputs yet. The caller releases *transfer. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_create(
     context: *mut luxfer_context,
@@ -280,11 +280,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
     })
 }
 
-/// Sets the triangles of the scene that receive the lights, instead of the named surface. triangles holds the mesh
-/// index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes the
-/// plane that faces most of the room, as for a named surface. They replace earlier triangles, and
-/// luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface receives the
-/// lights again. Any thread.
+/// Sets the triangles of the scene that receive the lights, instead of the named surface. The array triangles holds
+/// the mesh index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes
+/// the plane that faces most of the room, as for a named surface. These triangles replace the triangles of an earlier
+/// call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface
+/// receives the lights again. Any thread.
 /// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(
@@ -356,9 +356,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_strokes(
     })
 }
 
-/// Sets rectangles of the surface that stay without lamps, for example at ducts and sprinklers. zones holds u0, v0, u1
-/// and v1 of each of count rectangles, in metres from the surface's corner along its axes (luxfer_surface), with u0 <=
-/// u1 and v0 <= v1. They replace earlier rectangles; zones may be NULL if count is 0. Any thread.
+/// Sets rectangles of the surface that stay without lamps, for example at ducts and sprinklers. The array zones holds
+/// u0, v0, u1 and v1 of each of count rectangles, in metres from the surface's corner along its axes (luxfer_surface),
+/// with u0 <= u1 and v0 <= v1. The rectangles replace earlier rectangles; zones may be NULL if count is 0. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_zones(
     transfer: *mut luxfer_transfer,
@@ -452,12 +452,13 @@ fn use_segmentation(
     }
 }
 
-/// Starts a job that runs the stages from first to last, both included; first and last are LUXFER_STAGE_ values. The
-/// stages before first must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that runs the stages from the stage first to the stage last, both included; the parameters first and
+/// last are LUXFER_STAGE_ values. The stages before the stage first must have results. params may be NULL for the
+/// defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
 /// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
-/// jobs; the message names the stage. It ends at once if the scene does not have the surface. Stages that have ended
-/// keep their results.
+/// jobs; the message names the stage. The job ends at once if the scene does not have the surface. Stages that have
+/// ended keep their results.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,

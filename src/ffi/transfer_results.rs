@@ -94,8 +94,8 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on the
-    /// surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
+    /// Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has the size
+    /// that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
     pub plane_distance: f64,
     /// Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
     /// lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
@@ -229,8 +229,9 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     })
 }
 
-/// Gets an image that a stage has made; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview if
+/// Gets the image that a LUXFER_TRANSFER_ value selects, which a stage has made. The caller releases *image. Any
+/// thread.
+/// LUXFER_NOT_READY before the stage that makes the image has ended; LUXFER_NOT_FOUND for a preview if
 /// luxfer_render_params.preview was 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_image(
@@ -268,10 +269,10 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
     })
 }
 
-/// Gets a scene that the transfer has made; which is a LUXFER_SCENE_ value. The scene is independent of the transfer.
-/// The caller releases *scene. Any thread.
-/// LUXFER_NOT_READY before the stage EMISSION has ended, for LUXFER_SCENE_UNSOLVED, or the stage RELIGHT, for the
-/// others.
+/// Gets the scene that a LUXFER_SCENE_ value selects, which the transfer has made. The scene is independent of the
+/// transfer. The caller releases *scene. Any thread.
+/// LUXFER_NOT_READY if the stage that makes the scene has not ended: EMISSION for LUXFER_SCENE_UNSOLVED, RELIGHT for
+/// the other scenes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_scene(
     transfer: *mut luxfer_transfer,

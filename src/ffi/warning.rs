@@ -43,11 +43,11 @@ pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
 /// radians.
 pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
 /// There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
-/// confidence of the fit, below the limit.
+/// confidence of the fit, which is below the limit.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
 /// Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted lamps; the
-/// severity is the share of these pixels in the mask and these regions. The place is the pixel where one more stroke
-/// helps most.
+/// severity is the area of these pixels and regions as a share of the mask and these regions together. The warning
+/// points to the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
 /// Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
 /// samples drawn from the strokes.
@@ -57,38 +57,41 @@ pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
 pub const LUXFER_WARNING_OFF_IMAGE_STROKES: luxfer_warning_code = 8;
 /// A mask is uncertain; the severity is the expected share of wrong pixels.
 pub const LUXFER_WARNING_UNCERTAIN_MASK: luxfer_warning_code = 9;
-/// A mask has no pixel; the severity is 0, below the limit.
+/// A mask has no pixel; the severity is 0, which is below the limit.
 pub const LUXFER_WARNING_EMPTY_MASK: luxfer_warning_code = 10;
 /// A mask contradicts the strokes that it was made from; the severity is the share of the painted pixels that it
-/// contradicts. The place is one of these pixels.
+/// contradicts. The warning points to one of these pixels.
 pub const LUXFER_WARNING_MISSED_STROKES: luxfer_warning_code = 11;
 /// Lights cover much of their plane; the severity is the share of the plane that they cover.
 pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
-/// strongly magnified. The place is the point with the largest magnification.
+/// strongly magnified. The warning points to the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
 /// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle
-/// between the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
+/// between the plane and the viewing ray, and is below the limit. The warning points to the point with the smallest
+/// angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
-/// The photo shows too few whole lamps for a pattern; the severity is their number, below the limit.
+/// The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is below the
+/// limit.
 pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
 /// The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
-/// Colour channels do not meet their target; the severity is their number.
+/// Colour channels do not meet their target; the severity is the number of these channels.
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
-/// The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
+/// The photo clips channels of the target colour; the values of these channels are then lower bounds; the severity is
+/// the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
 /// A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
-/// metres, below the limit if the scene is too small. The message names the likely unit.
+/// metres. It is below the limit if the scene is too small, else above it. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
 /// objects that have it; the severity is the number of these objects.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
-/// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
-/// lamp.
+/// that a pixel painted as light is brighter than a pixel painted as plane, and is below the limit. The warning points
+/// to the darkest lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
 /// A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
 /// error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.

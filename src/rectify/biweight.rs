@@ -1,11 +1,11 @@
 //! Expected values of Tukey's biweight for normally distributed residuals, from which the covariance of a vanishing
-//! point is computed. Residuals are in units of the biweight's limit, and the means are over residuals within the
-//! limit.
+//! point is computed. Residuals are divided by the limit of the biweight, beyond which it gives no weight; the means
+//! are over the residuals below 1.
 
 use std::sync::LazyLock;
 
-/// Means over normally distributed residuals `r` of known variance that lie within the limit 1. All three tend to 1 as
-/// the noise vanishes, and fall as it grows.
+/// Means over those residuals `r` of a normal distribution of known variance for which `|r| < 1`. All three means tend
+/// to 1 as the variance tends to 0, and fall as it grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
     /// Mean of `r²`, divided by the variance.

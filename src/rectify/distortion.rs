@@ -15,7 +15,8 @@ use glam::DVec2;
 /// Radial distortion of a lens, expressed as displacement in the corners of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// k: outward displacement as a share of the distance from the centre; negative for barrel distortion.
+    /// Outward displacement of a corner of the image as a share of its distance from the centre, which is k of the
+    /// model; negative for barrel distortion.
     pub corner: f64,
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
@@ -29,18 +30,20 @@ const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// The edge must be found along at least this share of a segment's length. [origin not recorded]
+/// A segment is used only if its edge is found along at least this share of its length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
-/// Minimum number of lines for an estimate.
+/// Minimum number of lines; with fewer lines there is no estimate.
 const MIN_LINES: usize = 12;
-/// Floor of the position error of an edge in pixels, which averaging does not reduce. [origin not recorded]
+/// The part of an edge's position error, in pixels, that its residuals do not show; its square is added to their
+/// variance. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
-/// Maximum root mean square residual, in pixels, of an edge about its parabola. [origin not recorded]
+/// A segment is ignored if the root mean square residual of its edge about the fitted parabola is above this, in
+/// pixels. [origin not recorded]
 const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
-/// Number of segments that belong to one physical line: both sides of a frame, or the pieces of one line.
-/// [origin not recorded]
+/// Assumed number of detected segments per physical line, for example both sides of a frame or the pieces of one line.
+/// The errors of such segments are not independent. [origin not recorded]
 const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Error caused by the deviation of real lenses from the model. It is the root mean square of the estimates over views
 /// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching.
@@ -98,7 +101,7 @@ fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     let across = along.perp();
     let steps = (length - 2.0 * TRIM) as usize;
     let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| segment.a + along * t + across * f64::from(o));
-    // Determine the polarity of the edge from the gradient along its middle.
+    // Determine the polarity of the edge from the sum of the gradients along the segment.
     let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (TRIM + i as f64), across)).sum();
     let mut places = Vec::new();
     for t in (0..steps).map(|i| TRIM + i as f64) {

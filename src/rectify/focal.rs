@@ -3,8 +3,8 @@
 use super::params::Params;
 use crate::geometry::FocalSource;
 
-/// Prior of the focal length over photos of rooms: its median as a share of the image width, and the standard
-/// deviation of its logarithm. [origin not recorded]
+/// Prior of the focal length over photos of rooms. `USUAL_FOCAL`: median of the focal length as a share of the image
+/// width. `USUAL_SPREAD`: standard deviation of its logarithm. [origin not recorded]
 const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 

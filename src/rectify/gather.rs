@@ -116,8 +116,8 @@ fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: 
     }
 }
 
-/// Divides the sums by the number of `parts` of each footprint and writes them to `out`. With three channels, writes
-/// all channels; otherwise writes only the given channel.
+/// Divides the sums by `parts`, the number of parts into which each footprint was split, and writes them to `out`.
+/// With three channels, writes all channels; otherwise writes only the given channel.
 #[inline(always)]
 pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;

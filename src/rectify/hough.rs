@@ -10,7 +10,7 @@ use crate::job::Job;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Number of angle cells of the accumulator over half a turn: one per half degree.
+/// Number of angle bins of the accumulator over half a turn: one per half degree.
 const ANGLES: usize = 360;
 
 /// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side. `MAX_LINES`: maximum
@@ -18,7 +18,7 @@ const ANGLES: usize = 360;
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 
-/// Half-size, in angle cells and distance cells, of the neighbourhood for non-maximum suppression.
+/// Half-size, in angle bins and distance bins, of the neighbourhood for non-maximum suppression.
 const SUPPRESSED: (usize, usize) = (4, 4);
 
 /// `MAX_DISTANCE`: maximum distance of an edge pixel from its line. `MAX_GAP`: maximum gap that a piece of a line
@@ -78,7 +78,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
                     let Some(&other) = (0..rows as isize).contains(&nr).then(|| &votes[nk * rows + nr as usize]) else {
                         return true;
                     };
-                    // Break ties in favour of the cell with the lower index.
+                    // Break ties in favour of the bin with the lower index.
                     other < v || (other == v && nk * rows + nr as usize >= k * rows + r)
                 })
             });

@@ -14,8 +14,8 @@ use glam::{DMat3, DQuat, DVec3};
 /// image side: angles of view from 20 to 110 degrees. [origin not recorded]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Prior of the focal length in units of half the longer image side (0.85 of the width), and the standard deviation of
-/// its logarithm. [origin not recorded]
+/// Prior of the focal length. `USUAL_FOCAL`: median in units of half the longer image side (0.85 of the width of a
+/// landscape photo). `USUAL_SPREAD`: standard deviation of the logarithm. [origin not recorded]
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
@@ -24,8 +24,9 @@ pub const USUAL_SPREAD: f64 = 0.4;
 /// [origin not recorded]
 const FOCAL_COST: f64 = 0.004;
 
-/// Numbers of line pairs drawn, of candidates kept, of lines paired with each candidate, of triplets scored a second
-/// time, and of triplets refined.
+/// `PAIRS`: number of line pairs drawn. `CANDIDATES`: maximum number of candidates kept. `PARTNERS`: maximum number of
+/// lines paired with each candidate. `SEMIFINALISTS`: maximum number of triplets scored a second time. `FINALISTS`:
+/// maximum number of triplets refined.
 const PAIRS: usize = 800;
 const CANDIDATES: usize = 8;
 const PARTNERS: usize = 40;
@@ -45,7 +46,7 @@ pub struct Triplet {
     pub score: f64,
 }
 
-/// Finds the best triplet; `None` if no two distinct lines intersect. The lines must be sorted by falling length.
+/// Finds the best triplet; `None` if no two distinct lines intersect. The lines must be sorted by decreasing length.
 pub fn search(lines: &[WeightedLine], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
     let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
     let hypotheses = hypotheses(lines, &candidates, focal);
@@ -66,7 +67,7 @@ pub fn search(lines: &[WeightedLine], focal: Option<f64>, seed: u64, job: Job) -
     Ok(refined.into_iter().max_by(|a, b| a.score.total_cmp(&b.score)))
 }
 
-/// Sorts triplets by falling score on the longest lines.
+/// Sorts triplets by decreasing score on the longest lines.
 fn ranked(lines: &[WeightedLine], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
     let longest = &lines[..lines.len().min(longest)];
     let scores = exec::map(triplets.len(), job, |i| score(longest, &triplets[i]))?;

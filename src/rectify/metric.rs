@@ -1,5 +1,5 @@
-//! Distances between a vanishing point and a line (§5.2), in homogeneous form: finite and exact for points at
-//! infinity.
+//! Distances between a vanishing point and a line (§5.2). The points are homogeneous, so all distances are exact for
+//! points at infinity; only the paper's own distance may be infinite there.
 
 use crate::geometry::Segment;
 use glam::{DVec2, DVec3};

@@ -2,8 +2,9 @@
 //! the pixel's footprint where it is minified.
 //!
 //! The parallelogram that a pixel covers is replaced by the sheared rectangle with the same second moments (see
-//! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles
-//! still longer than the taps cover are divided into equal parts, as in Feline (McCormack et al. 1999).
+//! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles that
+//! are still longer than the 4 × 4 samples that a filter reads (its taps) are divided into equal parts, as in Feline
+//! (McCormack et al. 1999).
 
 use super::footprint::{Footprints, RUN, extent, locate};
 use super::gather::{store, sum};

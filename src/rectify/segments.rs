@@ -8,8 +8,8 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Minimum gradient magnitude of the pixels used, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
-/// [bench vp]
+/// Pixels with a smaller gradient magnitude are ignored. The unit is encoded luma per pixel; the value corresponds to
+/// an edge of about 9 of 255 grey levels. [bench vp]
 const MIN_GRADIENT: f32 = 0.01;
 
 /// Maximum angle, in radians, between the gradient of a pixel and the mean gradient direction of the region that the
@@ -19,7 +19,8 @@ const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 /// Length, in pixels, that the line fit leaves out at each end of a region. [origin not recorded]
 const TRIM: f64 = 2.0;
 
-/// Minimum share of a region's bounding rectangle that the region's pixels cover. Regions that arise from noise have
+/// A region is dense enough if its pixels cover at least this share of its bounding rectangle; otherwise it is grown
+/// again with a tighter tolerance, or its pixels far from the seed are cut off. Regions that arise from noise have
 /// gaps and cover less. [bench lines]
 const MIN_DENSITY: f64 = 0.6;
 
@@ -50,8 +51,8 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
 }
 
 /// Returns the indices of the pixels whose gradient magnitude is at least `MIN_GRADIENT`, strongest first. A counting
-/// sort orders them; its classes are so narrow that two pixels of an edge rarely share a class. Pixels of one class
-/// stay in row-major order.
+/// sort orders them; its bins are so narrow that two pixels of an edge rarely share a bin. Pixels in one bin stay in
+/// row-major order.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
     let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
@@ -151,9 +152,9 @@ impl Grower<'_> {
         }
     }
 
-    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Grows ring by
-    /// ring and compares each ring with the mean direction of the rings before it, so that the result does not depend
-    /// on the order of pixels.
+    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Adds the
+    /// neighbours of the region one layer at a time. Each layer is compared with the mean direction of all layers
+    /// before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let min_cos = tolerance.cos() as f32;

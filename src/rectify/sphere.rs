@@ -9,33 +9,35 @@ use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Maximum distance of a segment's endpoints from the line through its midpoint and its vanishing point, in units of
-/// half the image's longer side: about 2 pixels in an image of 640 pixels. [origin not recorded]
+/// A segment does not belong to a vanishing point if its endpoints lie farther than this from the line through its
+/// midpoint and the point. The unit is half the image's longer side, so this is about 2 pixels in an image of 640
+/// pixels. [origin not recorded]
 const ENDPOINT_LIMIT: f64 = 0.006;
 
-/// Maximum sine of the angle between a segment and the line through its midpoint and its vanishing point. This second
-/// limit matters for short segments. [origin not recorded]
+/// A segment does not belong to a vanishing point if the sine of the angle between the segment and the line through
+/// its midpoint and the point is above this. This second limit matters for short segments. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
 /// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.
 /// [rounding]
 const COINCIDENT: f64 = 1e-18;
 
-/// Prior standard deviation of the endpoint noise, in units of half the image's longer side, and the number of
-/// segments to which the prior is equivalent. [origin not recorded]
+/// Prior of the endpoint noise. `PRIOR_NOISE`: its standard deviation in units of half the image's longer side.
+/// `PRIOR_COUNT`: the number of segments to which the prior is equivalent. [origin not recorded]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Number of segments that count as one independent observation: both sides of a bar, the pieces of one edge and rows
-/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants.
-/// [bench vp]
+/// Number of segments that count as one independent observation, because the errors of segments are correlated: those
+/// of both sides of a bar, of the pieces of one edge and of rows of equal objects. Calibrated on photos with exactly
+/// known cameras, like the next constants. [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
-/// Limits of the estimate of the endpoint noise. The estimate alternates `NOISE_ROUNDS` times between the noise and
-/// the share of the noise that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share, and
-/// `MIN_SLOPE` the minimum of the biweight's expected slope: below them, the noise exceeds the limit and cannot be
-/// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
-/// lines are more precise than their residuals suggest. [bench vp]
+/// Settings of the estimate of the endpoint noise. Residuals beyond the biweight's limit are cut off, so the other
+/// residuals show only a share of the noise variance. This share depends on the noise: `NOISE_ROUNDS` rounds estimate
+/// the share and the noise in turn. `MIN_SHOWN` is the minimum of the share, and `MIN_SLOPE` the minimum of the
+/// biweight's expected slope. Below these minima, the noise exceeds the limit and cannot be estimated. `MIN_SLOPE` is
+/// the smallest value that loses no vanishing point of the development sets, in which short lines are more precise
+/// than their residuals suggest. [bench vp]
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
@@ -56,8 +58,8 @@ impl Frame {
         Self { principal, scale: width.max(height) as f64 / 2.0 }
     }
 
-    /// Converts segments to weighted lines of the frame, each with the index of its segment. Leaves out segments of
-    /// zero length and segments that are not finite.
+    /// Converts segments to weighted lines in the coordinates of the frame, each with the index of its segment. Leaves
+    /// out segments of zero length and segments that are not finite.
     pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
@@ -81,7 +83,8 @@ impl Frame {
 pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
-    /// Squared residual divided by squared sine; a line belongs to a point if its squared residual is at most 1.
+    /// Squared residual divided by the squared sine of the angle between the line and the direction to a vanishing
+    /// point. A line belongs to the point if its squared residual is at most 1.
     pub stiffness: f64,
 }
 
@@ -214,7 +217,8 @@ struct Row {
     /// Variance of the sine under unit endpoint noise: the variance of the segment's direction, plus the variance of
     /// the direction from the segment's midpoint to the vanishing point, which matters for segments near the point.
     variance: f64,
-    /// Variance of the normalised residual (limit 1) under unit endpoint noise.
+    /// Variance, under unit endpoint noise, of the line's residual. The residual is scaled so that lines whose
+    /// residual is above 1 are rejected.
     residual_variance: f64,
     sine: f64,
 }

@@ -39,7 +39,7 @@ impl Pair {
     }
 
     /// The constraint on the logarithm of the focal length if the pair is at a right angle: the information (inverse
-    /// variance), and the information times the change of the logarithm that makes the angle right.
+    /// variance), and the information times the change of the logarithm that would make the angle a right angle.
     fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]

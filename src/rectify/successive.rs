@@ -82,8 +82,8 @@ pub fn to_alpha(p: DVec3, origin: DVec2) -> (f64, f64) {
     (rho / (rho + p.z.abs()), away.to_angle())
 }
 
-/// Minimises the loss by a pattern search over `(alpha, theta)`. The steps of alpha shrink towards 1, because the
-/// distance rho grows without bound there.
+/// Minimises the loss by a pattern search over `(alpha, theta)`. The steps of alpha become smaller as alpha approaches
+/// 1, because the distance rho grows without bound there.
 fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
     let (mut alpha, mut theta) = to_alpha(start, origin);
     let mut best = loss(start);

@@ -120,8 +120,8 @@ fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Fil
     }
 }
 
-/// Converts a whole number to an integer. Adds a constant that shifts the number into the low bits of the mantissa:
-/// unlike a cast, this vectorises.
+/// Converts a whole `f64` to `i32`. Adds a constant that shifts the number into the low bits of the mantissa: unlike a
+/// cast, this vectorises.
 #[inline(always)]
 fn integer(whole: f64) -> i32 {
     (whole + 1.5 * (1u64 << 52) as f64).to_bits() as i32

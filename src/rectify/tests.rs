@@ -257,8 +257,8 @@ fn a_hundred_thousand_segments_take_their_time_but_not_more() {
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
 }
 
-/// A linear photo of a ceiling in the plane `y = -1` that ends 6 units from the camera's axes, with lamps of 0.3 ×
-/// 0.15 units every 0.6 × 0.4 units.
+/// A linear photo of a ceiling in the plane `y = -1` that extends 6 units from the camera in each direction, with
+/// lamps of 0.3 × 0.15 units at a spacing of 0.6 × 0.4 units.
 fn ceiling(camera: &Perspective) -> Image {
     const SUB: usize = 3;
     let lamp = |p: DVec2| {
@@ -350,7 +350,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
             let found = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
             let (found, exact) =
                 (centred(found), centred(flat.corners.map(|c| on_ceiling(&truth, c) / flat.pixel_size)));
-            // Which axis is right and which is down follows from the photo: compare with the nearest pair of true
+            // The photo decides which axis runs right and which runs down, so compare with the nearest pair of true
             // axes.
             let turns = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
                 .into_iter()

@@ -19,8 +19,9 @@ const MAX_LINES: usize = 2500;
 /// [origin not recorded]
 const MAX_ERROR: f64 = 0.2;
 
-/// Standard deviations of the priors under which directions are refined: of the angle between two room directions
-/// about a right angle, in radians, and of the logarithm of the focal length. [bench vp]
+/// Standard deviations of the priors with which directions are refined. `SQUARENESS`: deviation from a right angle of
+/// the angle between two room directions, in radians. `FOCAL_SPREAD`: error of the logarithm of the focal length.
+/// [bench vp]
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
@@ -40,8 +41,8 @@ pub struct VanishingPoint {
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// With the Manhattan search, the points of the (up to three) orthogonal directions come first. Within them, and
-    /// within the further points, the total weight of the lines that run to a point decreases.
+    /// With the Manhattan search, the points of the (up to three) orthogonal directions come first. The further points
+    /// follow. Both groups are sorted by decreasing total weight of the lines that run to a point.
     pub points: Vec<VanishingPoint>,
     /// For each segment, the index of the point it runs to; `None` if it runs to no point.
     pub members: Vec<Option<usize>>,
@@ -93,7 +94,7 @@ pub fn from_segments(
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let (mut members, support) = assign(&weighted_lines, &points, segments.len());
     // Keep points with at least two lines. The first three points, which the Manhattan search makes orthogonal, stay
-    // ahead of the others; within both groups, sort by falling weight of lines.
+    // ahead of the others; both groups are sorted by decreasing weight of their lines.
     let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
     order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
     order.truncate(count);

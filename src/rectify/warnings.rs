@@ -11,21 +11,25 @@ use std::f64::consts::FRAC_1_SQRT_2;
 /// A focal length counts as assumed if its relative standard deviation is at least this: the lines then determine it
 /// no better than the prior for photos in general. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
-/// Maximum standard deviation of a room axis in radians. [judged on 38 photos]
+/// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
-/// Maximum displacement of the photo's corners by the lens, as a share of their distance from the centre. [judged on
-/// 38 photos]
+/// A lens raises a warning if it displaces the photo's corners by more than this share of their distance from the
+/// centre. [judged on 38 photos]
 const MAX_DISTORTION: f64 = 0.02;
-/// Maximum deviation of the angles between room axes from a right angle, in radians. [judged on 38 photos]
+/// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
+/// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
-/// A measured value is significant if it exceeds this number of standard deviations. [convention]
+/// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
+/// [convention]
 const SIGNIFICANT: f64 = 3.0;
 
 /// Above this magnification of the photo, the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
-/// Maximum share of the plane that may be magnified by more than `SHARP_MAGNIFICATION`. [judged on 38 photos]
+/// A plane raises a warning if more than this share of it is magnified by more than `SHARP_MAGNIFICATION`. [judged on
+/// 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// Minimum sine of the angle between the plane and the viewing ray, as a median over the plane. [judged on 38 photos]
+/// A plane raises a warning if the sine of the angle between the plane and the viewing ray, as a median over the
+/// plane, is below this. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
 /// Number of pixels sampled along each side of the unwarped plane.
 const GRID: usize = 96;

@@ -244,8 +244,8 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // The search infers which face is the plane. With the two kinds swapped, the plane is the back wall, and the
-    // ceiling is found at the same height.
+    // The search infers which face is the plane. With positive and negative strokes swapped, the plane is the back
+    // wall, and the ceiling is found at the same height.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }
@@ -299,7 +299,7 @@ fn strokes_of_one_kind_outside_the_photo_or_contradictory() {
     let room = Cluttered::new(3);
     let plain = layout_of(&room.camera, &room.segments, &[]);
     let beyond = vec![(SIZE[0] * SIZE[1]) as u32, u32::MAX];
-    // Strokes elsewhere are uninformative without a stroke on the plane.
+    // Negative strokes, which lie off the plane, are uninformative without a stroke on the plane.
     let others: Vec<_> = room.strokes.iter().filter(|s| !s.1).cloned().collect();
     for silent in [vec![(beyond.clone(), true)], vec![(vec![], true)], others, vec![(beyond, false)]] {
         assert_eq!(layout_of(&room.camera, &room.segments, &silent), plain);

@@ -1,4 +1,4 @@
-//! A layout that is not trusted raises a warning; a depth map does not.
+//! A layout with a low `trust` raises a warning; a depth map does not.
 
 use super::*;
 use crate::features::{Layout, Params, run};

@@ -203,8 +203,8 @@ fn a_pixel_that_is_not_finite_spoils_those_it_is_part_of_and_no_others() {
                 let at = DVec2::new((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5) * scale - 20.5;
                 hit += usize::from(!b[1].is_finite());
                 assert!(a[0] == b[0] && a[2] == b[2]);
-                // An output pixel closer than 0.6 source pixels to the bad pixel depends on it; one beyond the taps
-                // never does.
+                // An output pixel closer than 0.6 source pixels to the bad pixel depends on it; an output pixel whose
+                // taps do not reach the bad pixel never does.
                 assert!(!(at.abs().max_element() < 0.6) || !b[1].is_finite(), "{at} at {scale}");
                 assert!(at.abs().max_element() <= 2.0 || a[1] == b[1], "{at} at {scale}");
             }

@@ -10,14 +10,15 @@ use glam::{DMat2, DVec2, DVec3};
 const BORDER_ERROR: f64 = 0.7;
 /// Standard deviation of the relative differences in length or width among lamps of one kind. [bench photos:tune]
 const VARIETY: f64 = 0.08;
-/// Minimum number of pixels of a region: the pixel grid dominates the form of smaller regions. [bench photos:tune]
+/// Regions with fewer pixels than this are ignored, because the pixel grid dominates their form. [bench photos:tune]
 const MIN_PIXELS: f64 = 12.0;
-/// Maximum number of regions: more regions take time and add no certainty. [bench photos:tune]
+/// Only this number of the largest regions is used: more regions take time and add no certainty. [bench photos:tune]
 const MAX_SHAPES: usize = 32;
-/// Minimum sine of the angle between a plane and the ray through a shape's centre. [bench photos:tune]
+/// A tilt of the plane is rejected if the sine of the angle between the plane and the ray through a shape's centre is
+/// below this. [bench photos:tune]
 const MIN_INCIDENCE: f64 = 0.05;
-/// Cost of assuming that all shapes are stretched alike: the assumption adds two parameters, and most lamps are not
-/// stretched. [bench photos:tune]
+/// Cost of the assumption that all lamps are elongated by the same ratio in the same direction: it adds two
+/// parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
 /// Squared deviation of a shape, in variances, above which its cost grows more slowly, because the shape is probably
 /// of another kind. [convention]
@@ -25,14 +26,15 @@ const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
-/// Widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`], and the
-/// prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
+/// `BLOOMS`: widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`].
+/// `BLOOM_SPREAD`: prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
 /// [bench photos:tune]
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
 /// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels. [convention]
 const BLOOM_UNIT: f64 = 1.0 / 640.0;
-/// Minimum semi-axis of a region after its bloom is removed, in photo pixels. [convention]
+/// Lower bound of the semi-axes of a region after its bloom is removed, in photo pixels; shorter semi-axes are raised
+/// to this. [convention]
 const MIN_SEMIAXIS: f64 = 0.5;
 
 /// A region of the mask that shows a complete shape, that is, a lamp inside the photo.

@@ -23,8 +23,8 @@ use crate::job::Job;
 use likeness::Shape;
 use tilt::{Found, Tilt};
 
-/// Minimum number of shapes: two shapes of one kind give six measurements (the size and the two components of the
-/// stretch of each) for the five unknowns. [convention]
+/// Minimum number of shapes for an estimate: two shapes of one kind give six measurements (the size and the two
+/// components of the stretch of each) for the five unknowns. [convention]
 const MIN_SHAPES: usize = 2;
 /// A tilt is accepted only if it decreases the cost of the shapes by at least this, compared with the tilt that the
 /// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]

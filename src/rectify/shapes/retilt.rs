@@ -15,7 +15,8 @@ const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
 /// Number of rotations about the normal that are tried within a right angle. [convention]
 const ROTATIONS: usize = 360;
-/// Minimum number of segments that determine a direction. [convention]
+/// Minimum number of segments along a direction; with fewer segments, the rotation about the normal counts as unknown.
+/// [convention]
 const MIN_SUPPORT: usize = 3;
 
 impl View {

@@ -12,11 +12,12 @@ use glam::{DMat3, DVec3};
 
 /// Number of plane normals tried, spread over the sphere about 6 degrees apart. [convention]
 const DIRECTIONS: usize = 1000;
-/// Number of focal lengths tried on either side of the expected focal length, and the logarithm of the ratio between
-/// neighbouring focal lengths. [convention]
+/// `FOCALS`: number of focal lengths tried on either side of the expected focal length. `FOCAL_STEP`: logarithm of the
+/// ratio between neighbouring focal lengths. [convention]
 const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
-/// A focal length counts as known if the standard deviation of its logarithm is below this. [bench photos:tune]
+/// A focal length counts as known if the standard deviation of its logarithm is below this; it is then not refined.
+/// [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
 /// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
 /// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
@@ -30,12 +31,12 @@ const LAST_STEP: f64 = 1e-4;
 /// Maximum cost of a deviation from the normal that the lines imply, in variances. The cost is limited because the
 /// lines may be entirely wrong. [bench photos:tune]
 const MAX_LINES_COST: f64 = 9.0;
-/// Standard deviation of the camera's roll in radians, and the maximum cost of a roll in variances. Most photographers
-/// hold the camera upright. [bench photos:tune]
+/// `ROLL_ERROR`: standard deviation of the camera's roll in radians. `MAX_ROLL_COST`: maximum cost of a roll in
+/// variances. Most photographers hold the camera upright. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// Minimum cosine of the angle between the normal found and the normal from the lines: both normals must put the plane
-/// on the same side of the camera. [bench photos:tune]
+/// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this,
+/// because both normals must put the plane on the same side of the camera. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.
@@ -80,7 +81,8 @@ impl Total<'_> {
         }
         let by_focal = ((tilt.focal / self.expected.focal).ln() / self.expected.spread).powi(2);
         let by_lines = (cosine.min(1.0).acos() / self.lines_error).powi(2).min(MAX_LINES_COST);
-        // Roll is visible only on planes above and below the camera, not on planes ahead of it.
+        // Compute the roll from the normal, but only for floors and ceilings. Roll does not change the normal of a
+        // wall ahead of the camera, and this formula does not hold for side walls.
         let roll = tilt.normal.x.atan2(tilt.normal.y.abs());
         let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
         let by_roll = if is_level { (roll / ROLL_ERROR).powi(2).min(MAX_ROLL_COST) } else { 0.0 };
@@ -98,7 +100,7 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
     // Find the best focal length for every direction, then refine the tilts with the least cost. Refining a single
-    // tilt is not enough: if all shapes are stretched alike, the cost has several minima.
+    // tilt is not enough: if all shapes are elongated alike, the cost has several minima.
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
