@@ -24,7 +24,7 @@ use obvhs::bvh2::node::Bvh2Node;
 const FEW_CLUSTERS: usize = 32;
 /// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
-/// Maximum number of leaves in a range that one thread processes without splitting off parallel work.
+/// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
 /// Mask of the low bits of a candidate's area, which are replaced by the XOR of the indices of the two clusters. From
@@ -200,7 +200,8 @@ impl Boxes {
         boxes
     }
 
-    /// Loads the boxes of `clusters`. The boxes left over from the `before` clusters held so far become sentinels.
+    /// Loads the boxes of `clusters`. If more clusters were loaded before (`before` of them), the surplus boxes become
+    /// sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());

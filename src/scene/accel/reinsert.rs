@@ -153,8 +153,9 @@ impl<'a> Reinsertion<'a> {
             return;
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
-        // Three nodes move: the sibling replaces the old parent, the node at `to` replaces the sibling, and a new
-        // parent of that node and the subtree replaces the node at `to`.
+        // Three slots are rewritten. The sibling of the subtree `from` moves into the slot of their parent, and the
+        // node at `to` moves into the sibling's slot, next to the subtree. Slot `to` gets a new node, the parent of
+        // these two.
         let stays = self.tree[beside];
         let joined = self.tree[to];
         self.put(parent, stays);
@@ -185,8 +186,8 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings whose positions are still to be examined: the gain without the area of the new parent, and the
-/// index of the first sibling.
+/// A pair of siblings that are still to be examined as places for the subtree: the gain without the area of the new
+/// parent, and the index of the first sibling.
 type Waiting = (f32, u32);
 
 /// The search for the best position of one subtree.

@@ -111,7 +111,7 @@ impl Accel {
     }
 
     /// Traverses the tree, visiting the nearest child first. With `ANY`, it visits children from the last lane to the
-    /// first, which is the order of falling benefit.
+    /// first, which is the order of decreasing benefit.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,

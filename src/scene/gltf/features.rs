@@ -62,7 +62,7 @@ const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
 ];
 
-/// The arrays of objects in the JSON, and the word for one object of each array.
+/// The arrays of objects in the JSON, and the word by which a message names one object of each array.
 const LISTS: [(&str, &str); 10] = [
     ("materials", "material"),
     ("meshes", "mesh"),
@@ -183,7 +183,8 @@ fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     document.get("meshes")?.get(index as usize)
 }
 
-/// Notes morph targets of colours or texture coordinates with a weight other than 0: only shapes are mixed.
+/// Reports morph targets that change colours or texture coordinates and have a weight other than 0. They are not
+/// rendered: only positions and normals are mixed.
 fn weights(list: &mut Vec<Unrendered>, object: &Value, mesh: Option<&Value>, place: &dyn Fn() -> String) {
     let Some(mesh) = mesh else { return };
     let mixed = |(_, target): (&(usize, &Value), &Value)| {

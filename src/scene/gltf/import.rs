@@ -24,8 +24,8 @@ use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Maximum number of vertices, and of triangles, of all meshes together. Each instance counts, and each morph target
-/// counts as vertices.
+/// Maximum number of vertices, and of triangles, of all meshes together. Every instance of a mesh counts, and each
+/// morph target counts as that many more vertices.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
 /// Maximum number of meshes of a scene: primitives × instances, of all nodes.

@@ -13,7 +13,7 @@ const COS_ANGLE: f64 = 0.999_390_827;
 const OFFSET: f64 = 5e-4;
 /// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;
-/// Maximum number of directions along which planes are searched, in order of falling area.
+/// Maximum number of directions along which planes are searched, in order of decreasing area.
 const DIRECTIONS: usize = 32;
 /// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane. [origin not
 /// recorded]
@@ -113,7 +113,8 @@ fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
     (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
 }
 
-/// Returns the direction or its opposite, whichever has a positive leading component.
+/// Returns the direction or its opposite: the one whose first large component is positive. A component is large if its
+/// magnitude is more than half of the largest magnitude.
 fn unsigned(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     let leading = direction.to_array().into_iter().find(|c| c.abs() > 0.5 * largest).unwrap_or(1.0);
