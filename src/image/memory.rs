@@ -13,8 +13,8 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use image::ImageFormat;
 
-/// Maximum size in bytes of a colour profile; larger ones are ignored. [convention]: profiles of displays and cameras
-/// have a few thousand bytes, those of scanners up to a million.
+/// Maximum size in bytes of a colour profile; larger ones are ignored. Profiles of displays and cameras have a few
+/// thousand bytes, those of scanners up to a million. [convention]
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system cannot provide this many bytes.
@@ -140,7 +140,8 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
     let transform = match header.compression {
-        // DWA works on blocks of 8 x 8 pixels, each of which takes 768 bytes per channel.
+        // The DWA decoder holds up to 771 bytes per channel for each block of 8 x 8 pixels, 768 for coefficients and 3
+        // for flags. These are 12.05 bytes per pixel, rounded up to 13.
         Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
         _ => 0,
     };

@@ -209,7 +209,8 @@ struct Bar {
 
 impl Bar {
     fn new(range: &Range, unit: Unit, height: usize) -> Self {
-        // Glyphs are a twenty-fourth as high as the image, rounded down to whole pixels per dot.
+        // Glyphs are a twenty-fourth as high as the image, rounded down to whole pixels per dot, but a dot has at
+        // least one pixel.
         let dot = (height / (24 * glyphs::HEIGHT)).max(1);
         let line = (glyphs::HEIGHT + 2) * dot;
         let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));

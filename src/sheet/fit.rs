@@ -12,7 +12,7 @@ use glam::DVec2;
 /// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
 /// Maximum distance between a mark and its predicted position, as a share of the sheet's diagonal in the photo: for
-/// predictions by the first map, and by the refined map [origin not recorded].
+/// predictions by the first map, and by the refined map. [origin not recorded]
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 

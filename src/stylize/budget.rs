@@ -1,4 +1,4 @@
-//! The error budget (§3.3, Eq. 4): selects the matches that are good enough to be used.
+//! The error budget (StyLit, §3.3, Eq. 4): selects the matches that are good enough to be used.
 //!
 //! The sorted matching errors follow a hyperbola `f(x) = 1 / (a - b x)` when both axes are scaled to `[0, 1]`. (Errors
 //! are scaled by their 99th percentile: the largest of a million errors is an outlier that would move the knee.) The
@@ -15,9 +15,9 @@ const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
 
-/// Minimum share of the variance that a hyperbola must explain [origin not recorded].
+/// Minimum share of the variance that a hyperbola must explain. [origin not recorded]
 const MIN_EXPLAINED: f64 = 0.8;
-/// A curve has a knee only if it runs farther than this below the diagonal [origin not recorded].
+/// A curve has a knee only if it runs farther than this below the diagonal. [origin not recorded]
 const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
@@ -88,7 +88,7 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
 pub struct Budget {
     /// Share of the matches left of the knee; 1 if there is no knee, so that all matches are feasible.
     pub knee: f64,
-    /// Sum of the errors left of the knee: T in Eq. 4.
+    /// Sum of the errors left of the knee: T in Eq. 4 of StyLit.
     pub total: f64,
 }
 

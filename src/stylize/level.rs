@@ -258,8 +258,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns the integer distance of two patches whose weighted squared difference (Eq. 1, channels in `[0, 1]`) is
-    /// 1 in every pixel.
+    /// Returns the integer distance of two patches whose weighted squared difference (StyLit, Eq. 1, channels in
+    /// `[0, 1]`) is 1 in every pixel.
     pub fn unit(&self) -> f64 {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }

@@ -1,5 +1,5 @@
-//! Compression of guides to their principal components (§3.4, preview): rendered buffers are strongly correlated, so a
-//! few components carry nearly all information.
+//! Compression of guides to their principal components for the preview (StyLit, §3.4): rendered buffers are strongly
+//! correlated, so a few components carry nearly all information.
 
 use super::guides::Channels;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Share of the variance to keep [origin not recorded].
+/// Share of the variance to keep. [origin not recorded]
 const KEPT_VARIANCE: f64 = 0.995;
 /// Maximum number of components: together with three colour channels, they fill the eight lanes of a SIMD register.
 const MAX_COMPONENTS: usize = 5;

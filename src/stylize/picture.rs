@@ -41,7 +41,7 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The data from which an encoded picture was produced.
+/// The matches and the images from which a picture encoded for display was painted.
 pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,

@@ -1,4 +1,4 @@
-//! Reversed retrieval under an error budget (§3.3).
+//! Reversed retrieval under an error budget (StyLit, §3.3).
 //!
 //! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
 //! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
@@ -38,8 +38,8 @@ pub struct Pass {
     pub coverage: f64,
 }
 
-/// The passes end after the first pass that matches less than this share of the wanted target patches
-/// [origin not recorded].
+/// The passes end after the first pass that matches less than this share of the wanted target patches.
+/// [origin not recorded]
 const MIN_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch. `field` holds the matches of the previous iteration, which start the search, and

@@ -57,8 +57,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// Returns an area threshold for each share: at most this share of all nodes, and hardly fewer, have at least this
-    /// area.
+    /// Returns an area threshold for each share. At most this share of all nodes have an area of at least the
+    /// threshold; the threshold is the lowest boundary between histogram bins with this property.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];

@@ -40,7 +40,7 @@ pub struct Surface {
     /// Unit directions of u and v; `u × v` points away from the room.
     pub u_axis: Vec3,
     pub v_axis: Vec3,
-    /// Unit normal into the room. The side it points from will emit.
+    /// Unit normal into the room. The side of the patch that faces the room will emit.
     pub normal: Vec3,
     /// Extent of the bounding rectangle along u and v in metres.
     pub size: Vec2,
