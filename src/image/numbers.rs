@@ -125,7 +125,7 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
     Ok(())
 }
 
-/// Encodes a window: its picture with 3 channels, and `number([x, y], k)` for each pixel and each `k`.
+/// Encodes a window. `picture` has three channels, and `number([x, y], k)` returns the `k`-th number of a pixel.
 pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let [width, height] = head.size;

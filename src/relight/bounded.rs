@@ -219,7 +219,7 @@ mod tests {
         // Two equations: [[2, 1], [1, 3]] x = [5, 10] has x = [1, 3].
         let x = solve(2, &[2.0, 1.0, 1.0, 3.0], &[5.0, 10.0], 1e-10, &[0.0, 0.0], &[FREE; 2]);
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
-        // Without equations, the solution is the preferred value.
+        // Without equations, the solution is the preferred value, clipped to its bounds.
         assert_eq!(
             Problem { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
             [0.5]

@@ -216,7 +216,7 @@ struct Equations {
 
 impl Equations {
     fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
-        // Regularise towards the best power that all lamps have in common.
+        // Regularise towards the power that meets the goals best if all lamps have the same power.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
         let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();

@@ -62,7 +62,7 @@ impl Problem<'_> {
         let lambda = self.regularisation * dot(self.matrix, self.matrix) / self.right.len() as f64;
         let mut x: Vec<f64> = self.preferred.iter().zip(self.upper).map(|(p, u)| p.clamp(0.0, *u)).collect();
         if !(lambda > 0.0 && lambda.is_finite()) {
-            // Without any response, the solution is the preferred value.
+            // Without any response, the solution is the preferred value, clipped to its bounds.
             return Ok(x);
         }
         let mut active = self.active(&x, &vec![false; self.right.len()]);

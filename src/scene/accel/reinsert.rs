@@ -20,7 +20,8 @@ use std::cmp::Reverse;
 const CHUNK: usize = 256;
 /// Number of pairs of nodes per unit of parallel work on the histogram of areas.
 const COUNT_CHUNK: usize = 1 << 15;
-/// Number of leading bits of an area that select its histogram bin: the exponent and four bits of the mantissa.
+/// Number of highest bits of an area, after the sign bit, that select its histogram bin: the exponent and four bits of
+/// the mantissa.
 const SIZE_BITS: u32 = 8 + 4;
 
 /// A move of the subtree `from` to a new position as the sibling of `to`. `gain` is the decrease of the total half

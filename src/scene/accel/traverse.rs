@@ -177,7 +177,7 @@ impl Accel {
     }
 }
 
-/// The nearest accepted hit so far, and the distances it allows.
+/// The nearest accepted hit so far, and the farthest distance at which a further hit is of interest.
 struct Best {
     hit: Option<Hit>,
     /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.

@@ -112,7 +112,7 @@ fn place(kind: &str, index: usize, object: &Value) -> String {
     }
 }
 
-/// Notes the extensions of an object that are not rendered.
+/// Reports the extensions of an object that are not rendered.
 fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
     for (name, settings) in object.get("extensions").and_then(Value::as_object).into_iter().flatten() {
         // Skip Basis Universal textures: `texture` reports them if they lack an image in another format.
@@ -142,7 +142,7 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         && !(is_factor && has_texture())
 }
 
-/// Notes a specular-glossiness material that cannot be converted to metallic-roughness.
+/// Reports a specular-glossiness material that cannot be converted to metallic-roughness.
 fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
     let settings = material.get("extensions").and_then(|e| e.get(GLOSSINESS));
     let settings = settings.and_then(|s| serde_json::from_value::<PbrSpecularGlossiness>(s.clone()).ok());

@@ -74,9 +74,9 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
 
 /// Finds the planar patch that faces the room, among the triangles of the object or material with the given name.
 ///
-/// Object names are tried before material names. Either may match exactly, else case-insensitively, else as a
-/// substring that only one name contains. The scene must be valid. Errors: `NotFound`, listing the existing names;
-/// `Degenerate` if the object has no area.
+/// First an object, then a material is searched for that has exactly this name; then one whose name is equal
+/// regardless of case; then one whose name contains the given name, if only one name does. The scene must be valid.
+/// Errors: `NotFound`, listing the existing names; `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =

@@ -50,8 +50,8 @@ struct Facet {
 /// Returns the planes of the triangles, largest first, without small planes.
 ///
 /// First the directions of the normals are accumulated in the cells of a grid, weighted by area. Their signs are
-/// ignored, since sheets may be wound either way. Then, along the direction of each heavy cell, planes are found by
-/// their offsets.
+/// ignored, since sheets may be wound either way. Then, along the direction of each cell of large area, planes are
+/// found by their offsets.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
