@@ -248,7 +248,8 @@ impl Bar {
     }
 }
 
-/// Returns the shortest text of a number, with an exponent if it would otherwise have many zeros.
+/// Returns the shortest text of a number rounded to four digits, with an exponent if the text would otherwise have
+/// many zeros.
 fn text(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }

@@ -6,7 +6,8 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
 
-/// Maximum length, in pixels, of the longer side of the image in which marks are searched for.
+/// Maximum length, in pixels, of the longer side of the image in which marks are searched for. A larger photo is
+/// reduced first.
 const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
 /// to about forty pixels across. [origin not recorded]

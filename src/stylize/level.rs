@@ -138,8 +138,8 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
 }
 
 /// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
-/// pixels under it are usable. If no coarse pixel were usable then, a single usable fine pixel suffices, so that
-/// regions thinner than two pixels do not vanish.
+/// pixels under it are usable. If this leaves no usable coarse pixel, one usable fine pixel suffices, so that regions
+/// thinner than two pixels do not vanish.
 fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;
@@ -205,7 +205,7 @@ impl<'a> Level<'a> {
         let channels = style.channels;
         let mut weights = vec![colour / channels as f64; channels];
         weights.extend(guides.weights.iter().map(|w| w * f64::from(params.guide_weight)));
-        // With neither colours nor guides, all matches are equally good.
+        // If all weights are 0, all matches are equally good: give one channel the smallest positive weight.
         if weights.iter().all(|&w| w == 0.0) {
             weights[channels] = f64::MIN_POSITIVE;
         }

@@ -16,7 +16,8 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, unpack};
 use crate::rng::hash;
 
-/// The initial field is found by exhaustive comparison if there are at most this many pairs of patches.
+/// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
+/// the search that the parameters select.
 const EXHAUSTIVE: usize = 1 << 24;
 
 /// Values that all levels of a run share.

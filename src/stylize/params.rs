@@ -8,7 +8,7 @@ use crate::patch::{Field, MAX_SIDE, Vote};
 /// The matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// The paper's method: reversed retrieval under an error budget.
+    /// The paper's method: each exemplar patch searches for its target (reversed retrieval), under an error budget.
     Budget,
     /// Reversed retrieval without a budget: all exemplar patches are used equally often (Jamriška et al. 2015).
     Uniform,
