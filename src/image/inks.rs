@@ -1,7 +1,7 @@
 //! Reads JPEG files with four inks (cyan, magenta, yellow and black), for conversion by their colour profile.
 //!
-//! The crate `image` converts inks to RGB without a profile. This file therefore uses the decoder on which that crate
-//! is based, `zune-jpeg`.
+//! The crate `image` converts inks to RGB without a profile. This module therefore uses the decoder on which that
+//! crate is based, `zune-jpeg`.
 //!
 //! By the convention of Adobe Photoshop, which every reader follows, a stored value of 255 means no ink (libjpeg,
 //! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes the inverse of the stored cyan, magenta and

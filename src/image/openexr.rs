@@ -1,5 +1,5 @@
-//! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this file,
-//! `samples`, `numbers` and `memory` use the crate `exr`.
+//! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this module and
+//! the modules `samples`, `numbers` and `memory` use the crate `exr`.
 //!
 //! A picture has the size of the display window of its file. Pixels outside the data window are 0; pixels outside the
 //! display window are dropped. Colours are converted from the chromaticities that the file states to linear Rec.709.

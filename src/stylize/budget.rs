@@ -6,8 +6,8 @@
 //! `f′ = b f²`, the knee satisfies `a - b x = √b`: `k = a/b - √(1/b)`. The paper prints a plus sign, which puts the
 //! knee beyond the pole at `a/b`.
 //!
-//! If no hyperbola fits, for instance because the curve is a step, as most exemplar patches have no suitable place
-//! (Fig. 7), the knee is the point farthest below the diagonal. A curve that never runs below the diagonal has no
+//! If no hyperbola fits, the knee is the point farthest below the diagonal. An example is a curve with a step, which
+//! arises if most exemplar patches have no suitable place (Fig. 7). A curve that never runs below the diagonal has no
 //! knee: all of its errors are feasible.
 
 /// Minimum number of errors to which a curve is fitted.

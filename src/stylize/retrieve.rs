@@ -11,8 +11,8 @@
 //! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
 //! closer than the patch's own, or if avoiding the seam outweighs the greater distance (`Params::settle`,
 //! `Params::seam`; not in the paper). This step searches for no new matches, so the result uses as much of the
-//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (Eq. 3) to a
-//! third and keeps more of the texture.
+//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (StyLit,
+//! Eq. 3) to a third and keeps more of the texture.
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.

@@ -3,7 +3,7 @@
 //! coordinate of CIELAB or CIE XYZ.
 //!
 //! The crate `moxcms` would resample these tables on its own grid, with errors of up to 12 codes of 255. It is
-//! therefore used only to read the tables, and this file interpolates them. As in LCMS, the interpolation is
+//! therefore used only to read the tables, and this module interpolates them. As in LCMS, the interpolation is
 //! tetrahedral in magenta, yellow and black (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
 //!
 //! Not modelled: profiles whose tables are `lutAToBType`. They count as unusable.

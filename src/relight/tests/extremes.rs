@@ -1,4 +1,5 @@
-//! Tests that reproduce results of the paper, and tests with extreme inputs.
+//! Tests that reproduce results of the paper ("Single-Exemplar Lighting Style Transfer"), and tests with extreme
+//! inputs.
 
 use super::*;
 

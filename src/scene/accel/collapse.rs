@@ -2,7 +2,7 @@
 //! Laine 2017, section 3.1).
 //!
 //! First, `costs` computes for each binary subtree the minimum expected cost of representing it by one to seven wide
-//! subtrees. Then this file follows the optimal choices from the root down and writes the wide nodes.
+//! subtrees. Then this module follows the optimal choices from the root down and writes the wide nodes.
 //!
 //! For parallel work, the tree is cut near its root into parts. The cut depends on the tree alone, not on the number
 //! of threads.

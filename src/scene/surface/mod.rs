@@ -1,10 +1,10 @@
 //! Finds target surfaces, planar patches selected by name, and maps emissive textures onto them.
 //!
-//! The paper (section 7) maps the light texture onto a surface that the user picks. Real ceilings are rarely single
-//! rectangles: they are slabs with two sides and edges, or single sheets wound either way. [`find`] collects the
-//! triangles of the named object, groups them into planes, selects the plane and the side from which most of the room
-//! is visible, and fits a rectangle in that plane. [`place`] makes the patch a separate mesh and maps a texture onto
-//! the rectangle.
+//! The method of the paper ("Single-Exemplar Lighting Style Transfer", section 7) maps the light texture onto a
+//! surface that the user picks. Real ceilings are rarely single rectangles: they are slabs with two sides and edges,
+//! or single sheets wound either way. [`find`] collects the triangles of the named object, groups them into planes,
+//! selects the plane and the side from which most of the room is visible, and fits a rectangle in that plane.
+//! [`place`] makes the patch a separate mesh and maps a texture onto the rectangle.
 //!
 //! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area of
 //! the remaining, sloped triangles.
