@@ -11,14 +11,14 @@ use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
 pub(super) struct Problem<'a> {
-    /// `A`, row by row.
+    /// The matrix `A`, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// `λ`, positive.
+    /// Weight `λ` of the Tikhonov term, positive.
     pub regularisation: f64,
-    /// `p`, one value per unknown.
+    /// Preferred values `p` of the unknowns.
     pub preferred: &'a [f64],
-    /// `u`, non-negative; may be infinite.
+    /// Upper bounds `u` of the unknowns, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 

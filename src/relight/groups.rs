@@ -51,7 +51,7 @@ pub struct GroupParams {
     /// goals, with a large weight they stay equal.
     pub regularisation: f64,
     /// A goal counts as met if it misses its target by at most this share of the target's brightest channel, plus the
-    /// noise; in `[1e-6, 1]`.
+    /// half-width of the 95 % confidence interval; in `[1e-6, 1]`.
     pub tolerance: f64,
 }
 

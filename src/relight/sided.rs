@@ -40,11 +40,11 @@ pub(super) struct Problem<'a> {
     pub right: &'a [f64],
     /// The kind of each term: one per row.
     pub constraints: &'a [Constraint],
-    /// `λ` relative to the mean square of a row, positive.
+    /// Weight `λ` of `|x − p|²`, relative to the mean square of a row, positive.
     pub regularisation: f64,
-    /// `p`, one value per unknown.
+    /// Preferred values `p` of the unknowns.
     pub preferred: &'a [f64],
-    /// `u`, non-negative; may be infinite.
+    /// Upper bounds `u` of the unknowns, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 

@@ -43,7 +43,8 @@ pub struct Pass {
 const MIN_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch. `field` holds the matches of the previous iteration, which start the search, and
-/// receives the result. Its distances are valid except where `changed` is set. Matches with `kept` set stay unchanged.
+/// receives the result. The distances in `field` are valid except where `changed` is set. Matches with `kept` set stay
+/// unchanged.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
