@@ -8,7 +8,7 @@
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Range of temperatures in kelvin. \[convention\]
+/// Range of colour temperatures in kelvin, to which arguments and results are limited. \[convention\]
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 

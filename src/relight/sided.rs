@@ -242,7 +242,7 @@ mod tests {
         // Upper limits alone keep the current power or reduce it.
         assert_eq!(alike(&[(2.0, 6.0, AtMost)]), 1.0);
         assert_eq!(alike(&[(2.0, 1.0, AtMost), (1.0, 4.0, AtMost)]), 0.5);
-        // The cases are a black target, too much other light, and no response.
+        // The target is black, or is exceeded by other light alone, or receives no light from the lamps.
         assert_eq!(alike(&[(2.0, 0.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, AtMost)]), 0.0);

@@ -83,12 +83,12 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
         .then(|| Hyperbola { a: (m[2] * r[0] - m[1] * r[1]) / det, b: (m[0] * r[1] - m[1] * r[0]) / det })
 }
 
-/// The error budget of matches.
+/// The error budget of a set of matches: the share of feasible matches, and the sum of their errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Share of the matches left of the knee; 1 if there is no knee, so that all matches are feasible.
     pub knee: f64,
-    /// Sum of the errors left of the knee: T in Eq. 4 of StyLit.
+    /// Sum of the errors left of the knee, T in Eq. 4 of StyLit; infinite if there is no knee.
     pub total: f64,
 }
 

@@ -37,7 +37,7 @@ impl Problem {
         let first = input.guides.first().ok_or_else(no_guides)?;
         check_side(&first.side("target"), first.target)?;
         artwork.check_same_size("artwork", first.source, &first.side("source"))?;
-        // A preview works at half the resolution if patches fit into it.
+        // A preview works at half the resolution if the halved images are at least as large as a patch.
         let sides = [artwork.width, artwork.height, first.target.width, first.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
         let half = params.preview && shortest >= 2 * params.patch;

@@ -153,7 +153,7 @@ mod tests {
         let m: Vec<f64> =
             (0..n * n).map(|i| ((i / n * i % n + i % n * (i / n)) % 7) as f64 + f64::from(i % 7 == 0)).collect();
         let m: Vec<f64> = (0..n * n).map(|i| m[i] + m[i % n * n + i / n]).collect();
-        // Shift the matrix to be positive definite.
+        // Add 100 to the diagonal, so that the matrix is positive definite.
         let m: Vec<f64> = m.iter().enumerate().map(|(i, v)| v + if i % (n + 1) == 0 { 100.0 } else { 0.0 }).collect();
         let (values, vectors) = symmetric_eigen(m.clone(), n);
         for i in 0..n {

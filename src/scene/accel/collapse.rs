@@ -67,8 +67,8 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 }
 
 impl Source<'_> {
-    /// Returns the roots of the parts, by splitting the node of the largest box again and again. Empty for a small
-    /// tree.
+    /// Divides the tree into parts, for parallel work, by splitting the node of the largest box again and again.
+    /// Returns the roots of the parts; empty for a small tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
         if parts < MIN_PARTS {

@@ -187,8 +187,8 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings that are still to be examined as places for the subtree: the gain without the area of the new
-/// parent, and the index of the first sibling.
+/// A pair of siblings still to be examined as places for the subtree: the gain without the area of the new parent, and
+/// the index of the first sibling.
 type Waiting = (f32, u32);
 
 /// The search for the best position of one subtree.
