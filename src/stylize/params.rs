@@ -207,7 +207,7 @@ impl Params {
     }
 }
 
-/// Checks that an image is not larger than supported.
+/// Checks that an image is neither empty nor larger than supported.
 pub(super) fn check_side(name: &str, image: &Image) -> Result<()> {
     check_range(&format!("{name}.width"), image.width, 1, MAX_SIDE)?;
     check_range(&format!("{name}.height"), image.height, 1, MAX_SIDE)?;

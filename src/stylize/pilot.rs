@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn energies_go_on_as_they_have_begun() {
-        // The cases are constant steps, decaying steps, and no change.
+        // The energy falls by a constant factor, by factors that approach 1, or not at all.
         assert!((extrapolate([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
         let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
         assert!((extrapolate([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");

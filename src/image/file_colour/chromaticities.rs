@@ -91,7 +91,7 @@ pub fn of_colorants(colorants: DMat3) -> Option<DMat3> {
     Some(if is_white { DMat3::from_diagonal(white.recip()) * matrix } else { matrix })
 }
 
-/// Whether a matrix changes colours by less than the precision of files.
+/// Whether a matrix is the identity within the precision with which files store colour spaces.
 pub fn is_identity(matrix: DMat3) -> bool {
     (matrix - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < SAME)
 }
