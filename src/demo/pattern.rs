@@ -23,13 +23,14 @@ pub(super) fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
     top + (bottom - top) * t.y
 }
 
-/// Sums three octaves of noise over the unit square, with `cells` lattice cells along each side in the first octave.
+/// Returns the weighted sum of three octaves of noise at a point of the unit square. The first octave has `cells`
+/// lattice cells along each side.
 fn cloud(at: Vec2, cells: u64, seed: u64) -> f32 {
     let octave = |factor: u64| noise(at * (cells * factor) as f32, [cells * factor; 2], seed + factor);
     octave(1) * 0.5 + octave(2) * 0.3 + octave(4) * 0.2
 }
 
-/// Samples a texture from a function that gives the reflectance over the unit square.
+/// Creates a texture from a function that gives the reflectance at each point of the unit square.
 fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     Image::from_fn(SIDE, SIDE, |x, y| {
         let at = (Vec2::new(x as f32, y as f32) + 0.5) / SIDE as f32;

@@ -9,8 +9,9 @@ use glam::{DMat3, DVec2, DVec3};
 pub struct Homography(pub DMat3);
 
 impl Homography {
-    /// Computes the homography that maps four points exactly to four others (Hartley and Zisserman 2004, 4.1, with the
-    /// normalisation of 4.4). Returns an error if three points on either side are collinear.
+    /// Computes the homography that maps the four points `from` exactly to the four points `to` (Hartley and Zisserman
+    /// 2004, 4.1, with the normalisation of 4.4). Returns an error if three points of `from` or three points of `to`
+    /// are collinear.
     pub fn from_corners(from: [DVec2; 4], to: [DVec2; 4]) -> Result<Self> {
         let (nf, nt) = (normalisation(&from)?, normalisation(&to)?);
         let (f, t) = (from.map(|p| apply(nf, p)), to.map(|p| apply(nt, p)));
@@ -85,8 +86,8 @@ fn doubled_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Returns the similarity that moves the centroid of the points to the origin and scales their mean distance from it
-/// to √2.
+/// Returns the similarity that moves the centroid of the points to the origin and makes their mean distance from the
+/// origin √2.
 fn normalisation(points: &[DVec2; 4]) -> Result<DMat3> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let distance = points.iter().map(|p| p.distance(centre)).sum::<f64>() / 4.0;
@@ -142,12 +143,13 @@ mod tests {
         let [a, b, c, d] = quad;
         let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
         assert!(one_side(signs(quad)));
-        // If the quadrilateral intersects itself or is not convex, its corners lie on both sides of the horizon.
+        // If the images of the square's corners form a quadrilateral that intersects itself or is not convex, the
+        // corners lie on both sides of the horizon, the line that maps to infinity.
         let crossed = signs([a, b, d, c]);
         assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
         let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);
         assert_eq!(dented.iter().filter(|&&v| v).count() % 2, 1, "{dented:?}");
-        // A corner on the horizon has no finite image.
+        // A point on the horizon has no finite image.
         let h = Homography(
             DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::Z) + DMat3::from_cols(-DVec3::Z, DVec3::ZERO, DVec3::ZERO),
         );

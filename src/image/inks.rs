@@ -1,7 +1,7 @@
 //! Reads JPEG files with four inks (cyan, magenta, yellow and black), for conversion by their colour profile.
 //!
-//! The crate `image` converts inks to RGB without a profile. This file therefore uses the decoder on which that crate
-//! is based, `zune-jpeg`.
+//! The crate `image` converts inks to RGB without a profile. This module therefore uses the decoder on which that
+//! crate is based, `zune-jpeg`.
 //!
 //! By the convention of Adobe Photoshop, which every reader follows, a stored value of 255 means no ink (libjpeg,
 //! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes the inverse of the stored cyan, magenta and
@@ -64,7 +64,7 @@ fn of_cmyk(stored: [u8; 4]) -> [f32; 4] {
 /// cyan, magenta and yellow.
 fn of_ycck([y, cb, cr, k]: [u8; 4]) -> [f32; 4] {
     let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
-    // [convention]: T.871, 7
+    // The coefficients of ITU-T T.871, 7. [convention]
     let rgb = [y + 1.402 * cr, y - 0.344_136 * cb - 0.714_136 * cr, y + 1.772 * cb];
     let [c, m, yellow] = rgb.map(|v| v.round().clamp(0.0, 255.0) / 255.0);
     [c, m, yellow, 1.0 - f32::from(k) / 255.0]

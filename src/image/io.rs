@@ -85,7 +85,7 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
     Ok((image, colour))
 }
 
-/// The kind of samples for which a decoder is asked.
+/// The kind of samples that a decoder is asked to return.
 enum Read {
     Colours(Encoding),
     /// Amounts of cyan, magenta, yellow and black.

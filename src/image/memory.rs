@@ -13,8 +13,8 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use image::ImageFormat;
 
-/// Maximum size in bytes of a colour profile; larger ones are ignored. [convention]: profiles of displays and cameras
-/// have a few thousand bytes, those of scanners up to a million.
+/// Maximum size in bytes of a colour profile; larger ones are ignored. Profiles of displays and cameras have a few
+/// thousand bytes, those of scanners up to a million. [convention]
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system cannot provide this many bytes.
@@ -22,7 +22,8 @@ pub fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
-/// Checks the memory that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
+/// Checks that there is enough memory for the crate `image` to decode the pixels of a file, in addition to the picture
+/// itself.
 pub(super) fn check_pixels(
     file: &[u8],
     format: ImageFormat,
@@ -36,8 +37,8 @@ pub(super) fn check_pixels(
 /// Bytes that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // Progressive files: the coefficients of four components, two bytes each, in blocks of up to 32 pixels. All
-        // files: a row of blocks.
+        // Progressive files need the coefficients of four components, two bytes each, in blocks of up to 32 pixels.
+        // All files need a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // The frame, if it is narrower than the screen, and the tables of the LZW decoder.
@@ -46,7 +47,7 @@ pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usi
     }
 }
 
-/// Checks the memory for decoding the scan lines of a Radiance file with this many columns.
+/// Checks that there is enough memory to decode the scan lines of a Radiance file with this many columns.
 pub(super) fn check_scanlines(columns: usize) -> Result<()> {
     check(scanlines(columns))
 }
@@ -70,7 +71,7 @@ fn webp(file: &[u8], width: usize, height: usize) -> usize {
     11 * width * height + 400 * file.len() + lossy
 }
 
-/// Checks the memory for the decompressors of a TIFF file.
+/// Checks that there is enough memory for the decompressors of a TIFF file.
 pub(super) fn check_unpacking() -> Result<()> {
     check(UNPACKING)
 }
@@ -78,8 +79,8 @@ pub(super) fn check_unpacking() -> Result<()> {
 /// Bytes that the decompressors of a TIFF file need.
 pub(super) const UNPACKING: usize = 1 << 20;
 
-/// Checks the memory for a chunk of a PNG file. Chunks of pixels need none, because they are read piece by piece. A
-/// colour profile is unpacked up to a limit; deflate expands it at most 1032 times.
+/// Checks that there is enough memory for a chunk of a PNG file. Chunks of pixels need none, because they are read
+/// piece by piece. A colour profile is unpacked up to a limit; deflate expands it at most 1032 times.
 pub(super) fn check_chunk(name: &[u8], length: usize, file_bytes: usize) -> Result<()> {
     check(chunk(name, length, file_bytes))
 }
@@ -108,8 +109,8 @@ pub(super) fn profile(bytes: usize, has_tables: bool) -> usize {
     bytes.saturating_mul(32).saturating_add(if has_tables { 8 << 20 } else { 2 << 20 })
 }
 
-/// Checks the memory for writing a PNG file with this many bytes of pixels: the compressed and the uncompressed data,
-/// whose buffers grow by doubling.
+/// Checks that there is enough memory to write a PNG file with this many bytes of pixels: the compressed and the
+/// uncompressed data, whose buffers grow by doubling.
 pub(super) fn check_packing(bytes: usize) -> Result<()> {
     check(bytes.saturating_mul(5))
 }
@@ -128,8 +129,8 @@ pub(super) fn block_bytes(header: &Header) -> usize {
     width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
 }
 
-/// Checks the memory for reading the first layer of an OpenEXR file: all its samples, a block in a decompressor, and
-/// the lists of blocks.
+/// Checks that there is enough memory to read the first layer of an OpenEXR file: all its samples, a block in a
+/// decompressor, and the lists of blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     check(layer(headers))
 }
@@ -140,7 +141,8 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
     let transform = match header.compression {
-        // DWA works on blocks of 8 x 8 pixels, each of which takes 768 bytes per channel.
+        // The DWA decoder holds up to 771 bytes per channel for each block of 8 x 8 pixels, 768 for coefficients and 3
+        // for flags. These are 12.05 bytes per pixel, rounded up to 13.
         Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
         _ => 0,
     };
@@ -158,8 +160,8 @@ fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// Checks the memory for writing an OpenEXR file: the blocks being compressed and the list of blocks. The caller
-/// checks the memory for the file itself, [`max_file_bytes`].
+/// Checks that there is enough memory to write an OpenEXR file: the blocks being compressed and the list of blocks.
+/// The caller checks the memory for the file itself, [`max_file_bytes`].
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }

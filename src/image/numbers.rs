@@ -84,7 +84,7 @@ fn utf8(text: &ex::Text) -> String {
     String::from_utf8_lossy(text.bytes()).into_owned()
 }
 
-/// Returns the name of the channel with one half of a number.
+/// Returns the name of the channel that holds the high or the low 32 bits of a number.
 fn name(number: usize, is_high: bool) -> String {
     format!("number.{number:05}.{}", if is_high { "high" } else { "low" })
 }
@@ -125,7 +125,7 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
     Ok(())
 }
 
-/// Encodes a window: its picture with 3 channels, and `number([x, y], k)` for each pixel and each `k`.
+/// Encodes a window. `picture` has three channels, and `number([x, y], k)` returns the `k`-th number of a pixel.
 pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let [width, height] = head.size;
@@ -150,8 +150,8 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
     let list = ex::AnyChannels::sort(list);
-    // Use run-length compression. The low digits of the sums are noise; stronger compression would take as long as
-    // tracing the paths.
+    // Use run-length compression. The low digits of the stored sums are noise; stronger compression would take as long
+    // as tracing the paths.
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));

@@ -1,5 +1,5 @@
-//! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this file,
-//! `samples`, `numbers` and `memory` use the crate `exr`.
+//! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this module and
+//! the modules `samples`, `numbers` and `memory` use the crate `exr`.
 //!
 //! A picture has the size of the display window of its file. Pixels outside the data window are 0; pixels outside the
 //! display window are dropped. Colours are converted from the chromaticities that the file states to linear Rec.709.
@@ -251,8 +251,8 @@ mod tests {
     use crate::image::file_colour::FileColour;
     use crate::image::io::{Encoding, decode, decode_photo, probe};
 
-    /// A file whose pixels have the red values 1, 2, ... `corner` and `size` give its data window, `display` its
-    /// display window.
+    /// A file whose pixels have the red values 1, 2, 3 and so on. `corner` and `size` give its data window, `display`
+    /// its display window.
     fn file(corner: [i32; 2], size: [usize; 2], display: ([i32; 2], [usize; 2])) -> Vec<u8> {
         colourful(corner, size, display, |_| ())
     }
@@ -286,8 +286,8 @@ mod tests {
     #[test]
     fn the_data_window_lies_in_the_display_window() {
         let display = ([10, 20], [4, 3]);
-        // The data window is in turn the whole picture, inside it, beyond its start, beyond its end, beyond both, and
-        // outside.
+        // Data windows, relative to the picture: equal to it, inside it, beyond its start, beyond its end, beyond
+        // both, and outside.
         assert_eq!(red(&file([10, 20], [4, 3], display)), (1..=12).collect::<Vec<i32>>());
         assert_eq!(red(&file([11, 21], [2, 1], display)), [0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0]);
         assert_eq!(red(&file([9, 19], [3, 2], display)), [5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);

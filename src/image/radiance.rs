@@ -1,4 +1,4 @@
-//! Reads Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats). This file reads the
+//! Reads Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats). This module reads the
 //! header; the crate `image` decodes the pixels.
 //!
 //! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`. Colours in other `PRIMARIES` or in CIE XYZ

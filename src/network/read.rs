@@ -151,7 +151,7 @@ fn value_info(bytes: &[u8]) -> Result<(&str, Vec<Option<usize>>)> {
     Ok((name, shape))
 }
 
-/// Calls `work` for each field with the number `wanted` in a message.
+/// Calls `work` for each field of a message whose field number is `wanted`.
 fn nested<'a>(message: Value<'a>, wanted: u64, mut work: impl FnMut(Value<'a>) -> Result<()>) -> Result<()> {
     fields(message.bytes()?, |number, value| if number == wanted { work(value) } else { Ok(()) })
 }

@@ -209,7 +209,8 @@ struct Bar {
 
 impl Bar {
     fn new(range: &Range, unit: Unit, height: usize) -> Self {
-        // Glyphs are a twenty-fourth as high as the image, rounded down to whole pixels per dot.
+        // Glyphs are a twenty-fourth as high as the image, rounded down to whole pixels per dot, but a dot has at
+        // least one pixel.
         let dot = (height / (24 * glyphs::HEIGHT)).max(1);
         let line = (glyphs::HEIGHT + 2) * dot;
         let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));
@@ -247,7 +248,8 @@ impl Bar {
     }
 }
 
-/// Returns the shortest text of a number, with an exponent if it would otherwise have many zeros.
+/// Returns the shortest text of a number rounded to four digits, with an exponent if the text would otherwise have
+/// many zeros.
 fn text(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }

@@ -247,8 +247,8 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
 mod tests {
     use super::*;
 
-    /// A luminaire of `planes` C planes with vertical angles of 0 and 90 degrees; `values` are the stored intensities
-    /// at 90 degrees.
+    /// A file of a luminaire with `planes` C planes and vertical angles of 0 and 90 degrees; `values` are the stored
+    /// intensities at 90 degrees.
     fn file(symmetry: usize, planes: usize, values: &[f64]) -> String {
         let mut lines: Vec<String> = ["Works", "3"].map(String::from).into();
         lines.push(symmetry.to_string());

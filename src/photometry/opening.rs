@@ -7,7 +7,7 @@
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
 
-/// A point within this distance in metres of an opening counts as inside it. [convention]: no eye is closer to a lamp.
+/// A point within this distance in metres of an opening counts as inside it; no eye is closer to a lamp. [convention]
 const CONTACT: f64 = 1e-3;
 
 /// The shape of an opening, with sizes in metres.

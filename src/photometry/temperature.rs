@@ -8,7 +8,7 @@
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Range of temperatures in kelvin. \[convention\]
+/// Range of colour temperatures in kelvin, to which arguments and results are limited. \[convention\]
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
@@ -21,7 +21,8 @@ const SECTIONS: usize = 60;
 /// A colour given by its correlated colour temperature and its distance from the blackbody locus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
-    /// Temperature in kelvin, in `[1000, 20000]`. At an end of the range the true temperature may lie beyond.
+    /// Temperature in kelvin, in `[1000, 20000]`. A value at an end of this range means that the true temperature may
+    /// lie beyond it.
     pub kelvin: f64,
     /// Distance from the blackbody locus in the CIE 1960 diagram (Duv): positive above the locus (greenish), negative
     /// below (pinkish). Beyond ±0.05 the temperature has little meaning.
@@ -61,8 +62,8 @@ pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
     from_1960(locus(kelvin) + normal * temperature.duv)
 }
 
-/// Returns the linear RGB colour of luminance 1. Channels are negative if the colour is out of gamut (below about 1900
-/// K).
+/// Returns the linear RGB colour of luminance 1 with this temperature and distance from the locus. Channels are
+/// negative if the colour is out of gamut (below about 1900 K).
 pub fn to_rgb(temperature: Temperature) -> DVec3 {
     let xy = chromaticity_of(temperature);
     to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)

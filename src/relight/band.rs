@@ -85,7 +85,8 @@ impl Level {
     }
 }
 
-/// The four texels under a cubic B-spline, with their weights and the derivatives of the weights by the coordinate.
+/// The four texels under a cubic B-spline, with their weights and the derivatives of the weights with respect to the
+/// coordinate.
 struct Taps {
     texels: [usize; 4],
     weights: [f64; 4],

@@ -14,7 +14,7 @@ pub(super) struct Bins<'a> {
 pub(super) enum Division<'a> {
     /// One bin for all of the emission.
     Whole,
-    /// One bin per lamp; light outside the lamps counts as background.
+    /// One bin per lamp; light that comes from elsewhere counts as background.
     Lamps(&'a Lamps),
     /// One bin per cell of the unit square of texture coordinates, which repeats.
     Cells { width: usize, height: usize },

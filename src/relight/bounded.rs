@@ -11,14 +11,14 @@ use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
 pub(super) struct Problem<'a> {
-    /// `A`, row by row.
+    /// The matrix `A`, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// `λ`, positive.
+    /// Weight `λ` of the Tikhonov term, positive.
     pub regularisation: f64,
-    /// `p`, one value per unknown.
+    /// Preferred values `p` of the unknowns.
     pub preferred: &'a [f64],
-    /// `u`, non-negative; may be infinite.
+    /// Upper bounds `u` of the unknowns, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 
@@ -219,7 +219,7 @@ mod tests {
         // Two equations: [[2, 1], [1, 3]] x = [5, 10] has x = [1, 3].
         let x = solve(2, &[2.0, 1.0, 1.0, 3.0], &[5.0, 10.0], 1e-10, &[0.0, 0.0], &[FREE; 2]);
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
-        // Without equations, the solution is the preferred value.
+        // Without equations, the solution is the preferred value, clipped to its bounds.
         assert_eq!(
             Problem { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
             [0.5]

@@ -51,7 +51,7 @@ pub struct GroupParams {
     /// goals, with a large weight they stay equal.
     pub regularisation: f64,
     /// A goal counts as met if it misses its target by at most this share of the target's brightest channel, plus the
-    /// noise; in `[1e-6, 1]`.
+    /// half-width of the 95 % confidence interval; in `[1e-6, 1]`.
     pub tolerance: f64,
 }
 
@@ -81,7 +81,9 @@ pub struct Outcome {
 pub struct GroupSolution {
     /// Multipliers of the emission of each group, ≥ 0.
     pub scale: Vec<DVec3>,
-    /// Half-widths of the 95 % confidence intervals of `scale`, including rounding to levels; 0 at a bound.
+    /// Half-widths of the 95 % confidence intervals of `scale`. With dimming levels they include the distance between
+    /// the chosen level and the continuous power. Without levels the half-width is 0 if the power stays at its bound
+    /// whichever batch of paths is left out.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
     /// The reason why goals are missed; `None` if all are met. If goals are missed, the powers are the best within the
@@ -134,9 +136,9 @@ impl Powers {
         }
     }
 
-    /// Returns half-widths of 95 % confidence intervals, given the powers without each batch: the jackknife of
-    /// [`super::estimate::pseudo_values`] for all groups at once. Pseudo-values spread `n - 1` times as far as the
-    /// results from which they are computed.
+    /// Returns half-widths of 95 % confidence intervals by the jackknife of [`super::estimate::pseudo_values`], for
+    /// all groups at once. `without` holds, for each batch, the powers solved without this batch. Pseudo-values spread
+    /// `n - 1` times as far as the results from which they are computed.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {
@@ -214,7 +216,7 @@ struct Equations {
 
 impl Equations {
     fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
-        // Regularise towards the best power that all lamps have in common.
+        // Regularise towards the power that meets the goals best if all lamps have the same power.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
         let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();

@@ -61,7 +61,7 @@ impl Lamps {
         Self::numbered(texture.width, texture.height, labels, count)
     }
 
-    /// Makes lamps from labels between 0 and `count`.
+    /// Makes lamps from the labels of texels: 0 for texels without emission, and `1..=count` for the lamps.
     fn numbered(width: usize, height: usize, labels: Vec<u32>, count: usize) -> Result<Self> {
         let mut sums = try_vec(count, (DVec2::ZERO, 0.0f64))?;
         for (y, row) in labels.chunks_exact(width).enumerate() {

@@ -5,9 +5,9 @@
 //! under the current emission and its mean radiance `b` under all other light are measured once; the solution is
 //! `(target - b) / r`. The measurement is a Monte Carlo estimate, so the solution has a confidence interval.
 //!
-//! The same paths can also be sorted by light source (`bins`). Light sorted by lamp gives the responses of several
-//! targets to thousands of lamps ([`lamp_responses`]), and a small convex problem then gives the powers of groups of
-//! lamps within bounds or at dimming levels ([`solve_groups`]). Light sorted by cell of a surface gives the
+//! The light of the same paths can also be sorted by its source (`bins`). Light sorted by lamp gives the responses of
+//! several targets to thousands of lamps ([`lamp_responses`]), and a small convex problem then gives the powers of
+//! groups of lamps within bounds or at dimming levels ([`solve_groups`]). Light sorted by cell of a surface gives the
 //! [`Importance`] of the surface: a dot product of the importance and a texture is the response to the texture, and
 //! its gradient leads to the best placement of the texture ([`Importance::place`]). Separately, [`mix_primaries`]
 //! mixes a colour from LEDs.

@@ -165,8 +165,8 @@ impl Importance {
     }
 }
 
-/// Powers of the reciprocal root of `x⁶ = x + 1`, whose multiples modulo 1 are a low-discrepancy sequence in five
-/// dimensions (Roberts 2018). [convention]
+/// Powers of 1/x, where x is the positive root of `x⁶ = x + 1`. Their multiples modulo 1 are a low-discrepancy
+/// sequence in five dimensions (Roberts 2018). [convention]
 const KRONECKER: [f64; 5] = [
     0.881_271_462_333_504_6,
     0.776_639_390_326_789_7,

@@ -55,7 +55,7 @@ impl Estimate {
         self.standard_error * STUDENT_T
     }
 
-    /// Returns the largest relative half-width among the channels with light.
+    /// Returns the largest relative half-width of the confidence intervals of the channels with light.
     pub(super) fn error(&self) -> f64 {
         let relative = self.half_width() / self.mean;
         (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
@@ -141,7 +141,7 @@ pub fn lamp_responses(
     }
 }
 
-/// Returns the relative half-width of the response to all lamps together.
+/// Returns the relative half-width of the confidence interval of the response to all lamps together.
 fn error_of_all(batches: &Batches) -> f64 {
     let sums: Vec<DVec3> = (0..BATCHES).map(|batch| batches.mean_of_bins(batch).sum()).collect();
     Estimate::of(|batch| sums[batch]).error()

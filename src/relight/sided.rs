@@ -40,11 +40,11 @@ pub(super) struct Problem<'a> {
     pub right: &'a [f64],
     /// The kind of each term: one per row.
     pub constraints: &'a [Constraint],
-    /// `λ` relative to the mean square of a row, positive.
+    /// Weight `λ` of `|x − p|²`, relative to the mean square of a row, positive.
     pub regularisation: f64,
-    /// `p`, one value per unknown.
+    /// Preferred values `p` of the unknowns.
     pub preferred: &'a [f64],
-    /// `u`, non-negative; may be infinite.
+    /// Upper bounds `u` of the unknowns, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 
@@ -62,7 +62,7 @@ impl Problem<'_> {
         let lambda = self.regularisation * dot(self.matrix, self.matrix) / self.right.len() as f64;
         let mut x: Vec<f64> = self.preferred.iter().zip(self.upper).map(|(p, u)| p.clamp(0.0, *u)).collect();
         if !(lambda > 0.0 && lambda.is_finite()) {
-            // Without any response, the solution is the preferred value.
+            // Without any response, the solution is the preferred value, clipped to its bounds.
             return Ok(x);
         }
         let mut active = self.active(&x, &vec![false; self.right.len()]);
@@ -242,7 +242,7 @@ mod tests {
         // Upper limits alone keep the current power or reduce it.
         assert_eq!(alike(&[(2.0, 6.0, AtMost)]), 1.0);
         assert_eq!(alike(&[(2.0, 1.0, AtMost), (1.0, 4.0, AtMost)]), 0.5);
-        // The cases are a black target, too much other light, and no response.
+        // The target is black, or is exceeded by other light alone, or receives no light from the lamps.
         assert_eq!(alike(&[(2.0, 0.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, AtMost)]), 0.0);

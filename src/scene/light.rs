@@ -50,7 +50,7 @@ pub fn c90(axis: Vec3, c0: Vec3) -> Vec3 {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Environment {
     Constant(Vec3),
-    /// Equirectangular linear RGB. The image centre shows the direction -z, the top row +y, and the points to the
-    /// right of the centre directions towards +x.
+    /// Equirectangular linear RGB. The image centre shows the direction -z, and the top row shows +y. To the right of
+    /// the centre, the directions turn towards +x.
     Image(Image),
 }

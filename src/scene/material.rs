@@ -24,7 +24,7 @@ pub enum AlphaMode {
     Opaque,
     /// Surface points with an alpha below this cutoff are absent: rays pass through them.
     Mask(f32),
-    /// A surface point is present with a probability of alpha, otherwise rays pass through it.
+    /// A surface point is present with the probability alpha; otherwise rays pass through it.
     Blend,
 }
 
@@ -50,8 +50,8 @@ pub struct Material {
     pub emission_texture: Option<TextureRef>,
     /// Whether back faces reflect and emit as front faces do. Back faces of single-sided materials still block light.
     pub double_sided: bool,
-    /// Share of the light that passes the dielectric surface and is transmitted rather than reflected diffusely, in
-    /// `[0, 1]`.
+    /// Of the light that enters through the dielectric surface, the share that is transmitted and not reflected
+    /// diffusely; in `[0, 1]`.
     pub transmission: f32,
     /// Index of refraction of the dielectric layer, at least 1; a layer of index 1 reflects nothing.
     pub ior: f32,

@@ -35,7 +35,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The origin of all positions, in metres in the coordinates of the scene's file. An origin near the building
-    /// keeps `f32` positions precise: on a national grid they would be rounded to centimetres.
+    /// keeps `f32` positions precise: relative to the origin of a national grid, they would be rounded to centimetres.
     pub origin: DVec3,
     pub meshes: Vec<Mesh>,
     pub materials: Vec<Material>,

@@ -92,7 +92,7 @@ fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
     // Clamp to 2^24, beyond which `f32` does not distinguish neighbouring texels. The cast turns NaN into 0.
     let i = i.clamp(-16_777_216.0, 16_777_216.0) as i32;
     let n = size as i32;
-    // Fast path: without wrapping, avoid the slow integer division.
+    // Fast path: an index within the texture needs no wrapping and thus no slow integer division.
     if (0..n).contains(&i) {
         return i as usize;
     }

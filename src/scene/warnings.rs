@@ -4,16 +4,17 @@ use super::{PunctualLight, Scene};
 use crate::warning::{Code, Warning};
 use glam::{DVec3, Vec3};
 
-/// Height in metres above which the unit of a scene is probably not the metre. [convention]: few interiors are higher
-/// than this, whereas rooms of 2 to 4 m given in inches are 79 to 157 units high, and higher in smaller units.
+/// Height in metres above which the unit of a scene is probably not the metre. Few interiors are higher than this,
+/// whereas rooms of 2 to 4 m given in inches are 79 to 157 units high, and higher in smaller units. [convention]
 pub const MAX_HEIGHT: f64 = 50.0;
 
 /// Width in metres above which the unit of a scene is probably not the metre. This limit serves for scenes without
-/// height, such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000
-/// wide in millimetres.
+/// height, such as a plan or a ceiling alone. Few halls are longer than 1 km, whereas a room of 3 m is 3000 units wide
+/// in millimetres. [convention]
 pub const MAX_WIDTH: f64 = 2000.0;
 
-/// Extent in metres below which the unit of a scene is probably not the metre. [convention]: a table lamp is larger.
+/// Extent in metres below which the unit of a scene is probably not the metre: even a table lamp is larger.
+/// [convention]
 pub const MIN_EXTENT: f64 = 0.2;
 
 /// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
@@ -27,13 +28,13 @@ const MAX_LISTED: usize = 3;
 /// Units smaller than the metre in which modelling programs write scenes, with their length in metres. [convention]
 const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimetre", 0.01), ("the inch", 0.0254)];
 
-/// Units larger than the metre, for scenes that were scaled down once too often, with their length in metres.
-/// [convention]
+/// Units larger than the metre, with their length in metres: one of them is suggested for a scene that was scaled down
+/// once too often. [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
-/// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate. With coarser
-/// values, walls, lamps and panes that lie close together would merge. [convention]: half a millimetre, which `f32`
-/// reaches 4 km from the origin.
+/// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate: half a millimetre,
+/// which `f32` reaches 4 km from the origin. With coarser values, walls, lamps and panes that lie close together would
+/// merge. [convention]
 pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {

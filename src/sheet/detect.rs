@@ -6,18 +6,19 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
 
-/// Maximum length, in pixels, of the longer side of the image in which marks are searched for.
+/// Maximum length, in pixels, of the longer side of the image in which marks are searched for. A larger photo is
+/// reduced first.
 const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
-/// to about forty pixels across [origin not recorded].
+/// to about forty pixels across. [origin not recorded]
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
 /// Maximum number of candidates.
 const MAX_CANDIDATES: usize = 24;
 /// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
-/// mark. Two periods of a square wave have a share of 0.81 [origin not recorded].
+/// mark. Two periods of a square wave have a share of 0.81. [origin not recorded]
 const MIN_HARMONIC: f64 = 0.55;
-/// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness
-/// [origin not recorded].
+/// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness.
+/// [origin not recorded]
 const MIN_CONTRAST: f64 = 0.06;
 
 /// A position that looks like a mark.
@@ -97,7 +98,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Minimum response of a saddle; the response of an ideal mark is about 0.01 [origin not recorded].
+/// Minimum response of a saddle; the response of an ideal mark is about 0.01. [origin not recorded]
 const MIN_RESPONSE: f32 = 2e-4;
 
 /// Returns the strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if the

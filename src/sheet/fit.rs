@@ -11,8 +11,8 @@ use glam::DVec2;
 
 /// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
-/// Maximum distance between a mark and its predicted position, as a share of the sheet's diagonal in the photo: for
-/// predictions by the first map, and by the refined map [origin not recorded].
+/// Maximum distance between a mark and its predicted position, as a share of the larger distance between opposite
+/// corner marks (`extent`): for predictions by the first map, and by the refined map. [origin not recorded]
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
@@ -63,7 +63,7 @@ fn too_few(count: usize) -> Error {
     ))
 }
 
-/// Returns the length of the page's diagonal in the photo, in pixels.
+/// Returns the larger distance between opposite corner marks in the photo, in pixels.
 fn extent(page: &Page, map: &Homography) -> f64 {
     let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(page.marks[m]));
     a.distance(c).max(b.distance(d))

@@ -1,6 +1,6 @@
-//! Stylises the frames of a sequence (section 5, future work). The matches of the previous frame, advected by the
-//! motion, are kept where they still fit, so that paint sticks to objects. Patches that moved into different light or
-//! came into view are matched anew.
+//! Stylises the frames of a sequence (StyLit, section 5, future work). The matches of the previous frame, advected by
+//! the motion, are kept where they still fit, so that paint sticks to objects. Patches that moved into different light
+//! or came into view are matched anew.
 //!
 //! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
 //! keeps the matches of a random set of blocks, so that the frames flicker as if painted by hand (after the temporal
@@ -19,9 +19,9 @@ use crate::rng::Rng;
 /// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
-/// Advects the field of the previous frame into this frame: `motion` gives the position of a patch's centre in the
-/// previous frame, and the patch takes the match found there. `motion` has the resolution of the guides; this function
-/// halves `motion` if the problem has half that resolution (`halved` is not 0).
+/// Advects the field (the matches) of the previous frame into this frame: `motion` gives the position of a patch's
+/// centre in the previous frame, and the patch takes the match found there. `motion` has the resolution of the guides;
+/// this function halves `motion` if the problem has half that resolution (`halved` is not 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);

@@ -1,4 +1,4 @@
-//! The error budget (§3.3, Eq. 4): selects the matches that are good enough to be used.
+//! The error budget (StyLit, §3.3, Eq. 4): selects the matches that are good enough to be used.
 //!
 //! The sorted matching errors follow a hyperbola `f(x) = 1 / (a - b x)` when both axes are scaled to `[0, 1]`. (Errors
 //! are scaled by their 99th percentile: the largest of a million errors is an outlier that would move the knee.) The
@@ -6,8 +6,8 @@
 //! `f′ = b f²`, the knee satisfies `a - b x = √b`: `k = a/b - √(1/b)`. The paper prints a plus sign, which puts the
 //! knee beyond the pole at `a/b`.
 //!
-//! If no hyperbola fits, for instance because the curve is a step, as most exemplar patches have no suitable place
-//! (Fig. 7), the knee is the point farthest below the diagonal. A curve that never runs below the diagonal has no
+//! If no hyperbola fits, the knee is the point farthest below the diagonal. An example is a curve with a step, which
+//! arises if most exemplar patches have no suitable place (Fig. 7). A curve that never runs below the diagonal has no
 //! knee: all of its errors are feasible.
 
 /// Minimum number of errors to which a curve is fitted.
@@ -15,9 +15,9 @@ const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
 
-/// Minimum share of the variance that a hyperbola must explain [origin not recorded].
+/// Minimum share of the variance that a hyperbola must explain. [origin not recorded]
 const MIN_EXPLAINED: f64 = 0.8;
-/// A curve has a knee only if it runs farther than this below the diagonal [origin not recorded].
+/// A curve has a knee only if it runs farther than this below the diagonal. [origin not recorded]
 const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
@@ -83,12 +83,12 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
         .then(|| Hyperbola { a: (m[2] * r[0] - m[1] * r[1]) / det, b: (m[0] * r[1] - m[1] * r[0]) / det })
 }
 
-/// The error budget of matches.
+/// The error budget of a set of matches: the share of feasible matches, and the sum of their errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Share of the matches left of the knee; 1 if there is no knee, so that all matches are feasible.
     pub knee: f64,
-    /// Sum of the errors left of the knee: T in Eq. 4.
+    /// Sum of the errors left of the knee, T in Eq. 4 of StyLit; infinite if there is no knee.
     pub total: f64,
 }
 

@@ -7,7 +7,7 @@ use crate::job::Job;
 use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
 
 /// Number of patches of the k-d tree that are compared with each patch. Three times this number takes twice the time
-/// and lowers the energy (Eq. 3) by one per cent [bench stylit].
+/// and lowers the energy (StyLit, Eq. 3) by one per cent. [bench stylit]
 const TRIES: usize = 8;
 
 /// Data that the searches of one iteration share.

@@ -7,7 +7,7 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
 /// Coherence parameter κ (Hertzmann et al., §3.2). On the finest level, a coherent match is taken if its distance is
-/// less than (1 + κ) times the distance of the nearest match [origin not recorded].
+/// less than (1 + κ) times the distance of the nearest match. [origin not recorded]
 const COHERENCE: f64 = 5.0;
 
 /// Paints the centre of every patch in scan order, from the patch's nearest match or from a coherent match, which

@@ -39,7 +39,8 @@ pub const MAX_CHANNELS: usize = 60;
 pub(super) struct Channels {
     pub source: Image,
     pub target: Image,
-    /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1 (or 0).
+    /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1, or to 0 if
+    /// every guide has weight 0.
     pub weights: Vec<f64>,
     /// Per pixel: whether one of its samples is NaN or infinite.
     pub broken_source: Vec<bool>,

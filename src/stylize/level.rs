@@ -37,7 +37,7 @@ impl Problem {
         let first = input.guides.first().ok_or_else(no_guides)?;
         check_side(&first.side("target"), first.target)?;
         artwork.check_same_size("artwork", first.source, &first.side("source"))?;
-        // A preview works at half the resolution if patches fit into it.
+        // A preview works at half the resolution if the halved images are at least as large as a patch.
         let sides = [artwork.width, artwork.height, first.target.width, first.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
         let half = params.preview && shortest >= 2 * params.patch;
@@ -138,8 +138,8 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
 }
 
 /// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
-/// pixels under it are usable. If no coarse pixel were usable then, a single usable fine pixel suffices, so that
-/// regions thinner than two pixels do not vanish.
+/// pixels under it are usable. If this leaves no usable coarse pixel, one usable fine pixel suffices, so that regions
+/// thinner than two pixels do not vanish.
 fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;
@@ -205,7 +205,7 @@ impl<'a> Level<'a> {
         let channels = style.channels;
         let mut weights = vec![colour / channels as f64; channels];
         weights.extend(guides.weights.iter().map(|w| w * f64::from(params.guide_weight)));
-        // With neither colours nor guides, all matches are equally good.
+        // If all weights are 0, all matches are equally good: give one channel the smallest positive weight.
         if weights.iter().all(|&w| w == 0.0) {
             weights[channels] = f64::MIN_POSITIVE;
         }
@@ -258,8 +258,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns the integer distance of two patches whose weighted squared difference (Eq. 1, channels in `[0, 1]`) is
-    /// 1 in every pixel.
+    /// Returns the integer distance of two patches whose weighted squared difference (StyLit, Eq. 1, channels in
+    /// `[0, 1]`) is 1 in every pixel.
     pub fn unit(&self) -> f64 {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }

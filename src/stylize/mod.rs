@@ -25,7 +25,7 @@
 //! counts as paint; exclude it by a `source_mask`.
 //!
 //! Memory: with four guides of three channels, about 125 MiB per megapixel of the target, and the same for the
-//! exemplar, in addition to the input [bench stylit:sizes].
+//! exemplar, in addition to the input. [bench stylit:sizes]
 //!
 //! Not modelled: rotation of strokes along the target's shapes; sequences as a whole (each frame knows the previous
 //! one only).

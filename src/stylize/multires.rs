@@ -1,5 +1,5 @@
-//! The coarse-to-fine loop (§3.4): alternate matching and voting on each level, then continue on the next finer level
-//! from the upsampled field.
+//! The coarse-to-fine loop (StyLit, §3.4): alternate matching and voting on each level, then continue on the next
+//! finer level from the upsampled field.
 
 use super::animate::{keep, moved};
 use super::finder::Nearest;
@@ -16,7 +16,8 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, unpack};
 use crate::rng::hash;
 
-/// The initial field is found by exhaustive comparison if there are at most this many pairs of patches.
+/// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
+/// the search that the parameters select.
 const EXHAUSTIVE: usize = 1 << 24;
 
 /// Values that all levels of a run share.
@@ -59,7 +60,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         coarser.push(next);
     }
 
-    // A level costs four times as much as the next coarser one.
+    // A level costs four times as much as the next coarser level.
     let cost = |l: usize| 0.25f64.powi(l as i32);
     let total: f64 = (0..levels).map(cost).sum();
     let mut done = 0.0;

@@ -8,7 +8,7 @@ use crate::patch::{Field, MAX_SIDE, Vote};
 /// The matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// The paper's method: reversed retrieval under an error budget.
+    /// The paper's method: each exemplar patch searches for its target (reversed retrieval), under an error budget.
     Budget,
     /// Reversed retrieval without a budget: all exemplar patches are used equally often (Jamriška et al. 2015).
     Uniform,
@@ -44,8 +44,8 @@ pub struct Input<'a> {
     /// Mask of the target, one channel: only pixels above 0.5 are synthesised; the others are taken from `known`, or
     /// are black. If absent, all pixels are synthesised.
     pub target_mask: Option<&'a Image>,
-    /// The picture of the target outside `target_mask`, linear, with the channels of the artwork. Patches are compared
-    /// with its pixels, which never change.
+    /// The given picture of the target outside `target_mask`, in linear colour, with as many channels as the artwork.
+    /// Its pixels never change, but patches are compared with them.
     pub known: Option<&'a Image>,
     /// The field of an earlier result for a target of the same size, as initial matches.
     pub previous: Option<&'a Field>,
@@ -105,12 +105,14 @@ pub struct Params {
     /// Share of the previous frame's matches that are kept where they fit, in `[0, 1]`; no effect without motion. Use
     /// a different `seed` for each frame; otherwise the same blocks change in every frame.
     pub coherence: f32,
-    /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target,
-    /// in `[0, 1]`: for targets under different light than the exemplar (Fig. 16).
+    /// Degree to which the brightness and contrast of the exemplar are adapted to those of the target, in `[0, 1]`, in
+    /// all guides whose range is `Range::Light`. Use it for targets under different light than the exemplar (StyLit,
+    /// Fig. 16).
     pub match_appearance: f32,
     /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty for a match to an exemplar patch of average usage.
-    /// The unit is that of Eq. 1: the sum over a patch of squared differences of channels in `[0, 1]`. With 0 the
-    /// result equals that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (Fig. 10n).
+    /// The unit is that of Eq. 1 of StyLit: the sum over a patch of squared differences of channels in `[0, 1]`. With
+    /// 0 the result equals that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (StyLit, Fig.
+    /// 10n).
     pub occurrence: f32,
     /// Whether to work at half the resolution, with guides compressed to their principal components: for interactive
     /// painting.
@@ -205,7 +207,7 @@ impl Params {
     }
 }
 
-/// Checks that an image is not larger than supported.
+/// Checks that an image is neither empty nor larger than supported.
 pub(super) fn check_side(name: &str, image: &Image) -> Result<()> {
     check_range(&format!("{name}.width"), image.width, 1, MAX_SIDE)?;
     check_range(&format!("{name}.height"), image.height, 1, MAX_SIDE)?;

@@ -1,5 +1,5 @@
-//! Compression of guides to their principal components (§3.4, preview): rendered buffers are strongly correlated, so a
-//! few components carry nearly all information.
+//! Compression of guides to their principal components for the preview (StyLit, §3.4): rendered buffers are strongly
+//! correlated, so a few components carry nearly all information.
 
 use super::guides::Channels;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Share of the variance to keep [origin not recorded].
+/// Share of the variance to keep. [origin not recorded]
 const KEPT_VARIANCE: f64 = 0.995;
 /// Maximum number of components: together with three colour channels, they fill the eight lanes of a SIMD register.
 const MAX_COMPONENTS: usize = 5;
@@ -153,7 +153,7 @@ mod tests {
         let m: Vec<f64> =
             (0..n * n).map(|i| ((i / n * i % n + i % n * (i / n)) % 7) as f64 + f64::from(i % 7 == 0)).collect();
         let m: Vec<f64> = (0..n * n).map(|i| m[i] + m[i % n * n + i / n]).collect();
-        // Shift the matrix to be positive definite.
+        // Add 100 to the diagonal, so that the matrix is positive definite.
         let m: Vec<f64> = m.iter().enumerate().map(|(i, v)| v + if i % (n + 1) == 0 { 100.0 } else { 0.0 }).collect();
         let (values, vectors) = symmetric_eigen(m.clone(), n);
         for i in 0..n {

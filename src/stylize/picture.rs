@@ -41,7 +41,7 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The data from which an encoded picture was produced.
+/// The matches and the images from which a picture encoded for display was painted.
 pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,
@@ -50,7 +50,7 @@ pub(super) struct Provenance<'a> {
     pub known: Option<&'a Image>,
 }
 
-/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. At full resolution, known
+/// Decodes the pixels for which `wanted` holds to linear colour and writes them to `image`. At full resolution, known
 /// pixels and pixels on which all patches agree are copied from the linear originals, so that they equal the originals
 /// to the bit.
 pub(super) fn decode_into(

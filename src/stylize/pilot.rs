@@ -1,5 +1,5 @@
-//! Predicts, for given settings, the run time and the final energy (the objective function, Eq. 3) from pilot runs at
-//! reduced resolution.
+//! Predicts, for given settings, the run time and the final energy (the objective function, StyLit, Eq. 3) from pilot
+//! runs at reduced resolution.
 
 use super::level::Problem;
 use super::multires;
@@ -16,7 +16,7 @@ const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
-/// Predicted run time of a stylisation in seconds, and predicted energy (Eq. 3) of its result.
+/// Predicted run time of a stylisation in seconds, and predicted energy (StyLit, Eq. 3) of its result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
     pub seconds: f64,
@@ -25,7 +25,7 @@ pub struct Prediction {
 }
 
 /// The time per pixel grows with a power of the number of pixels, because larger fields converge more slowly. This is
-/// the maximum exponent [origin not recorded].
+/// the maximum exponent. [origin not recorded]
 const MAX_GROWTH: f64 = 0.12;
 
 /// Pilot runs of several settings on one input.
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn energies_go_on_as_they_have_begun() {
-        // The cases are constant steps, decaying steps, and no change.
+        // The energy falls by a constant factor, by factors that approach 1, or not at all.
         assert!((extrapolate([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
         let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
         assert!((extrapolate([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");

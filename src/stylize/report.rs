@@ -13,9 +13,10 @@ use crate::patch::{Field, NONE, unpack};
 pub struct LevelReport {
     pub width: usize,
     pub height: usize,
-    /// Energy (Eq. 3) after each iteration, divided by the number of target patches and by the pixels of a patch: the
-    /// mean weighted squared difference of channels in `[0, 1]`. The artwork's channels have a total weight of 1. The
-    /// guides' channels have a total weight of μ, times `Params::coarse_guides` on all levels except the finest.
+    /// Energy (StyLit, Eq. 3) after each iteration, divided by the number of target patches and by the pixels of a
+    /// patch: the mean weighted squared difference of channels in `[0, 1]`. The artwork's channels have a total weight
+    /// of 1. The guides' channels have a total weight of μ, times `Params::coarse_guides` on all levels except the
+    /// finest.
     pub energy: Vec<f64>,
     /// Retrieval passes of each iteration.
     pub passes: Vec<Vec<Pass>>,
@@ -76,8 +77,8 @@ impl Usage {
     }
 }
 
-/// Returns the mean distance of matched patches, per pixel of a patch, in the units of Eq. 1 with channels in
-/// `[0, 1]`.
+/// Returns the mean distance of matched patches, per pixel of a patch, in the units of Eq. 1 of StyLit with channels
+/// in `[0, 1]`.
 pub(super) fn energy(field: &Field, level: &Level) -> f64 {
     field.energy() / level.wanted.len().max(1) as f64 / level.unit()
 }

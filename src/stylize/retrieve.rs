@@ -1,4 +1,4 @@
-//! Reversed retrieval under an error budget (§3.3).
+//! Reversed retrieval under an error budget (StyLit, §3.3).
 //!
 //! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
 //! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
@@ -11,8 +11,8 @@
 //! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
 //! closer than the patch's own, or if avoiding the seam outweighs the greater distance (`Params::settle`,
 //! `Params::seam`; not in the paper). This step searches for no new matches, so the result uses as much of the
-//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (Eq. 3) to a
-//! third and keeps more of the texture.
+//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (StyLit,
+//! Eq. 3) to a third and keeps more of the texture.
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.
@@ -38,12 +38,13 @@ pub struct Pass {
     pub coverage: f64,
 }
 
-/// The passes end after the first pass that matches less than this share of the wanted target patches
-/// [origin not recorded].
+/// The passes end after the first pass that matches less than this share of the wanted target patches.
+/// [origin not recorded]
 const MIN_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch. `field` holds the matches of the previous iteration, which start the search, and
-/// receives the result. Its distances are valid except where `changed` is set. Matches with `kept` set stay unchanged.
+/// receives the result. The distances in `field` are valid except where `changed` is set. Matches with `kept` set stay
+/// unchanged.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,

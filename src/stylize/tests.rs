@@ -88,8 +88,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// The wash-out of §2: where guides are equal, smooth patches are close to all others, so nearest-patch matching
-/// overuses them.
+/// The wash-out that §2 of StyLit describes: where guides are equal, smooth patches are close to all others, so
+/// nearest-patch matching overuses them.
 #[test]
 fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patches() {
     let a = Image::from_fn(90, 60, |_, y| [0.2 + 0.6 * y as f32 / 60.0]).unwrap();
@@ -115,8 +115,8 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     assert!(kept > 1.1 * washed, "{kept} {washed}");
 }
 
-/// Fig. 7: the target's highlight is four times as large as the exemplar's. Uniform usage must fill a part of it with
-/// other paint; the budget reuses the highlight.
+/// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. Uniform usage must fill a part
+/// of it with other paint; the budget reuses the highlight.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
@@ -191,7 +191,7 @@ fn energy_per_iteration_falls_for_nearest_patches() {
     let params =
         Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: Vote::Plain, ..Params::default() };
     let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
-    // Matching lowers Eq. 3 for a fixed picture, and averaging lowers it for a fixed field.
+    // Matching lowers the energy (StyLit, Eq. 3) for a fixed picture, and averaging lowers it for a fixed field.
     let energy = &output.report.levels[0].energy;
     assert!(energy.windows(2).all(|w| w[1] <= w[0] * (1.0 + 1e-3)), "{energy:?}");
 }

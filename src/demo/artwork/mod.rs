@@ -28,7 +28,7 @@ pub enum Style {
     Paint,
 }
 
-/// Draws the subject of the guides in a style. Returns linear RGB in the size of the guides.
+/// Draws the scene of the guides in a style. Returns linear RGB at the size of the guides.
 pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
     let subject = Subject::new(guides)?;
     let canvas = match style {
@@ -66,8 +66,8 @@ mod tests {
                 y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| art.rgb(x, y)).sum::<Vec3>() / count
             };
             let tone = |c: Vec3| luminance(c);
-            // Compare the lit table with the shadow, the lit with the dark side of the ball, and the table beside the
-            // ball, which receives red light, with the lit table.
+            // Make three comparisons: of the lit table with the shadow; of the lit with the dark side of the ball; and
+            // of the table beside the ball, which receives red light, with the lit table.
             let (lit, shadow) = (mean(190..230, 130..170), mean(60..100, 128..142));
             assert!(tone(lit) > 1.5 * tone(shadow), "{style:?}: {lit} {shadow}");
             let (day, night) = (mean(128..140, 42..56), mean(90..115, 100..115));

@@ -16,7 +16,7 @@ const SANGUINE: Vec3 = Vec3::new(0.66, 0.21, 0.12);
 struct Set {
     /// Drawing weight at a place of the picture: lines appear above 0 and have full strength at 1.
     weight: fn(&Appearance) -> f32,
-    /// Angle in radians between the lines and the direction of the form.
+    /// Angle in radians between these lines and strokes that follow the form (`Appearance::along`).
     turn: f32,
     /// Distance between lines, and their maximum length, in units of a pixel of a picture 800 pixels wide.
     spacing: f32,
@@ -53,7 +53,7 @@ const SETS: [Set; 7] = [
         length: 36.0,
         ink: INK,
     },
-    // The object: lines around its form, then across it, then both.
+    // The object: lines around its form, then, as the tone darkens, a second and a third set of lines that cross them.
     Set { weight: |s| if s.is_object { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
     Set { weight: |s| if s.is_object { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
     Set {

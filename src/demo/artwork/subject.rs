@@ -59,7 +59,8 @@ impl Subject {
             for x in 0..full.width {
                 let is_object = guides.materials.pixel(x, y) != background;
                 let normal = Vec3::from_slice(guides.normals.pixel(x, y));
-                // Strokes run around the form, like the rings on a turned object with a tilted axis.
+                // Strokes run around the form, like the grooves on an object that was turned on a lathe with a tilted
+                // axis.
                 let ring = normal.cross(AXIS);
                 let along = if is_object { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
                 let light = indirect.rgb(x, y) * exposure;

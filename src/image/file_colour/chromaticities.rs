@@ -19,8 +19,8 @@ const BRADFORD: DMat3 = DMat3::from_cols(
 /// CIE XYZ of the white in the profile connection space of ICC (ICC.1:2022, 7.2.16).
 const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
-/// A matrix counts as the identity if every element deviates from the identity by less than this value. [rounding]:
-/// files store chromaticities with four digits, and ICC profiles their matrix columns with 16 bits.
+/// A matrix counts as the identity if every element deviates from the identity by less than this value. Files store
+/// chromaticities with four digits, and ICC profiles store their matrix columns with 16 bits. [rounding]
 const SAME: f64 = 1e-3;
 
 /// A matrix with a larger element is refused: its primaries lie almost on one line. [convention]
@@ -91,7 +91,7 @@ pub fn of_colorants(colorants: DMat3) -> Option<DMat3> {
     Some(if is_white { DMat3::from_diagonal(white.recip()) * matrix } else { matrix })
 }
 
-/// Whether a matrix changes colours by less than the precision of files.
+/// Whether a matrix is the identity within the precision with which files store colour spaces.
 pub fn is_identity(matrix: DMat3) -> bool {
     (matrix - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < SAME)
 }

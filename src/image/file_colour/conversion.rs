@@ -23,7 +23,7 @@ enum Kind {
         curves: Option<[Curve; 3]>,
         matrix: Mat3,
     },
-    /// The tables of a profile convert to sRGB, and the curve then to linear values.
+    /// The tables of a profile, which convert to sRGB, and the curve that converts sRGB to linear values.
     Tables(Arc<TransformF32Executor>, Curve),
 }
 

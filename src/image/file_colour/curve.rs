@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// Number of nodes of a sampled curve: one for each 16-bit code value. The 8-bit codes fall on every 257th node.
 const NODES: usize = 65_536;
 
-/// A curve counts as sRGB if it differs from the sRGB curve by less than this, in encoded values. [rounding]: profiles
-/// store the curve in tables of 1024 values of 16 bits, with errors of 1e-4 near black.
+/// A curve counts as sRGB if it differs from the sRGB curve by less than this, in encoded values. Profiles store the
+/// curve in tables of 1024 values of 16 bits, with errors of 1e-4 near black. [rounding]
 const SAME: f32 = 4e-4;
 
 /// A transfer curve sampled on `[0, 1]`. It continues linearly above 1, and negative codes give negated values.

@@ -18,8 +18,8 @@ use std::borrow::Cow;
 
 pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
-/// Maximum total length of a profile's tags, relative to the length of the profile; tags may share data. [convention]:
-/// three curves, three rendering intents and both directions may share their data.
+/// Maximum total length of a profile's tags, relative to the length of the profile. Tags may share data: for example,
+/// three curves, three rendering intents and both directions may use the same data. [convention]
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;
@@ -158,8 +158,8 @@ fn function(trc: &ToneReprCurve) -> Option<impl Fn(f64) -> f64 + use<>> {
     Some(move |code| f64::from(evaluator.evaluate_value(code as f32)))
 }
 
-/// Returns the rendering intent whose tables are used: relative colorimetric if it has tables, else the first intent
-/// that has.
+/// Returns the rendering intent whose tables are used: relative colorimetric if it has tables, else the first other
+/// intent that has tables.
 fn intent(profile: &ColorProfile) -> Option<RenderingIntent> {
     let has = |tables: &Option<_>, intent| tables.is_some().then_some(intent);
     has(&profile.lut_a_to_b_colorimetric, RenderingIntent::RelativeColorimetric)

@@ -3,7 +3,7 @@
 //! coordinate of CIELAB or CIE XYZ.
 //!
 //! The crate `moxcms` would resample these tables on its own grid, with errors of up to 12 codes of 255. It is
-//! therefore used only to read the tables, and this file interpolates them. As in LCMS, the interpolation is
+//! therefore used only to read the tables, and this module interpolates them. As in LCMS, the interpolation is
 //! tetrahedral in magenta, yellow and black (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
 //!
 //! Not modelled: profiles whose tables are `lutAToBType`. They count as unusable.
@@ -146,7 +146,8 @@ fn curve(samples: &[f32], at: f32) -> f32 {
 fn xyz(lab: Vec3) -> Vec3 {
     let y = (lab.x + 16.0) / 116.0;
     let root = Vec3::new(y + lab.y / 500.0, y, y - lab.z / 200.0);
-    // Below the cube, the curve of CIELAB is a straight line of slope 108 / 841. [convention: CIE 15:2018, 8.2.1]
+    // For small values, the curve of CIELAB is a straight line of slope 108 / 841 instead of a cube. [convention: CIE
+    // 15:2018, 8.2.1]
     let linear = (root - 4.0 / 29.0) * (108.0 / 841.0);
     D50 * Vec3::select(root.cmpgt(Vec3::splat(6.0 / 29.0)), root * root * root, linear)
 }

@@ -101,7 +101,8 @@ fn bmp(bytes: &[u8]) -> Space {
         Some(kind) if kind == *b"sRGB" => Space::Native,
         // The profile is in another file, or it is cut off.
         Some(kind) if kind == *b"LINK" || kind == *b"MBED" => Space::Unusable,
-        // The header names the system's space, or endpoints, which most writers leave at 0.
+        // The header names the operating system's default colour space, or it gives the primaries, which most writers
+        // leave at 0.
         _ => Space::Unstated,
     }
 }

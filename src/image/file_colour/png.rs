@@ -15,7 +15,7 @@ const UNIT: f64 = 100_000.0;
 /// Plausible exponents in `gAMA`; other exponents are ignored. [convention]
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
-/// Returns the content of the first chunk with this name before the pixels.
+/// Returns the content of the first chunk named `wanted` before the pixels.
 fn find<'a>(bytes: &'a [u8], wanted: &[u8; 4]) -> Option<&'a [u8]> {
     let mut chunks = png_chunks(bytes).take_while(|c| c.0 != b"IDAT");
     chunks.find(|c| c.0 == wanted).map(|(.., content)| content)

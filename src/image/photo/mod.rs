@@ -10,16 +10,16 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. [convention]: the focal length marked on a lens is
-/// accurate to about 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or
-/// to the width (4 % apart at 4:3).
+/// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about
+/// 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or to the width (4 %
+/// apart at 4:3). [convention]
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]
 const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 
-/// Largest difference between the logarithms of two focal lengths that count as equal. [convention]: twice
-/// [`FOCAL_ERROR`].
+/// Largest difference between the logarithms of two focal lengths that count as equal: twice [`FOCAL_ERROR`].
+/// [convention]
 const AGREEMENT: f64 = 0.1;
 
 /// A photo counts as not cropped if the logarithms of its aspect ratio and of the recorded aspect ratio differ by less
@@ -68,8 +68,8 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be given before or after
-    /// the photo is turned upright.
+    /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be those of the photo
+    /// before or after it is turned upright.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,

@@ -129,10 +129,10 @@ enum Kind {
 impl Kind {
     fn new(code: u16) -> Option<Self> {
         Some(match code {
-            // Bytes, also as text or of undefined meaning.
+            // Bytes, which may be text or have an undefined meaning.
             1 | 2 | 7 => Self::U8,
             3 => Self::U16,
-            // 32-bit integers, also as offsets of directories.
+            // 32-bit integers, some of which are offsets of directories.
             4 | 13 => Self::U32,
             5 => Self::URational,
             6 => Self::I8,

@@ -29,8 +29,7 @@ mod tag {
     pub const DNG_VERSION: u16 = 50_706;
 }
 
-/// Maximum number of stored samples per pixel, including samples that are not colours. [convention]: no photo has
-/// more.
+/// Maximum number of stored samples per pixel, including samples that are not colours; no photo has more. [convention]
 const MAX_SAMPLES: u64 = 16;
 
 /// Tiles up to this width in pixels are accepted in any picture. Wider tiles must not be wider than the picture.

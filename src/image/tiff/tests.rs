@@ -62,7 +62,7 @@ impl Picture {
         }
     }
 
-    /// Returns the value that is read back after the rounding of the file's format.
+    /// Returns the value that is read back after rounding to the file's number format.
     fn kept(&self, value: f64) -> f32 {
         let steps = match self.depth {
             (_, 3) => return if self.depth.0 == 16 { f16::from_f64(value).to_f32() } else { value as f32 },

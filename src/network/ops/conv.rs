@@ -57,8 +57,8 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
 
-        // Accumulate four, two or one output channels together. The number divides the number of channels of a group,
-        // so that these channels read the same inputs.
+        // Accumulate four, two or one output channels together: the largest of these numbers that divides the number
+        // of output channels per group, so that the channels accumulated together read the same inputs.
         let of_group = out_channels / groups;
         let together = [GROUP, 2, 1].into_iter().find(|n| of_group.is_multiple_of(*n)).unwrap_or(1);
         let weights = weights.as_floats()?;

@@ -171,7 +171,7 @@ pub fn slice(
     })
 }
 
-/// Selects elements along an axis by an input of indices.
+/// Selects elements along an axis. The second input holds their indices.
 pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let axis = x.axis(axis)?;
@@ -197,7 +197,7 @@ pub fn shape_from(tensor: &Tensor) -> Result<Vec<usize>> {
     sizes.iter().map(of).collect()
 }
 
-/// Adds leading axes of size 1 until the tensor has `rank` axes.
+/// Inserts axes of size 1 before the first axis until the tensor has `rank` axes.
 fn of_rank(x: &Tensor, rank: usize) -> Tensor {
     let mut shape = vec![1; rank.saturating_sub(x.shape.len())];
     shape.extend(&x.shape);

@@ -21,7 +21,7 @@ use call::Settings;
 use elementwise::{Binary, Unary};
 pub use resize::cubic_planes as resize_cubic;
 
-/// An operator with its attributes. An attribute that newer files give as an input is an `Option`.
+/// An operator with its attributes. An attribute is an `Option` if newer files give it as an input instead.
 pub enum Op {
     Constant(Tensor),
     Unary(Unary),

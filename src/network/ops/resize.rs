@@ -33,7 +33,7 @@ pub enum Rounding {
     Ceil,
 }
 
-/// How an output pixel's coordinate maps to an input coordinate, by the names of ONNX.
+/// How an output pixel's coordinate maps to an input coordinate. The variants are named as in ONNX.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     HalfPixel,

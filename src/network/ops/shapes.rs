@@ -29,7 +29,7 @@ pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     x.reshaped(shape)
 }
 
-/// Flattens a tensor to two axes: the axes before `axis`, and the others.
+/// Flattens a tensor to two axes: the axes before `axis`, and the remaining axes.
 pub fn flatten(axis: i64, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;
@@ -174,7 +174,7 @@ pub fn filled(value: &Tensor, call: &Call) -> Result<Tensor> {
     })
 }
 
-/// Returns `start, start + delta, ...` up to, but without, the limit.
+/// Returns `start, start + delta, ...` up to, but excluding, the limit.
 pub fn range(call: &Call) -> Result<Tensor> {
     let [start, limit, delta] = [call.input(0)?, call.input(1)?, call.input(2)?];
     let wrong = || Error::format("a range needs a start, a limit and a step that is not 0");

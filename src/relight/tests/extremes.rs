@@ -1,9 +1,10 @@
-//! Tests that reproduce results of the paper, and tests with extreme inputs.
+//! Tests that reproduce results of the paper ("Single-Exemplar Lighting Style Transfer"), and tests with extreme
+//! inputs.
 
 use super::*;
 
 /// "The red curtain and the floor, which has a wooden material, naturally impact the colour of the light": the solved
-/// light is shifted towards blue (§8, Fig. 16).
+/// light is shifted towards blue (§8 and Fig. 16 of the paper).
 #[test]
 fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
     let solved = |floor: Vec3, curtain: Vec3| {

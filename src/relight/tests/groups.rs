@@ -283,7 +283,7 @@ fn powers_in_steps() {
     let stepped = solve(&levels);
     assert!(stepped.scale.iter().all(|x| levels.contains(&x.x) && *x == DVec3::splat(x.x)), "{stepped:?}");
     assert!(stepped.unreachable.is_none(), "{stepped:?}");
-    // The intervals contain the continuous powers and show the distance between levels.
+    // The intervals include the distance between the chosen level and the continuous power.
     for i in 0..16 {
         let step = (stepped.scale[i] - free.scale[i]).abs();
         assert_eq!(stepped.half_width[i], free.half_width[i] + step);
@@ -361,8 +361,8 @@ fn free_colours_meet_a_coloured_goal() {
     assert!(kept.unreachable.unwrap().contains("colour"));
 }
 
-/// With many lamps, the confidence intervals of single lamps contain the true responses, which are taken from many
-/// paths.
+/// With many lamps, at least 54 of the 64 confidence intervals of single lamps contain the true response, which is
+/// taken from many paths.
 #[test]
 fn intervals_of_single_lamps_cover() {
     let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();

@@ -157,7 +157,7 @@ fn a_limit_binds_only_where_it_is_broken() {
         let s = least(truth, Constraint::AtMost).scale;
         (s.y + s.z) / 2.0
     });
-    // If all channels have limits, the solution is the least light that satisfies them.
+    // If all channels have lower limits, the solution is the least light that satisfies them.
     let all =
         solve(&scene, truth, &Params { constraint: [Constraint::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
     assert_eq!(all.scale, least(truth, Constraint::Exactly).scale);

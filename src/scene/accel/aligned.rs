@@ -16,7 +16,8 @@ pub(super) struct Aligned {
 }
 
 impl Aligned {
-    /// Prepares a ray. `None` if it can hit nothing: its direction or length is zero, or a component is not finite.
+    /// Prepares a ray. `None` if the ray can hit nothing, because its direction is zero, its `t_max` is not positive,
+    /// or a component is not finite.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Option<Self> {
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(0.0));

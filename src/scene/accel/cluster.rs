@@ -24,7 +24,7 @@ use obvhs::bvh2::node::Bvh2Node;
 const FEW_CLUSTERS: usize = 32;
 /// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
-/// Maximum number of leaves in a range that one thread processes without splitting off parallel work.
+/// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
 /// Mask of the low bits of a candidate's area, which are replaced by the XOR of the indices of the two clusters. From
@@ -86,8 +86,8 @@ impl NewPairs<'_> {
     }
 }
 
-/// A range of leaves along the space-filling curve, with its clusters. It owns as many unfilled pairs as leaves: one
-/// more than it needs to join them all.
+/// A range of leaves along the space-filling curve, with its clusters. It owns as many unfilled pairs as it has
+/// leaves: one more than it needs to join them all.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
@@ -176,8 +176,8 @@ struct Boxes([[f32; BOX_CAPACITY]; 6]);
 /// 2^24 times as far from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
-/// For each cluster `i` (block of eight lanes, lane) and neighbour `i - SEARCH_RADIUS + k`: the bits in which their
-/// indices differ. Indexed as `[i / LANES][k][i % LANES]`.
+/// For each cluster `i` and its neighbour `i - SEARCH_RADIUS + k`: the bits in which the two indices differ. They are
+/// stored at `[i / LANES][k][i % LANES]`.
 static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
     let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
@@ -200,7 +200,8 @@ impl Boxes {
         boxes
     }
 
-    /// Loads the boxes of `clusters`. The boxes left over from the `before` clusters held so far become sentinels.
+    /// Loads the boxes of `clusters`. If more clusters were loaded before (`before` of them), the surplus boxes become
+    /// sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());
@@ -215,9 +216,9 @@ impl Boxes {
         }
     }
 
-    /// Chooses for each cluster the neighbour with which it forms the smallest box. Returns that area as a float whose
-    /// low bits ([`PARTNER_BITS`]) hold the XOR of the two indices. Areas are compared through their bits, because
-    /// non-negative floats sort as their bits do.
+    /// Chooses for each cluster the neighbour with which it forms the smallest box. Returns the area of that box as a
+    /// float whose low bits ([`PARTNER_BITS`]) hold the XOR of the two indices. Areas are compared through their bits,
+    /// because non-negative floats sort as their bits do.
     fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW_CLUSTERS] {
         match level {
             // SAFETY: the processor supports this level and all levels below it.

@@ -2,7 +2,7 @@
 //! Laine 2017, section 3.1).
 //!
 //! First, `costs` computes for each binary subtree the minimum expected cost of representing it by one to seven wide
-//! subtrees. Then this file follows the optimal choices from the root down and writes the wide nodes.
+//! subtrees. Then this module follows the optimal choices from the root down and writes the wide nodes.
 //!
 //! For parallel work, the tree is cut near its root into parts. The cut depends on the tree alone, not on the number
 //! of threads.
@@ -19,8 +19,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Number of parts of a large tree; number of leaves per part of a smaller tree; minimum number of parts for which
-/// cutting is worthwhile.
+/// A large tree is cut into `PARTS` parts, a smaller tree into one part per `PART_LEAVES` leaves. A tree that would
+/// have fewer than `MIN_PARTS` parts is not cut.
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
 const MIN_PARTS: usize = 8;
@@ -43,7 +43,8 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
 
-    // Assign final line numbers: the top first, then one block per subtree, whose root is stored in its parent node.
+    // Determine the final positions of all nodes in the list of cache lines: the top first, then one block per
+    // subtree. Store the position of each subtree's root in its parent node.
     let mut len = top.lines.len();
     let mut bases = Vec::with_capacity(tasks.len());
     for (task, wide) in tasks.iter().zip(&done) {
@@ -66,8 +67,8 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 }
 
 impl Source<'_> {
-    /// Returns the roots of the parts, by splitting the node of the largest box again and again. Empty for a small
-    /// tree.
+    /// Divides the tree into parts, for parallel work, by splitting the node of the largest box again and again.
+    /// Returns the roots of the parts; empty for a small tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
         if parts < MIN_PARTS {
@@ -101,14 +102,14 @@ type Place = (usize, usize);
 struct Wide {
     lines: Draft,
     root: Child,
-    /// Line number of each node.
+    /// For each node, the index of its first cache line in `lines`.
     nodes: Vec<usize>,
     stack_need: usize,
     left: Vec<Left>,
 }
 
 impl Wide {
-    /// Adds `lines` to the line numbers of all children.
+    /// Moves all nodes and packets by `lines` cache lines: adds this number to all references to children.
     fn move_by(&mut self, lines: usize) {
         for &node in &self.nodes {
             let children = &mut self.lines.get_mut::<Node>(node).children;
@@ -121,7 +122,8 @@ impl Wide {
 struct Open {
     place: Place,
     area: f32,
-    /// Line of the parent node, and the lane of this child in it; `None` for the root.
+    /// Index of the parent node in [`Wide::lines`], and the lane of that node which holds this child; `None` for the
+    /// root.
     parent: Option<(usize, usize)>,
     /// Number of entries on the traversal stack when a ray visits this node.
     waiting: usize,
@@ -148,8 +150,8 @@ impl Choice<'_> {
         &self.binaries[binary].branches[at]
     }
 
-    /// Writes the wide subtree below a branch. With `leave`, children that lie in other parts are left to other tasks
-    /// and listed in [`Wide::left`].
+    /// Writes the wide subtree below a branch. If `leave` is true, children that lie in other parts are left to other
+    /// tasks and listed in [`Wide::left`].
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
         let mut wide = Wide { lines: Draft::with_capacity(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
@@ -210,8 +212,8 @@ impl Choice<'_> {
         Ok(())
     }
 
-    /// Expected benefit of a child for an any-hit query: surface area found per unit of traversal cost. Children are
-    /// sorted by this benefit, because such a query visits the last lane first.
+    /// Expected benefit of a child for an any-hit query: surface area of its leaves per unit of traversal cost.
+    /// Children are sorted by this benefit in ascending order, because such a query visits the last lane first.
     fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]

@@ -138,7 +138,8 @@ impl Binary {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// If a single wide subtree represents the branch, whether a packet of triangles is at most as costly as a node.
+    /// Whether to store the branch as a packet of triangles if a single wide subtree represents it. A packet must then
+    /// be possible, and at most as costly as a node.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32

@@ -29,7 +29,8 @@ pub(super) struct Leaves {
     pub list: Vec<Bvh2Node>,
     /// Morton codes of the box centres, each with its leaf's index in `list`, sorted.
     pub order: Vec<(u64, u32)>,
-    /// Factor of the boxes that prevents overflow of their areas. It is a power of two, so scaling is exact.
+    /// Factor by which the boxes are multiplied so that their areas do not overflow. It is a power of two, so scaling
+    /// is exact.
     pub scale: f32,
     /// Bounds of all leaves, in the scene's own units.
     pub low: Vec3,

@@ -20,7 +20,7 @@ pub(super) struct Lines<List = Pages<Line>> {
     list: List,
 }
 
-/// A list of lines that still grows, during construction.
+/// A list of cache lines under construction, which can still grow.
 pub(super) type Draft = Lines<Vec<Line>>;
 
 /// Types that may be stored in cache lines: they fill whole lines with plain numbers, for which any bits are valid.
@@ -89,7 +89,7 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Prefetches the lines of a packet, the longer item. For a node this includes one line more than needed.
+    /// Prefetches the node or packet at `line`, as many cache lines as a packet has. A node has one line fewer.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
         pages::prefetch(self.at(line), lines_of::<Packet>());

@@ -51,7 +51,7 @@ impl Child {
         (self.0 & !Self::PACKET) as usize
     }
 
-    /// Returns the child with `lines` added to its line number.
+    /// Returns the reference for a child that has moved by `lines` cache lines.
     pub fn moved(self, lines: usize) -> Self {
         if self.is_empty() { self } else { Self(self.0 + lines as u32) }
     }

@@ -35,8 +35,8 @@ impl Packet {
         packet
     }
 
-    /// Returns a mask of the triangles hit at distances in `(0, t_max]`, without hits within the rounding error of 0,
-    /// and the hits of all lanes.
+    /// Returns a mask of the triangles hit, and the hits of all lanes. A hit counts if its distance is at most `t_max`
+    /// and exceeds its own rounding error.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         let [x, y, z] = self.sheared::<L>(ray);
@@ -46,9 +46,9 @@ impl Packet {
         if L::bits(hit) == 0 {
             return (0, PacketHits { t: zero, u: zero, v: zero });
         }
-        // Recompute edge functions of zero in `f64`. In either precision, the triangle on the other side of the edge
-        // obtains the same value with the opposite sign, so no ray slips between the two triangles. (Lanes whose other
-        // two edge functions have opposite signs stay outside.)
+        // Recompute in `f64` the edge functions whose value is zero. In either precision, the triangle on the other
+        // side of the edge obtains the same value with the opposite sign, so no ray slips between the two triangles.
+        // (Lanes whose other two edge functions have opposite signs stay outside.)
         if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
             edge = self.settled_edges(ray);
             hit = inside(&edge);

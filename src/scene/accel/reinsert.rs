@@ -20,7 +20,8 @@ use std::cmp::Reverse;
 const CHUNK: usize = 256;
 /// Number of pairs of nodes per unit of parallel work on the histogram of areas.
 const COUNT_CHUNK: usize = 1 << 15;
-/// Number of leading bits of an area that select its histogram bin: the exponent and four bits of the mantissa.
+/// Number of highest bits of an area, after the sign bit, that select its histogram bin: the exponent and four bits of
+/// the mantissa.
 const SIZE_BITS: u32 = 8 + 4;
 
 /// A move of the subtree `from` to a new position as the sibling of `to`. `gain` is the decrease of the total half
@@ -57,8 +58,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// Returns an area threshold for each share: at most this share of all nodes, and hardly fewer, have at least this
-    /// area.
+    /// Returns an area threshold for each share. At most this share of all nodes have an area of at least the
+    /// threshold; the threshold is the lowest boundary between histogram bins with this property.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
@@ -153,8 +154,9 @@ impl<'a> Reinsertion<'a> {
             return;
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
-        // Three nodes move: the sibling replaces the old parent, the node at `to` replaces the sibling, and a new
-        // parent of that node and the subtree replaces the node at `to`.
+        // Three slots are rewritten. The sibling of the subtree `from` moves into the slot of their parent, and the
+        // node at `to` moves into the sibling's slot, next to the subtree. Slot `to` gets a new node, the parent of
+        // these two.
         let stays = self.tree[beside];
         let joined = self.tree[to];
         self.put(parent, stays);
@@ -185,8 +187,8 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings whose positions are still to be examined: the gain without the area of the new parent, and the
-/// index of the first sibling.
+/// A pair of siblings still to be examined as places for the subtree: the gain without the area of the new parent, and
+/// the index of the first sibling.
 type Waiting = (f32, u32);
 
 /// The search for the best position of one subtree.

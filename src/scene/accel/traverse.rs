@@ -111,7 +111,7 @@ impl Accel {
     }
 
     /// Traverses the tree, visiting the nearest child first. With `ANY`, it visits children from the last lane to the
-    /// first, which is the order of falling benefit.
+    /// first, which is the order of decreasing benefit.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,
@@ -177,7 +177,7 @@ impl Accel {
     }
 }
 
-/// The nearest accepted hit so far, and the distances it allows.
+/// The nearest accepted hit so far, and the farthest distance at which a further hit is of interest.
 struct Best {
     hit: Option<Hit>,
     /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.

@@ -7,7 +7,8 @@ use gltf::json::accessor::{self, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
 
-/// Maximum number of elements of an accessor without a buffer view: zeros, which sparse values may replace.
+/// Maximum number of elements of an accessor without a buffer view. Its elements are zeros, except where sparse values
+/// replace them.
 const MAX_UNBACKED: usize = 1 << 20;
 
 /// The elements of an array, which lie `stride` bytes apart.

@@ -28,7 +28,7 @@ pub struct Folder<'a> {
 /// A parsed glTF file with the contents of all its buffers.
 pub struct File<'a> {
     pub root: Root,
-    /// The features that are not rendered, as far as the JSON alone shows them.
+    /// The features that are not rendered and can be recognised from the JSON alone.
     pub unrendered: Vec<Unrendered>,
     /// The translation of each node in f64.
     pub translations: Vec<DVec3>,

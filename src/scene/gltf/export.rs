@@ -399,7 +399,7 @@ fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Splits a colour into a colour with a peak of 1 and the factor.
+/// Splits a colour into a colour whose largest channel is 1, and the factor by which to multiply that colour.
 fn split_peak(colour: Vec3) -> (Vec3, f32) {
     let peak = colour.max_element();
     if peak > 0.0 { (colour / peak, peak) } else { (Vec3::ZERO, 0.0) }

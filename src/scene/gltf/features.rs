@@ -62,7 +62,7 @@ const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
 ];
 
-/// The arrays of objects in the JSON, and the word for one object of each array.
+/// The arrays of objects in the JSON, and the word by which a message names one object of each array.
 const LISTS: [(&str, &str); 10] = [
     ("materials", "material"),
     ("meshes", "mesh"),
@@ -112,7 +112,7 @@ fn place(kind: &str, index: usize, object: &Value) -> String {
     }
 }
 
-/// Notes the extensions of an object that are not rendered.
+/// Reports the extensions of an object that are not rendered.
 fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
     for (name, settings) in object.get("extensions").and_then(Value::as_object).into_iter().flatten() {
         // Skip Basis Universal textures: `texture` reports them if they lack an image in another format.
@@ -142,7 +142,7 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         && !(is_factor && has_texture())
 }
 
-/// Notes a specular-glossiness material that cannot be converted to metallic-roughness.
+/// Reports a specular-glossiness material that cannot be converted to metallic-roughness.
 fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
     let settings = material.get("extensions").and_then(|e| e.get(GLOSSINESS));
     let settings = settings.and_then(|s| serde_json::from_value::<PbrSpecularGlossiness>(s.clone()).ok());
@@ -183,7 +183,8 @@ fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     document.get("meshes")?.get(index as usize)
 }
 
-/// Notes morph targets of colours or texture coordinates with a weight other than 0: only shapes are mixed.
+/// Reports morph targets that change colours or texture coordinates and have a weight other than 0. They are not
+/// rendered: only positions and normals are mixed.
 fn weights(list: &mut Vec<Unrendered>, object: &Value, mesh: Option<&Value>, place: &dyn Fn() -> String) {
     let Some(mesh) = mesh else { return };
     let mixed = |(_, target): (&(usize, &Value), &Value)| {

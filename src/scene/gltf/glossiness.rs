@@ -114,8 +114,9 @@ mod tests {
         assert!(metallic < 1e-3 && (base - paint).abs().max_element() < 1e-3, "{base} {metallic}");
         let (base, metallic) = convert(Vec3::ZERO, gold);
         assert!(metallic > 0.999 && (base - gold).abs().max_element() < 1e-3, "{base} {metallic}");
-        // Between the two extremes, the specular colour 0.04 (1 - m) + m · base and the diffuse colour (1 - m) · base,
-        // which is the given diffuse colour times (1 - max specular) / (1 - 0.04), are kept approximately.
+        // Between the two extremes, two colours are kept approximately: the specular colour 0.04 (1 - m) + m · base,
+        // and the diffuse colour (1 - m) · base. The latter is the given diffuse colour times (1 - max specular) / (1
+        // - 0.04).
         let (base, metallic) = convert(Vec3::splat(0.3), Vec3::splat(0.4));
         let diffuse = base * (1.0 - metallic);
         let specular = Vec3::splat(DIELECTRIC * (1.0 - metallic)) + base * metallic;

@@ -24,11 +24,11 @@ use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Maximum number of vertices, and of triangles, of all meshes together. Each instance counts, and each morph target
-/// counts as vertices.
+/// Maximum number of vertices, and of triangles, of all meshes together. Every instance of a mesh counts, and each
+/// morph target counts as a further copy of the mesh's vertices.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
-/// Maximum number of meshes of a scene: primitives × instances, of all nodes.
+/// Maximum number of meshes of a scene. Each primitive of each instance of a node becomes a mesh.
 const MAX_MESHES: usize = 1 << 20;
 
 /// Reads a GLB or glTF file held in memory. External files are resolved relative to the folder `base`.

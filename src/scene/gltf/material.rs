@@ -18,7 +18,7 @@ use gltf::json::{self, Index, extensions, material, texture};
 enum Source {
     View(usize),
     Image(usize),
-    /// An image that this file converted from specular-glossiness. The number only tells such images apart.
+    /// An image that this importer converted from specular-glossiness. The number only tells such images apart.
     Converted(usize),
 }
 
@@ -42,7 +42,7 @@ struct Surface {
     metallic_roughness_texture: Option<TextureRef>,
 }
 
-/// Two uses of textures share one texture of the scene if they agree in image, encoding and wrap modes.
+/// Two references to textures share one texture of the scene if their image, encoding and wrap modes are equal.
 type Key = (Source, Encoding, [Wrap; 2]);
 
 /// Reads materials one after another and collects their textures for the scene.

@@ -13,7 +13,7 @@ use serde_json::Value;
 /// one byte.
 const MAX_RATIO: u64 = 64;
 
-/// Decoded bytes allowed in addition to `MAX_RATIO`: one block of the codec.
+/// Number of decoded bytes that are allowed beyond `MAX_RATIO` times the encoded bytes: one block of the codec.
 const BLOCK: u64 = 8192;
 
 /// A compressed buffer view: the location of its encoded bytes, and how to decode them.

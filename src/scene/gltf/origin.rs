@@ -28,8 +28,8 @@ const MAX_CORNERS: usize = 1 << 16;
 /// library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
-/// Returns the new origin of the scene, in metres in the space into which `world` transforms the file; zero if the
-/// scene lies near the file's origin.
+/// Returns the new origin of the scene, in metres, in coordinates transformed by `world`; zero if the scene lies near
+/// the file's origin.
 pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     let mut corners = Vec::new();
     for (node, transform) in file.root.nodes.iter().zip(node_transforms(file, world)?) {

@@ -46,7 +46,8 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// Returns the colours of the vertices with alpha, which is 1 if the file has no alpha; `None` without colours.
+    /// Returns the colours of the vertices as RGBA, with an alpha of 1 if the file has no alpha; `None` if the
+    /// primitive has no colours.
     pub fn colours(&self, count: usize) -> Result<Option<Vec<[f32; 4]>>> {
         let semantic = Semantic::Colors(0);
         let Some(index) = self.accessor(&semantic) else { return Ok(None) };

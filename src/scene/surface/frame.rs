@@ -3,7 +3,8 @@
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Cosine of 1°: axes within this angle of the aligned axes snap to them. [convention]
+/// Cosine of 1°. If the rectangle's axes differ by less than this angle from the axes aligned with the world, the
+/// latter are used. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
 /// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
 /// recorded]

@@ -1,10 +1,10 @@
 //! Finds target surfaces, planar patches selected by name, and maps emissive textures onto them.
 //!
-//! The paper (section 7) maps the light texture onto a surface that the user picks. Real ceilings are rarely single
-//! rectangles: they are slabs with two sides and edges, or single sheets wound either way. [`find`] collects the
-//! triangles of the named object, groups them into planes, selects the plane and the side from which most of the room
-//! is visible, and fits a rectangle in that plane. [`place`] makes the patch a separate mesh and maps a texture onto
-//! the rectangle.
+//! The method of the paper ("Single-Exemplar Lighting Style Transfer", section 7) maps the light texture onto a
+//! surface that the user picks. Real ceilings are rarely single rectangles: they are slabs with two sides and edges,
+//! or single sheets wound either way. [`find`] collects the triangles of the named object, groups them into planes,
+//! selects the plane and the side from which most of the room is visible, and fits a rectangle in that plane.
+//! [`place`] makes the patch a separate mesh and maps a texture onto the rectangle.
 //!
 //! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area of
 //! the remaining, sloped triangles.
@@ -40,7 +40,7 @@ pub struct Surface {
     /// Unit directions of u and v; `u × v` points away from the room.
     pub u_axis: Vec3,
     pub v_axis: Vec3,
-    /// Unit normal into the room. The side it points from will emit.
+    /// Unit normal into the room. The side of the patch that faces the room will emit.
     pub normal: Vec3,
     /// Extent of the bounding rectangle along u and v in metres.
     pub size: Vec2,
@@ -74,9 +74,9 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
 
 /// Finds the planar patch that faces the room, among the triangles of the object or material with the given name.
 ///
-/// Object names are tried before material names. Either may match exactly, else case-insensitively, else as a
-/// substring that only one name contains. The scene must be valid. Errors: `NotFound`, listing the existing names;
-/// `Degenerate` if the object has no area.
+/// First an object, then a material is searched for that has exactly this name; then one whose name is equal
+/// regardless of case; then one whose name contains the given name, if only one name does. The scene must be valid.
+/// Errors: `NotFound`, listing the existing names; `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =

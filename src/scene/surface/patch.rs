@@ -13,7 +13,7 @@ const COS_ANGLE: f64 = 0.999_390_827;
 const OFFSET: f64 = 5e-4;
 /// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;
-/// Maximum number of directions along which planes are searched, in order of falling area.
+/// Maximum number of directions along which planes are searched, in order of decreasing area.
 const DIRECTIONS: usize = 32;
 /// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane. [origin not
 /// recorded]
@@ -50,8 +50,8 @@ struct Facet {
 /// Returns the planes of the triangles, largest first, without small planes.
 ///
 /// First the directions of the normals are accumulated in the cells of a grid, weighted by area. Their signs are
-/// ignored, since sheets may be wound either way. Then, along the direction of each heavy cell, planes are found by
-/// their offsets.
+/// ignored, since sheets may be wound either way. Then, along the direction of each cell of large area, planes are
+/// found by their offsets.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
@@ -113,7 +113,8 @@ fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
     (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
 }
 
-/// Returns the direction or its opposite, whichever has a positive leading component.
+/// Returns the direction or its opposite: the one whose first large component is positive. A component is large if its
+/// magnitude is more than half of the largest magnitude.
 fn unsigned(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     let leading = direction.to_array().into_iter().find(|c| c.abs() > 0.5 * largest).unwrap_or(1.0);

@@ -6,7 +6,7 @@ use crate::image::Image;
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
-/// The mesh and material that emit after [`place`].
+/// The emitting mesh and its material, as made by [`place`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// Index of the new mesh that holds the patch.
