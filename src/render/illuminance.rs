@@ -68,6 +68,15 @@ pub struct Output {
 /// [origin not recorded]
 const BATCHES: u32 = 16;
 
+/// Largest number of points from which a calculation learns which lights reach them, and the paths of each.
+/// [convention]
+const MAX_LEARNING_POINTS: usize = 1024;
+const LEARNING_PATHS: u32 = 4;
+/// Smallest ratio of the paths of the calculation to those from which it learns. [convention]
+const MIN_RATIO: usize = 50;
+/// Separates their random numbers from those of the calculation.
+const SALT: u64 = 0x6c65_6172_6e69_6e67;
+
 /// Computes the illuminance at a place. Call it on the library's own thread pool.
 ///
 /// # Errors
@@ -78,6 +87,8 @@ pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Ou
     check_range("rows", params.rows, 1, MAX_SIDE)?;
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
     let receivers = receivers(world, place, params)?;
+    let learning = world.learning()?;
+    let world = &learn(&learning, &receivers, params, job.part(0.0, 0.0))?;
     let per_batch = params.samples.div_ceil(BATCHES);
     let estimates = exec::map(params.columns * params.rows, job, |i| {
         let (vertex, front) = receivers.at(world, i)?;
@@ -100,6 +111,24 @@ pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Ou
     })?;
     job.check()?;
     summary(params, &estimates)
+}
+
+/// Learns from a few paths of some points which lights reach them, if these paths are few compared with all.
+fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> Result<World> {
+    let points = params.columns * params.rows;
+    let stride = points.div_ceil(MAX_LEARNING_POINTS);
+    let count = points.div_ceil(stride);
+    if count * LEARNING_PATHS as usize * MIN_RATIO <= points * params.samples as usize {
+        exec::map(count, job, |i| {
+            let Some((vertex, front)) = receivers.at(learning, i * stride) else { return };
+            let seed = rng::hash(params.seed ^ SALT, &[i as u64]);
+            let mut sum = Sum(DVec3::ZERO);
+            for index in 0..LEARNING_PATHS {
+                path::gather(learning, &vertex, front, &mut Sampler::new(seed, index), &mut Contributions(&mut sum));
+            }
+        })?;
+    }
+    learning.settled()
 }
 
 fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> {

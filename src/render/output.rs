@@ -2,6 +2,7 @@
 
 use super::denoise;
 use super::layers::Layer;
+use super::light::Reach;
 use crate::error::Result;
 use crate::image::Image;
 
@@ -26,6 +27,10 @@ pub struct Film {
     pub discarded: u64,
     /// Number of lights that shine from points, so that the image does not show them.
     pub unseen_lights: usize,
+    /// The lamps that do not reach the surfaces in view; `None` if the render did not find any.
+    pub reach: Option<Reach>,
+    /// What the render skips, in words: [`super::Requirements::left_out`] and [`Reach::sentence`].
+    pub requirements: Vec<String>,
     /// The additional images: those of expressions in order, then the AOVs in order.
     pub layers: Vec<Layer>,
     /// The filtered image and an estimate of its bias, if requested. It is not an unbiased estimate.
@@ -43,6 +48,7 @@ impl Film {
             beauty: self.beauty.try_clone()?,
             variance: self.variance.try_clone()?,
             paths: self.paths.try_clone()?,
+            requirements: self.requirements.clone(),
             layers: self.layers.iter().map(layer).collect::<Result<_>>()?,
             preview: self.preview.as_ref().map(preview).transpose()?,
             ..*self

@@ -154,6 +154,14 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
+    /// The emitter of a piece.
+    pub fn emitter_of(&self, piece: usize) -> usize {
+        match piece.checked_sub(self.even.len()) {
+            Some(tile) => self.tiles[tile].emitter as usize,
+            None => self.even[piece].emitter as usize,
+        }
+    }
+
     /// The piece at a point of an emitter, by its texture coordinates; `None` for dark tiles.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {

@@ -3,7 +3,7 @@
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
 //! not know each other's paths; instead each part traces the same few paths over the image and over each of its tiles,
 //! with equal results. These paths have seeds of their own and are not part of the image, so that they bias no
-//! estimate.
+//! estimate. They also learn which lights reach the surfaces in view, for all paths of the part.
 
 use super::block::seed_of;
 use super::eye::{Eye, paths};
@@ -43,6 +43,11 @@ impl<'a> Prepass<'a> {
         })?;
         prepass.median_radiance = median(&means);
         Ok(prepass)
+    }
+
+    /// The prepass with the world that its first paths have learned, for the paths of its tiles.
+    pub fn in_world(self, world: &'a World) -> Self {
+        Self { world, ..self }
     }
 
     /// Median radiance of the sampled pixels, per channel; `None` without pixels.

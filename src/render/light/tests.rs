@@ -1,5 +1,6 @@
 //! Light sampling: observed frequencies against stated probabilities, and estimates against closed forms.
 
+use super::tree::LightTree;
 use super::*;
 use crate::exec::Pool;
 use crate::image::Image;

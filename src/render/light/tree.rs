@@ -61,6 +61,13 @@ struct Cluster {
     parts: [u32; 2],
 }
 
+/// A part of a cluster.
+#[derive(Clone, Copy)]
+pub enum Child {
+    Cluster(usize),
+    Light(usize),
+}
+
 impl LightTree {
     /// For fewer than 2^31 lights, each of positive intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
@@ -115,6 +122,21 @@ impl LightTree {
         let node = &mut self.nodes[index];
         (node.children, node.bounds) = (children, BoundsLanes::new(bounds.iter().copied(), scale));
         (index as u32, Bounds::union(&bounds))
+    }
+
+    /// Number of clusters. A cluster comes before the clusters that are its parts.
+    pub fn clusters(&self) -> usize {
+        self.nodes.len().max(usize::from(!self.fixed.is_empty()))
+    }
+
+    /// The parts of a cluster.
+    pub fn children(&self, cluster: usize) -> impl Iterator<Item = Child> {
+        let of_node = self.nodes.get(cluster).into_iter().flat_map(|node| node.children).filter(|&c| c != NONE);
+        let parts = of_node.map(|child| match child & LIGHT {
+            0 => Child::Cluster(child as usize),
+            _ => Child::Light((child & !LIGHT) as usize),
+        });
+        parts.chain((0..self.fixed.len()).map(Child::Light))
     }
 
     /// Samples a light by importance; returns its pmf and the position of `u` within its share, in `[0, 1)`.

@@ -13,6 +13,7 @@ mod layers;
 mod luminaires;
 mod parts;
 mod place;
+mod reach;
 mod refusal;
 mod requirements;
 mod shared;
