@@ -61,10 +61,11 @@ fn main() {
         }
     }
     if is_chosen("build") {
-        let times = interleaved(Clock::Process, ROUNDS as usize, &mut [
-            &mut || drop(build(&pool, furnished_rooms(1))),
-            &mut || drop(build(&pool, furnished_rooms(4))),
-        ]);
+        let times = interleaved(
+            Clock::Process,
+            ROUNDS as usize,
+            &mut [&mut || drop(build(&pool, furnished_rooms(1))), &mut || drop(build(&pool, furnished_rooms(4)))],
+        );
         println!("# ready in {:.3} s and {:.3} s", times.median(0), times.median(1));
         figure("render.buildings.build.4_over_1", times.ratio(1, 0), "ratio");
     }
@@ -218,11 +219,9 @@ fn hall(angle: f32) -> Scene {
     let side = scene.meshes.len() - 3;
     scene.meshes.remove(side);
     let (z0, z1) = (-0.1, ROOM.z + 0.1);
-    for (corner, u, v) in [
-        ([-3.0, 0.0], z0 + 3.0, 5.0),
-        ([z1, 0.0], 7.0 - z1, 5.0),
-        ([z0, ROOM.y + 0.1], z1 - z0, 5.0 - ROOM.y - 0.1),
-    ] {
+    for (corner, u, v) in
+        [([-3.0, 0.0], z0 + 3.0, 5.0), ([z1, 0.0], 7.0 - z1, 5.0), ([z0, ROOM.y + 0.1], z1 - z0, 5.0 - ROOM.y - 0.1)]
+    {
         let corner = Vec3::new(-0.1, corner[1], corner[0]);
         scene.meshes.push(Mesh::parallelogram(corner, Vec3::Z * u, Vec3::Y * v, GREY));
     }

@@ -52,6 +52,8 @@ impl Survey {
     /// The counts of all lights so far.
     pub fn evidence(&self) -> Result<Vec<Evidence>> {
         let count = |n: &AtomicU32| u64::from(n.load(Ordering::Relaxed));
-        try_collect(self.counts.iter().map(|[drawn, arrived]| Evidence { drawn: count(drawn), arrived: count(arrived) }))
+        try_collect(
+            self.counts.iter().map(|[drawn, arrived]| Evidence { drawn: count(drawn), arrived: count(arrived) }),
+        )
     }
 }
