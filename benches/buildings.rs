@@ -1,10 +1,10 @@
 //! Cost of lights that do not reach the camera: rooms in a building against the one room alone.
 //!
-//! Each scene contains the same room, with nine lamps, seen by the same camera. The bench renders the room alone and the
-//! room within the scene to the same error of the image (5 %), in turns, and prints the ratio of the processor times:
-//! the median over rounds with different seeds. Build times are not included. Without an argument all sections run:
-//! `rooms` (9, 49, 225 closed rooms), `neighbours` (a brighter hall next door, with its door closed and ajar; the sun
-//! and the sky outside; a sealed box of 1e9 cd/m²), `build` (time to prepare four copies of the room).
+//! Each scene contains the same room, with nine lamps, seen by the same camera. The bench renders the room alone and
+//! the room within the scene to the same error of the image (5 %), in turns, and prints the ratio of the processor
+//! times: the median over rounds with different seeds. Build times are not included. Without an argument all sections
+//! run: `rooms` (9, 49, 225 closed rooms), `neighbours` (a brighter hall next door, with its door closed and ajar; the
+//! sun and the sky outside; a sealed box of 1e9 cd/m²), `build` (time to prepare four copies of the room).
 
 mod harness;
 

@@ -38,8 +38,8 @@ impl Lamps {
         Ok(Self { of_pieces, count: lamps as usize })
     }
 
-    /// The number of all lamps of a scene, and of those of which all parts are hidden. `is_hidden` takes the number of a
-    /// light.
+    /// The number of all lamps of a scene, and of those of which all parts are hidden. `is_hidden` takes the number of
+    /// a light.
     pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
         let mut surfaces = try_vec(self.count, true)?;
         self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));

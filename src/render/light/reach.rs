@@ -1,19 +1,20 @@
 //! Learns during a render which lights reach the surfaces in view, and samples the others rarely.
 //!
 //! In a building most lamps are behind walls. Light samples of them bring nothing, and a single room in a building of
-//! 225 rooms takes 30 times the paths of that room alone. The first passes of a render therefore count, for each light,
-//! its samples and those that arrive ([`Survey`]). A light is *unlikely* if the posterior probability that its next
-//! sample arrives is below [`MIN_ARRIVAL`], else *likely*. Two selectors share the samples: the unlikely lights together
-//! get a small share ([`unlikely_share`]), the likely lights the rest. Every light keeps a positive probability (a defensive mixture;
-//! Hesterberg 1995, "Weighted average importance sampling and defensive mixture distributions"), so the estimate remains
-//! unbiased, and the contribution of an unlikely light grows at most by the reciprocal of the share. An unlikely light
-//! whose sample arrives after all becomes likely with the next pass.
+//! 225 rooms takes 30 times the paths of that room alone. The first passes of a render therefore count, for each
+//! light, its samples and those that arrive ([`Survey`]). A light is *unlikely* if the posterior probability that its
+//! next sample arrives is below [`MIN_ARRIVAL`], else *likely*. Two selectors share the samples: the unlikely lights
+//! together get a small share ([`unlikely_share`]), the likely lights the rest. Every light keeps a positive
+//! probability (a defensive mixture; Hesterberg 1995, "Weighted average importance sampling and defensive mixture
+//! distributions"), so the estimate remains unbiased, and the contribution of an unlikely light grows at most by the
+//! reciprocal of the share. An unlikely light whose sample arrives after all becomes likely with the next pass.
 //!
 //! The prior of a light comes from its neighbours in the light tree: if many of them are hidden, it is probably hidden
-//! too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright light with many samples says little about
-//! a dim one that has none.
+//! too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright light with many samples says little
+//! about a dim one that has none.
 //!
-//! A render that wastes few light samples on hidden lights keeps the selector of all lights, and with it every bit of its image.
+//! A render that wastes few light samples on hidden lights keeps the selector of all lights, and with it every bit of
+//! its image.
 
 use super::Lights;
 use super::bounds::Receiver;
@@ -25,19 +26,19 @@ use crate::error::Result;
 use crate::image::try_vec;
 use std::sync::Arc;
 
-/// A light is unlikely below this posterior probability that a sample of it arrives. [bench buildings]
+/// A light is unlikely below this posterior probability that a sample of it arrives. [origin not recorded]
 const MIN_ARRIVAL: f64 = 0.003;
 /// Smallest and largest share of the light samples for the unlikely lights, and its product with the root of the number
-/// of their samples without effect. [bench buildings]
+/// of their samples without effect. [origin not recorded]
 const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
-/// Largest number of samples as which a neighbour in the tree counts. [bench buildings]
+/// Largest number of samples as which a neighbour in the tree counts. [origin not recorded]
 const MAX_WITNESS: f64 = 16.0;
 /// The importance of a likely light is multiplied by the root of its probability of arrival, at least by this factor.
-/// [bench buildings]
+/// [origin not recorded]
 const MIN_WEIGHT: f64 = 0.1;
-/// Unlikely lights are sampled apart if they took at least this share of the samples, so that rooms with a single hidden
-/// light keep the bits of their images. Buildings waste 70 % and more. [origin not recorded]
+/// Unlikely lights are sampled apart if they took at least this share of the samples, so that rooms with a single
+/// hidden light keep the bits of their images. Buildings waste 70 % and more. [origin not recorded]
 const MIN_GAIN: f64 = 0.6;
 /// The first decision needs this number of samples. [convention]
 const FIRST_DECISION: u64 = 256;

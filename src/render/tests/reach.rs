@@ -5,8 +5,8 @@ use super::*;
 use crate::exec::Pool;
 use crate::render::illuminance as lux;
 
-/// Adds a room of 3 × 2.5 × 3 m, whose sides face inwards, with a lamp under its ceiling. The side at the larger x has a
-/// gap of this width from floor to ceiling; 0 for none.
+/// Adds a room of 3 × 2.5 × 3 m, whose sides face inwards, with a lamp under its ceiling. The side at the larger x has
+/// a gap of this width from floor to ceiling; 0 for none.
 fn add_room(scene: &mut Scene, x: f32, gap: [f32; 2], lamp: usize) {
     let (w, h, d) = (Vec3::X * 3.0, Vec3::Y * 2.5, Vec3::Z * 3.0);
     let at = Vec3::X * x;
@@ -21,8 +21,8 @@ fn add_room(scene: &mut Scene, x: f32, gap: [f32; 2], lamp: usize) {
     scene.meshes.push(Mesh::parallelogram(at + Vec3::new(1.2, 2.45, 1.2), Vec3::X * 0.6, Vec3::Z * 0.6, lamp));
 }
 
-/// Six rooms in a row; the camera is in the first. A gap of 5 cm lets light of the second room into it, and nothing else
-/// comes from outside, neither from the other lamps and a sun nor from the sky.
+/// Six rooms in a row; the camera is in the first. A gap of 5 cm lets light of the second room into it, and nothing
+/// else comes from outside, neither from the other lamps and a sun nor from the sky.
 fn building() -> Scene {
     let gloss = Material { base_color: Vec3::splat(0.5), metallic: 0.0, roughness: 0.3, ..Material::default() };
     let mut scene = Scene {
@@ -175,8 +175,8 @@ fn requirements_name_the_lamps_that_cannot_be_reached() {
     let film =
         render(&world(building()), &inside(), &Params { width: 64, height: 48, samples: 8, ..Params::default() });
     let reach = film.reach.unwrap();
-    // Six lamps, a point light, the sun and the sky. The lamps of the first two rooms arrive; so few paths may leave one
-    // of the others undecided.
+    // Six lamps, a point light, the sun and the sky. The lamps of the first two rooms arrive; so few paths may leave
+    // one of the others undecided.
     assert!(reach.lamps == 9 && (6..=7).contains(&reach.hidden), "{reach:?}");
     let sentence = film.requirements.last().unwrap();
     let start = format!("{} of 9 lamps cannot be reached from here", reach.hidden);
