@@ -157,6 +157,19 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
+ * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text, and how many lamps of the scene
+ * cannot be reached from the surfaces that the image shows, directly or by reflection: one sentence per line, as
+ * zero-terminated UTF-8, truncated to capacity bytes. The rendering learns this from its first paths; later paths
+ * hardly ever sample these lamps, which changes no mean. *needed, unless NULL, receives the capacity that the whole
+ * text needs. buffer may be NULL if capacity is 0. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job.
+ */
+luxfer_status luxfer_render_get_requirements_text(luxfer_render *render,
+                                                  char *buffer,
+                                                  size_t capacity,
+                                                  size_t *needed);
+
+/**
  * Gets the current quality of the rendering. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before the first pass of a job.
  */

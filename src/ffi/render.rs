@@ -9,7 +9,7 @@ use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
-use super::pointer::Out;
+use super::pointer::{Out, copy_text};
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
 use super::stage::{Stage, need};
@@ -19,6 +19,7 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::render::{self, Film, Outputs, World, parts};
 use crate::scene::{Camera, Scene};
+use std::ffi::c_char;
 use std::sync::Arc;
 
 /// A rendering of a scene. See luxfer_render_create.
@@ -300,6 +301,25 @@ pub unsafe extern "C" fn luxfer_render_get_image(
         let unseen_lights = film.unseen_lights;
         out.set(handle::give(Pixels::rendered(stage.context(), film, pick, unseen_lights)));
         Ok(())
+    })
+}
+
+/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text, and how many lamps of the scene
+/// cannot be reached from the surfaces that the image shows, directly or by reflection: one sentence per line, as
+/// zero-terminated UTF-8, truncated to capacity bytes. The rendering learns this from its first paths; later paths
+/// hardly ever sample these lamps, which changes no mean. *needed, unless NULL, receives the capacity that the whole
+/// text needs. buffer may be NULL if capacity is 0. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_requirements_text(
+    render: *mut luxfer_render,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let output = stage.output()?;
+        copy_text(&output.requirements.join("\n"), buffer, capacity, needed)
     })
 }
 

@@ -69,6 +69,16 @@ pub struct Output {
 /// recorded]
 const BATCHES: u32 = 16;
 
+/// To learn which lights reach its points, a calculation first traces `LEARNING_PATHS` paths from each of at most
+/// `MAX_LEARNING_POINTS` points. [convention]
+const MAX_LEARNING_POINTS: usize = 1024;
+const LEARNING_PATHS: u32 = 4;
+/// A calculation learns only if its own paths are at least this multiple of those from which it would learn.
+/// [convention]
+const MIN_RATIO: usize = 50;
+/// Added to the seed of the paths from which a calculation learns, so that its own paths get other random numbers.
+const SALT: u64 = 0x6c65_6172_6e69_6e67;
+
 /// Computes the illuminance at the points of `place`. Call it on the library's own thread pool.
 ///
 /// # Errors
@@ -79,6 +89,8 @@ pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Ou
     check_range("rows", params.rows, 1, MAX_SIDE)?;
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
     let receivers = receivers(world, place, params)?;
+    let learning = world.learning()?;
+    let world = &learn(&learning, &receivers, params, job.part(0.0, 0.0))?;
     let per_batch = params.samples.div_ceil(BATCHES);
     let estimates = exec::map(params.columns * params.rows, job, |i| {
         let (vertex, front) = receivers.at(world, i)?;
@@ -101,6 +113,24 @@ pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Ou
     })?;
     job.check()?;
     summary(params, &estimates)
+}
+
+/// Learns from a few paths of some points which lights reach them, if these paths are few compared with all.
+fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> Result<World> {
+    let points = params.columns * params.rows;
+    let stride = points.div_ceil(MAX_LEARNING_POINTS);
+    let count = points.div_ceil(stride);
+    if count * LEARNING_PATHS as usize * MIN_RATIO <= points * params.samples as usize {
+        exec::map(count, job, |i| {
+            let Some((vertex, front)) = receivers.at(learning, i * stride) else { return };
+            let seed = rng::hash(params.seed ^ SALT, &[i as u64]);
+            let mut sum = Sum(DVec3::ZERO);
+            for index in 0..LEARNING_PATHS {
+                path::gather(learning, &vertex, front, &mut Sampler::new(seed, index), &mut Contributions(&mut sum));
+            }
+        })?;
+    }
+    learning.settled()
 }
 
 fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> {

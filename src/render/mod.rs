@@ -57,6 +57,7 @@ pub use aov::Aov;
 pub use contribution::{LightSource, PathSink};
 pub use film::pilot::{self, Pilot};
 pub use layers::{Layer, Outputs};
+pub use light::Reach;
 pub use output::Film;
 pub use params::Params;
 pub use requirements::Requirements;

@@ -2,6 +2,7 @@
 
 use super::denoise;
 use super::layers::Layer;
+use super::light::Reach;
 use crate::error::Result;
 use crate::image::Image;
 
@@ -28,6 +29,10 @@ pub struct Film {
     /// Number of point lights, spot lights and luminaires that emit. The image cannot show them, because they have no
     /// surface.
     pub unseen_lights: usize,
+    /// Which lamps reach the surfaces in view; `None` if the render found no lamp that does not.
+    pub reach: Option<Reach>,
+    /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`Reach::sentence`].
+    pub requirements: Vec<String>,
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.
     pub layers: Vec<Layer>,
@@ -46,6 +51,7 @@ impl Film {
             beauty: self.beauty.try_clone()?,
             variance: self.variance.try_clone()?,
             paths: self.paths.try_clone()?,
+            requirements: self.requirements.clone(),
             layers: self.layers.iter().map(layer).collect::<Result<_>>()?,
             preview: self.preview.as_ref().map(preview).transpose()?,
             ..*self

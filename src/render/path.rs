@@ -319,7 +319,11 @@ pub(super) fn connection_weight(
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }
     };
-    world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.pdf)
+    let transmittance = world.transmittance(&ray, [vertex.id, end], panes);
+    if transmittance != Vec3::ZERO {
+        world.lights().count_arrived(light);
+    }
+    transmittance * (weight / light.pdf)
 }
 
 /// Adds the emission of a surface that a BSDF sample has hit, with the MIS weight against light sampling.

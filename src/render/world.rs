@@ -4,7 +4,7 @@ use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
-use super::light::Lights;
+use super::light::{Lights, Reach};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
 use crate::error::{Error, Result};
@@ -18,18 +18,19 @@ use std::sync::Arc;
 
 /// A scene prepared for path tracing: acceleration structure, triangle data and light distributions. Triangles have
 /// scene-wide numbers (ids), mesh after mesh. World coordinates are relative to a centre, so that scenes far from the
-/// origin keep their precision.
+/// origin keep their precision. Clones share all data but what a render learns about the lights.
+#[derive(Clone)]
 pub struct World {
     scene: Arc<Scene>,
-    accel: Accel,
+    accel: Arc<Accel>,
     centre: DVec3,
     /// Id of the first triangle of each mesh, followed by the total number of triangles.
-    first: Vec<u32>,
-    facets: Vec<Facet>,
-    compiled_materials: Vec<CompiledMaterial>,
+    first: Arc<Vec<u32>>,
+    facets: Arc<Vec<Facet>>,
+    compiled_materials: Arc<Vec<CompiledMaterial>>,
     lights: Lights,
-    albedo_table: Option<AlbedoTable>,
-    requirements: Requirements,
+    albedo_table: Option<Arc<AlbedoTable>>,
+    requirements: Arc<Requirements>,
     /// Whether any material lets light through. If not, rays do not test the opacity of their hits.
     any_see_through: bool,
 }
@@ -92,14 +93,14 @@ impl World {
         job.report(1.0);
         Ok(Self {
             scene,
-            accel,
+            accel: Arc::new(accel),
             centre,
-            first,
-            facets,
-            compiled_materials,
+            first: Arc::new(first),
+            facets: Arc::new(facets),
+            compiled_materials: Arc::new(compiled_materials),
             lights,
-            albedo_table,
-            requirements,
+            albedo_table: albedo_table.map(Arc::new),
+            requirements: Arc::new(requirements),
             any_see_through,
         })
     }
@@ -112,9 +113,37 @@ impl World {
     /// Discards the scene analysis, so that every hit evaluates every shading feature. This changes estimates only by
     /// rounding. Benchmarks use this function to measure how much time the analysis saves.
     pub fn generalise(&mut self) {
-        self.compiled_materials.iter_mut().for_each(|f| *f = f.without_analysis());
-        self.facets.iter_mut().for_each(|f| *f = f.without_analysis());
+        let general = self.compiled_materials.iter().map(CompiledMaterial::without_analysis).collect();
+        self.compiled_materials = Arc::new(general);
+        self.facets = Arc::new(self.facets.iter().map(Facet::without_analysis).collect());
         self.any_see_through = true;
+    }
+
+    /// Makes renders sample all lights alike, whether they reach the surfaces in view or not. Tests and benchmarks use
+    /// this function to measure what the distinction gains.
+    pub fn without_learning(&mut self) {
+        self.lights.learns = false;
+    }
+
+    /// A copy for a render that learns which lights reach the surfaces in view.
+    pub(super) fn learning(&self) -> Result<Self> {
+        Ok(Self { lights: self.lights.learning()?, ..self.clone() })
+    }
+
+    /// The copy for the next pass, if the paths so far suggest a change ([`Lights::learned`]).
+    pub(super) fn learned(&self) -> Result<Option<Self>> {
+        Ok(self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }))
+    }
+
+    /// The copy for paths that learn no more: with all that this copy has learned.
+    pub(super) fn settled(&self) -> Result<Self> {
+        let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
+        Ok(Self { lights: learned.settled(), ..self.clone() })
+    }
+
+    /// The lamps that do not reach the surfaces in view, as far as this copy has learned.
+    pub(super) fn reach(&self) -> Result<Option<Reach>> {
+        self.lights.reach()
     }
 
     pub fn scene(&self) -> &Arc<Scene> {
@@ -181,7 +210,7 @@ impl World {
 
     #[inline]
     pub(super) fn albedo_table(&self) -> Option<&AlbedoTable> {
-        self.albedo_table.as_ref()
+        self.albedo_table.as_deref()
     }
 
     /// Returns the index of the emitter that belongs to a triangle, if the triangle emits.

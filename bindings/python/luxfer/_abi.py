@@ -1564,6 +1564,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
     "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_get_requirements_text": (c_int32, [("render", POINTER(luxfer_render)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report)), ("size", c_size_t)]),
     "luxfer_render_add_expression": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("expression", c_char_p)]),
     "luxfer_render_clear_expressions": (c_int32, [("render", POINTER(luxfer_render))]),

@@ -132,6 +132,10 @@ class Render(StageBase):
         channels."""
         self._call("write_exr", _params.text(os.fspath(path), "path"))
 
+    def requirements_text(self) -> str:
+        """Describes what the rendering skips, one sentence per line, with the number of lamps that cannot be reached."""
+        return self._get_text("get_requirements_text")
+
     @property
     def report(self) -> RenderReport:
         """Current quality of the rendering."""

@@ -156,6 +156,14 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
+    /// Returns the index of the emitter that a piece belongs to.
+    pub fn emitter_of(&self, piece: usize) -> usize {
+        match piece.checked_sub(self.even.len()) {
+            Some(tile) => self.tiles[tile].emitter as usize,
+            None => self.even[piece].emitter as usize,
+        }
+    }
+
     /// Returns the piece that contains the point of an emitter with the texture coordinates `uv`; `None` if the tile
     /// or the triangle there is dark.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {

@@ -21,6 +21,8 @@ use std::time::Instant;
 /// The sums over all paths so far, for every pixel of the image.
 pub struct Canvas<'a> {
     pub(super) world: &'a World,
+    /// The world with what the passes so far have learned about the lights.
+    pub(super) learning: World,
     pub(super) eye: Eye,
     pub(super) seed: u64,
     pub(super) grid: Grid,
@@ -40,7 +42,8 @@ impl<'a> Canvas<'a> {
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
         let eye = Eye::new(camera, params);
-        Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
+        let learning = world.learning()?;
+        Ok(Self { world, learning, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
     /// Builds a canvas for the pixels of one part of a distributed render, filled with the sums of this part.
@@ -65,17 +68,20 @@ impl<'a> Canvas<'a> {
 
     /// Traces paths until every pixel has the number of paths that `pass` asks for; stops early at the deadline.
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
-        let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
+        let Self { learning, eye, seed, grid, pixels, layers, discarded, .. } = self;
         let layers = layers.as_ref();
         let median_radiance = roulette::median_radiance(pixels, job.part(0.0, 0.0))?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
-        let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
+        let context = TileContext { world: learning, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Skip tiles of which a coarse pass covers no pixel.
             if !pass.passes_over(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }
         })?;
+        if let Some(learned) = self.learning.learned()? {
+            self.learning = learned;
+        }
         job.check()
     }
 

@@ -16,6 +16,10 @@ impl Canvas<'_> {
         let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
         let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, &self.places(job)?, job))?;
         let total = self.total(job)?;
+        let reach = self.learning.reach()?;
+        let mut requirements = self.world.requirements().left_out();
+        requirements.extend(self.world.scene().unrendered.iter().map(|unrendered| format!("{unrendered}.")));
+        requirements.extend(reach.filter(|reach| reach.hidden > 0).map(|reach| reach.sentence()));
         Ok(Film {
             beauty,
             layers,
@@ -26,6 +30,8 @@ impl Canvas<'_> {
             relative_error: self.relative_total(job)?.error(),
             discarded: self.discarded.load(Ordering::Relaxed),
             unseen_lights: self.world.scene().unseen_lights(),
+            reach,
+            requirements,
             preview: None,
         })
     }

@@ -114,7 +114,10 @@ pub fn run(
     let grid = Grid { width: params.width, height: params.height };
     let eye = Eye::new(camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
-    let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.05))?;
+    let learning = world.learning()?;
+    let prepass = Prepass::new(&learning, &eye, params, job.part(0.0, 0.05))?;
+    let world = &learning.settled()?;
+    let prepass = prepass.in_world(world);
     let expected = tile_moments(&prepass, grid, job.part(0.05, 0.1))?;
     let mut rng = Rng::new(params.seed, &[]);
     let mut chosen = choose(&expected, grid, &mut rng)?;

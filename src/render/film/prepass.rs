@@ -4,7 +4,8 @@
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
 //! not know each other's paths. Instead, each part traces the same few paths over the image and over each of its
 //! tiles, and gets the same weights. These paths have their own seeds and are not part of the image, so they bias no
-//! estimate.
+//! estimate. They also learn which lights reach
+//! the surfaces in view, for all paths of the part.
 
 use super::block::seed_of;
 use super::eye::{Eye, paths};
@@ -46,6 +47,11 @@ impl<'a> Prepass<'a> {
         })?;
         prepass.median_radiance = median(&means);
         Ok(prepass)
+    }
+
+    /// Replaces the world by the one that has learned from the first paths, for the paths of the tiles.
+    pub fn in_world(self, world: &'a World) -> Self {
+        Self { world, ..self }
     }
 
     /// Returns the median radiance of the sampled pixels, per channel; `None` without pixels.

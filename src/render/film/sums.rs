@@ -57,7 +57,10 @@ impl Sums {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
         let eye = Eye::new(camera, params);
-        let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.01))?;
+        let learning = world.learning()?;
+        let prepass = Prepass::new(&learning, &eye, params, job.part(0.0, 0.01))?;
+        let world = &learning.settled()?;
+        let prepass = prepass.in_world(world);
         let discarded = AtomicU64::new(0);
         let Self { corner, grid, width, numbers, .. } = &mut sums;
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {

@@ -6,42 +6,56 @@
 //! equally. Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
 pub(super) mod bounds;
+mod lamps;
+mod learning;
 mod punctual;
+mod reach;
+mod selector;
+mod survey;
 mod tree;
 
 pub use bounds::{Bounds, Receiver};
+pub use reach::Reach;
 
 use super::contribution::LightSource;
-use super::distribution::Distribution;
 use super::emissive::{Emitters, mean_channel};
 use super::environment::{self, EnvironmentSampler};
 use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
+use lamps::Lamps;
 use punctual::Punctual;
+use reach::Split;
+use selector::{Inventory, Selector};
 use std::f64::consts::PI;
-use tree::LightTree;
+use std::sync::{Arc, OnceLock};
+use survey::{Progress, Survey, UNCOUNTED};
 
+/// The lights of a scene. Copies share everything but what a render has learned about the reach of the lights.
+#[derive(Clone)]
 pub struct Lights {
-    pub emitters: Emitters,
-    punctual: Vec<Punctual>,
-    /// Selects among the lights at a finite distance. Their indices in the tree count first the pieces of the
-    /// emitters, then the points, spots and luminaires.
-    tree: LightTree,
-    pieces: usize,
-    /// For each point, spot and luminaire in the tree, its index among the punctual lights of the scene.
-    near: Vec<u32>,
-    /// Selects among the directional lights. It has an entry for every punctual light; lights that are not directional
-    /// have zero weight.
-    directional: Distribution,
-    environment: Option<EnvironmentSampler>,
-    /// Selection probabilities of the three groups: lights at a finite distance, directional lights, environment.
-    groups: [f64; 3],
+    pub emitters: Arc<Emitters>,
+    punctual: Arc<Vec<Punctual>>,
+    environment: Option<Arc<EnvironmentSampler>>,
+    inventory: Arc<Inventory>,
+    /// Selects among all lights.
+    all: Arc<Selector>,
+    /// Selects among likely and unlikely lights apart, once a render has learned which are which.
+    split: Option<Arc<Split>>,
+    /// Counts the light samples that arrive, while a render learns.
+    survey: Option<Arc<Survey>>,
+    progress: Progress,
+    /// Whether renders may learn.
+    pub learns: bool,
+    /// The lamps, counted when a render reports its reach.
+    lamps: Arc<OnceLock<Lamps>>,
 }
 
 /// A sample of the light that reaches a receiver.
 pub struct LightSample {
     pub source: LightSource,
+    /// The number of the light in the survey, for [`Lights::count_arrived`].
+    surveyed: u32,
     /// Unit direction from the receiver to the light.
     pub direction: Vec3,
     /// The sampled position; `None` if it is infinitely far away.
@@ -69,71 +83,97 @@ impl Lights {
     pub fn build(scene: &Scene, emitters: Emitters, pieces: Vec<Bounds>, centre: DVec3, radius: f32) -> Result<Self> {
         let count = pieces.len();
         let mut bounds = pieces;
-        let mut near = Vec::new();
-        let (mut near_power, mut far_powers) = (emitters.power, Vec::new());
+        let (mut near, mut flux, mut is_far) = (Vec::new(), Vec::new(), Vec::new());
         let lights: Vec<PunctualLight> = scene.lights.iter().map(|light| punctual::relative(light, centre)).collect();
         for (light, index) in lights.iter().zip(0..) {
-            let power = Punctual::flux(light, &scene.distributions, radius);
+            flux.push(Punctual::flux(light, &scene.distributions, radius));
             if let Some(b) = Punctual::bounds(light, &scene.distributions) {
                 bounds.push(b);
                 near.push(index);
-                near_power += power;
             }
-            let is_far = matches!(light, PunctualLight::Directional { .. });
-            far_powers.push(if is_far { power } else { 0.0 });
+            is_far.push(matches!(light, PunctualLight::Directional { .. }));
         }
-        let directional = Distribution::new(far_powers.into_iter())?;
         let (environment, mean) = match scene.environment.as_ref().map(EnvironmentSampler::build).transpose()?.flatten()
         {
-            Some((sampler, mean)) => (Some(sampler), mean),
+            Some((sampler, mean)) => (Some(Arc::new(sampler)), mean),
             None => (None, 0.0),
         };
         // Take the flux through the surface of a sphere around the scene as the environment's power.
         let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
-        let powers = [near_power, directional.total(), mean * PI * 4.0 * PI * r2];
-        let present = powers.iter().filter(|&&p| p > 0.0).count().max(1) as f64;
-        let total = powers.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let groups = powers.map(|p| if p > 0.0 { 0.5 / present + 0.5 * p / total } else { 0.0 });
+        let power = mean * PI * 4.0 * PI * r2;
+        let piece_flux = emitters.power;
+        let inventory = Inventory { bounds, pieces: count, piece_flux, near, flux, is_far, environment: power };
         Ok(Self {
-            emitters,
-            punctual: lights.iter().map(|light| Punctual::new(light, &scene.distributions)).collect(),
-            tree: LightTree::build(&bounds)?,
-            pieces: count,
-            near,
-            directional,
+            emitters: Arc::new(emitters),
+            punctual: Arc::new(lights.iter().map(|light| Punctual::new(light, &scene.distributions)).collect()),
             environment,
-            groups,
+            all: Arc::new(Selector::of_all(&inventory)?),
+            inventory: Arc::new(inventory),
+            split: None,
+            survey: None,
+            progress: Progress::default(),
+            learns: true,
+            lamps: Arc::default(),
         })
     }
 
     /// Returns the number of pieces of emissive surfaces.
     pub fn pieces(&self) -> usize {
-        self.pieces
+        self.inventory.pieces
     }
 
     /// Samples a light for a receiver: `u` selects the light. The remainder of `u`, rescaled to `[0, 1)`, and `v`
     /// select the point on the light. Returns `None` if no light can be sampled or the sampled point faces away.
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
-        let [near, directional, environment] = self.groups;
+        let Some(split) = self.split.as_deref() else {
+            return self.sample_from(&self.all, 1.0, true, scene, receiver, (u, v));
+        };
+        let [likely, unlikely] = split.shares;
+        if u < likely {
+            let u = (u / likely).min(1.0 - f64::EPSILON);
+            self.sample_from(&split.likely, likely, self.progress.counts_likely(), scene, receiver, (u, v))
+        } else {
+            let u = ((u - likely) / unlikely).clamp(0.0, 1.0 - f64::EPSILON);
+            self.sample_from(&split.unlikely, unlikely, true, scene, receiver, (u, v))
+        }
+    }
+
+    /// Samples a light of a selector, which is chosen with probability `chosen`.
+    #[inline]
+    fn sample_from(
+        &self,
+        selector: &Selector,
+        chosen: f64,
+        counts: bool,
+        scene: &Scene,
+        receiver: &Receiver,
+        (u, v): (f64, f32),
+    ) -> Option<LightSample> {
+        let [near, directional, environment] = selector.groups;
         let rescaled = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
         if u < near {
-            let (light, pmf, rest) = self.tree.sample(receiver, rescaled(0.0, near))?;
-            let pmf = pmf * near as f32;
-            match light.checked_sub(self.pieces) {
-                None => self.sample_surface(scene, receiver, light, pmf, (rest, v)),
-                Some(i) => self.sample_punctual(receiver, self.near[i], pmf),
+            let (light, pmf, rest) = selector.tree.sample(receiver, rescaled(0.0, near))?;
+            let light = selector.number(light);
+            let pmf = pmf * (near * chosen) as f32;
+            let surveyed = self.count_drawn(counts, light);
+            match light.checked_sub(self.inventory.pieces) {
+                None => self.sample_surface(scene, receiver, (light, surveyed), pmf, (rest, v)),
+                Some(i) => self.sample_punctual(receiver, (self.inventory.near[i], surveyed), pmf),
             }
         } else if u < near + directional {
-            let index = self.directional.sample(rescaled(near, directional)).0;
-            let pmf = directional * self.directional.pmf(index);
-            self.sample_punctual(receiver, index as u32, pmf as f32)
+            let index = selector.directional.sample(rescaled(near, directional)).0;
+            let pmf = chosen * directional * selector.directional.pmf(index);
+            let surveyed = self.count_drawn(counts, self.inventory.directional(index));
+            self.sample_punctual(receiver, (index as u32, surveyed), pmf as f32)
         } else if environment > 0.0 {
+            let surveyed = self.count_drawn(counts, self.inventory.environment());
             let (direction, pdf) = self.environment.as_ref()?.sample(rescaled(near + directional, environment), v);
-            let pdf = pdf * environment as f32;
+            let pdf = pdf * (environment * chosen) as f32;
             let emission = environment::radiance(scene.environment.as_ref()?, direction);
             Some(LightSample {
                 source: LightSource::Environment,
+                surveyed,
                 direction,
                 end: None,
                 emission,
@@ -145,11 +185,33 @@ impl Lights {
         }
     }
 
+    /// Counts a sample of a light in the survey, if there is one; returns the number that its arrival is counted by.
+    #[inline]
+    fn count_drawn(&self, counts: bool, light: usize) -> u32 {
+        match &self.survey {
+            Some(survey) if counts => {
+                survey.count_drawn(light);
+                light as u32
+            }
+            _ => UNCOUNTED,
+        }
+    }
+
+    /// Counts a light sample that was not occluded.
+    #[inline]
+    pub fn count_arrived(&self, light: &LightSample) {
+        if light.surveyed != UNCOUNTED
+            && let Some(survey) = &self.survey
+        {
+            survey.count_arrived(light.surveyed);
+        }
+    }
+
     fn sample_surface(
         &self,
         scene: &Scene,
         receiver: &Receiver,
-        piece: usize,
+        (piece, surveyed): (usize, u32),
         pmf: f32,
         at: (f64, f32),
     ) -> Option<LightSample> {
@@ -169,6 +231,7 @@ impl Lights {
         }
         Some(LightSample {
             source: LightSource::Surface { mesh: emitter.mesh, triangle: emitter.triangle, uv },
+            surveyed,
             direction,
             end: Some(LightEnd::Emitter(index, barycentric)),
             emission,
@@ -177,7 +240,7 @@ impl Lights {
         })
     }
 
-    fn sample_punctual(&self, receiver: &Receiver, index: u32, pmf: f32) -> Option<LightSample> {
+    fn sample_punctual(&self, receiver: &Receiver, (index, surveyed): (u32, u32), pmf: f32) -> Option<LightSample> {
         let (direction, end, emission, pdf) = match &self.punctual[index as usize] {
             Punctual::Near { position, intensity, shape } => {
                 let offset = position - receiver.position;
@@ -191,6 +254,7 @@ impl Lights {
         let lights = pdf > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
         lights.then_some(LightSample {
             source: LightSource::Punctual(index),
+            surveyed,
             direction,
             end,
             emission,
@@ -211,14 +275,18 @@ impl Lights {
         distance: f32,
     ) -> f32 {
         let Some(piece) = self.emitters.piece_at(emitter, uv) else { return 0.0 };
-        let pmf = self.tree.pmf(receiver, piece) * self.groups[0] as f32;
+        let pmf = match self.split.as_deref() {
+            None => self.all.tree.pmf(receiver, piece) * self.all.groups[0] as f32,
+            Some(split) => split.pmf(receiver, piece),
+        };
         let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
         to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
     }
 
     /// Returns the solid-angle pdf with which [`Lights::sample`] draws a direction towards the environment.
     pub fn environment_pdf(&self, direction: Vec3) -> f32 {
-        self.environment.as_ref().map_or(0.0, |e| e.pdf(direction) * self.groups[2] as f32)
+        let share = self.split.as_deref().map_or(self.all.groups[2], Split::environment);
+        self.environment.as_ref().map_or(0.0, |e| e.pdf(direction) * share as f32)
     }
 }
 

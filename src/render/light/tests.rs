@@ -1,6 +1,7 @@
 //! Tests of light sampling: sampled frequencies against stated probabilities, and estimates of irradiance against
 //! closed forms.
 
+use super::tree::LightTree;
 use super::*;
 use crate::exec::Pool;
 use crate::image::Image;

@@ -63,6 +63,13 @@ struct Cluster {
     parts: [u32; 2],
 }
 
+/// A part of a cluster.
+#[derive(Clone, Copy)]
+pub enum Child {
+    Cluster(usize),
+    Light(usize),
+}
+
 impl LightTree {
     /// Builds the tree. There must be fewer than 2^31 lights, each of positive intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
@@ -119,6 +126,21 @@ impl LightTree {
         let node = &mut self.nodes[index];
         (node.children, node.bounds) = (children, BoundsLanes::new(bounds.iter().copied(), scale));
         (index as u32, Bounds::union(&bounds))
+    }
+
+    /// Returns the number of clusters. A cluster has a lower index than the clusters within it.
+    pub fn clusters(&self) -> usize {
+        self.nodes.len().max(usize::from(!self.fixed.is_empty()))
+    }
+
+    /// Returns the clusters and lights directly within a cluster.
+    pub fn children(&self, cluster: usize) -> impl Iterator<Item = Child> {
+        let of_node = self.nodes.get(cluster).into_iter().flat_map(|node| node.children).filter(|&c| c != NONE);
+        let parts = of_node.map(|child| match child & LIGHT {
+            0 => Child::Cluster(child as usize),
+            _ => Child::Light((child & !LIGHT) as usize),
+        });
+        parts.chain((0..self.fixed.len()).map(Child::Light))
     }
 
     /// Samples a light in proportion to its importance for the receiver. Returns the light, its pmf, and the relative

@@ -14,6 +14,7 @@ mod layers;
 mod luminaires;
 mod parts;
 mod place;
+mod reach;
 mod refusal;
 mod requirements;
 mod shared;

@@ -1,0 +1,66 @@
+//! Counts lamps, as a person would: a connected luminous surface is one lamp, whatever its number of triangles.
+
+use super::selector::Inventory;
+use crate::error::Result;
+use crate::image::{try_collect, try_vec, try_with_capacity};
+use crate::render::emissive::Emitters;
+
+/// The lamps of a scene that are surfaces.
+pub struct Lamps {
+    /// The lamp of each piece.
+    of_pieces: Vec<u32>,
+    count: usize,
+}
+
+impl Lamps {
+    /// Joins the emitters that share a corner.
+    pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
+        let count = emitters.emitters.len();
+        let mut corners = try_with_capacity(3 * count)?;
+        for (index, emitter) in emitters.emitters.iter().enumerate() {
+            corners.extend(emitter.corners.map(|corner| (corner.to_array().map(f32::to_bits), index as u32)));
+        }
+        corners.sort_unstable();
+        let mut parents = try_collect(0..count as u32)?;
+        for pair in corners.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            let (a, b) = (root(&mut parents, pair[0].1), root(&mut parents, pair[1].1));
+            parents[a.max(b) as usize] = a.min(b);
+        }
+        // Number the lamps that have pieces.
+        let (mut of_roots, mut lamps) = (try_vec(count, u32::MAX)?, 0);
+        let of_pieces = try_collect((0..pieces).map(|piece| {
+            let lamp = &mut of_roots[root(&mut parents, emitters.emitter_of(piece) as u32) as usize];
+            if *lamp == u32::MAX {
+                (*lamp, lamps) = (lamps, lamps + 1);
+            }
+            *lamp
+        }))?;
+        Ok(Self { of_pieces, count: lamps as usize })
+    }
+
+    /// The number of all lamps of a scene, and of those of which all parts are hidden. `is_hidden` takes the number of
+    /// a light.
+    pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
+        let mut surfaces = try_vec(self.count, true)?;
+        self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));
+        let (mut lamps, mut hidden) = (surfaces.len(), surfaces.iter().filter(|&&is_hidden| is_hidden).count());
+        let near = lights.pieces..lights.bounds.len();
+        let far = (0..lights.flux.len()).filter(|&i| lights.is_far[i] && lights.flux[i] > 0.0);
+        let sky = (lights.environment > 0.0).then(|| lights.environment());
+        for light in near.chain(far.map(|i| lights.directional(i))).chain(sky) {
+            lamps += 1;
+            hidden += usize::from(is_hidden(light));
+        }
+        Ok([lamps, hidden])
+    }
+}
+
+/// The representative of an emitter; shortens the way to it.
+fn root(parents: &mut [u32], mut emitter: u32) -> u32 {
+    while parents[emitter as usize] != emitter {
+        let parent = parents[parents[emitter as usize] as usize];
+        parents[emitter as usize] = parent;
+        emitter = parent;
+    }
+    emitter
+}
