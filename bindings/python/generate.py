@@ -164,7 +164,7 @@ def enumerations(header: Header) -> dict[str, Enumeration]:
     for name in header.integers[1:]:
         if name == "luxfer_struct_type":
             continue  # The package fills structs of settings itself.
-        match = re.search(r"a (LUXFER_\w+_) (?:value|preset)", header.docs[name])
+        match = re.search(r"a\s+(LUXFER_\w+_)\s+(?:value|preset)", header.docs[name])
         if not match:
             raise SystemExit(f"the comment of {name} does not say which values it takes")
         out[name] = Enumeration(camel(name), match[1], False, header.docs[name])

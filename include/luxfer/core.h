@@ -17,13 +17,14 @@ extern "C" {
 /* ====================================================================================================================
  * Version
  *
- * The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
- * libraries with the same minor version are compatible (libluxfer.so.0.2); from 1.0 on, libraries with the same major
- * version.
+ * The macros give the version of this header; the functions give the version of the loaded library. Before 1.0,
+ * libraries with equal minor versions are compatible (libluxfer.so.0.2); from 1.0 on, libraries with equal major
+ * versions are compatible.
  *
  * A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
- * luxfer_get_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that
- * the library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
+ * luxfer_get_version() / 100 == LUXFER_VERSION / 100. From 1.0 on it should check that both versions are equal when
+ * divided by 10000 and that the library is not older than the header. luxfer::Context::create of bindings/cpp makes
+ * this check.
  * ==================================================================================================================== */
 
 /** The version of this header. */
@@ -34,17 +35,20 @@ extern "C" {
 /** The version of this header as one number, comparable with luxfer_get_version(). */
 #define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + LUXFER_VERSION_PATCH)
 
-/** The version of the loaded library, comparable with LUXFER_VERSION. Any thread. */
+/** Returns the version of the loaded library as one number, comparable with LUXFER_VERSION. Any thread. */
 uint32_t luxfer_get_version(void);
 
-/** The version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any thread. */
+/**
+ * Returns the version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any
+ * thread.
+ */
 const char *luxfer_get_version_string(void);
 
 /* ====================================================================================================================
  * Status
  *
- * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
- * function writes its outputs only when it returns LUXFER_OK. luxfer_context_get_last_error describes the failure in
+ * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
+ * A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
  * words.
  * ==================================================================================================================== */
 
@@ -57,7 +61,7 @@ typedef int32_t luxfer_status;
 /** An error that has no status value of its own. */
 #define LUXFER_UNKNOWN 1
 
-/** A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another. */
+/** A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another parameter. */
 #define LUXFER_INVALID_ARGUMENT 2
 
 /** The call is not allowed in the object's present state: a job is still running on it, or an input is missing. */
@@ -84,124 +88,128 @@ typedef int32_t luxfer_status;
 /** A bug in this library: please report it. */
 #define LUXFER_INTERNAL 10
 
-/** The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only. */
+/**
+ * The input is well formed but has no answer: for example a photo without lines, a plane seen edge-on, or strokes of
+ * one class only.
+ */
 #define LUXFER_DEGENERATE 11
 
 /** No surface, image or entry has the given name or index. */
 #define LUXFER_NOT_FOUND 12
 
 /**
- * No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
- * needed.
+ * No light can reach the target: there is no light path, all light of a channel is absorbed, or negative light would
+ * be needed.
  */
 #define LUXFER_UNREACHABLE 13
 
 /**
- * The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
- * static: never free it. Any thread.
+ * Returns the name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The
+ * string is static: never free it. Any thread.
  */
 const char *luxfer_status_get_name(luxfer_status status);
 
 /* ====================================================================================================================
  * Settings
  *
- * A struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call the
- * inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose argument
- * the compiler checks; programs in other languages call luxfer_init.
+ * Every struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call
+ * the inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose
+ * argument the compiler checks; programs in other languages call luxfer_init.
  * ==================================================================================================================== */
 
-/** A struct of settings: a LUXFER_STRUCT_ value. */
+/** The type of a struct of settings: a LUXFER_STRUCT_ value. */
 typedef int32_t luxfer_struct_type;
 
-/** luxfer_context_params. */
+/** The luxfer_context_params. */
 #define LUXFER_STRUCT_CONTEXT_PARAMS 0
 
-/** luxfer_image_view. */
+/** The luxfer_image_view. */
 #define LUXFER_STRUCT_IMAGE_VIEW 1
 
-/** luxfer_scene_load_params. */
+/** The luxfer_scene_load_params. */
 #define LUXFER_STRUCT_SCENE_LOAD_PARAMS 2
 
-/** luxfer_material_params. */
+/** The luxfer_material_params. */
 #define LUXFER_STRUCT_MATERIAL_PARAMS 3
 
-/** luxfer_mesh_params. */
+/** The luxfer_mesh_params. */
 #define LUXFER_STRUCT_MESH_PARAMS 4
 
-/** luxfer_camera_params. */
+/** The luxfer_camera_params. */
 #define LUXFER_STRUCT_CAMERA_PARAMS 5
 
-/** luxfer_light_params. */
+/** The luxfer_light_params. */
 #define LUXFER_STRUCT_LIGHT_PARAMS 6
 
-/** luxfer_luminaire_params. */
+/** The luxfer_luminaire_params. */
 #define LUXFER_STRUCT_LUMINAIRE_PARAMS 7
 
-/** luxfer_render_params. */
+/** The luxfer_render_params. */
 #define LUXFER_STRUCT_RENDER_PARAMS 8
 
-/** luxfer_rectify_params. */
+/** The luxfer_rectify_params. */
 #define LUXFER_STRUCT_RECTIFY_PARAMS 9
 
-/** luxfer_features_params. */
+/** The luxfer_features_params. */
 #define LUXFER_STRUCT_FEATURES_PARAMS 10
 
-/** luxfer_segment_params. */
+/** The luxfer_segment_params. */
 #define LUXFER_STRUCT_SEGMENT_PARAMS 11
 
-/** luxfer_emission_params. */
+/** The luxfer_emission_params. */
 #define LUXFER_STRUCT_EMISSION_PARAMS 12
 
-/** luxfer_relight_params. */
+/** The luxfer_relight_params. */
 #define LUXFER_STRUCT_RELIGHT_PARAMS 13
 
-/** luxfer_pattern_params. */
+/** The luxfer_pattern_params. */
 #define LUXFER_STRUCT_PATTERN_PARAMS 14
 
-/** luxfer_transfer_params. */
+/** The luxfer_transfer_params. */
 #define LUXFER_STRUCT_TRANSFER_PARAMS 15
 
-/** luxfer_illuminance_params. */
+/** The luxfer_illuminance_params. */
 #define LUXFER_STRUCT_ILLUMINANCE_PARAMS 16
 
-/** luxfer_illuminance_grid. */
+/** The luxfer_illuminance_grid. */
 #define LUXFER_STRUCT_ILLUMINANCE_GRID 17
 
-/** luxfer_lamps_params. */
+/** The luxfer_lamps_params. */
 #define LUXFER_STRUCT_LAMPS_PARAMS 18
 
-/** luxfer_importance_params. */
+/** The luxfer_importance_params. */
 #define LUXFER_STRUCT_IMPORTANCE_PARAMS 19
 
-/** luxfer_placement_params. */
+/** The luxfer_placement_params. */
 #define LUXFER_STRUCT_PLACEMENT_PARAMS 20
 
-/** luxfer_false_colour_params. */
+/** The luxfer_false_colour_params. */
 #define LUXFER_STRUCT_FALSE_COLOUR_PARAMS 21
 
-/** luxfer_guides_params. */
+/** The luxfer_guides_params. */
 #define LUXFER_STRUCT_GUIDES_PARAMS 22
 
-/** luxfer_stylize_params. */
+/** The luxfer_stylize_params. */
 #define LUXFER_STRUCT_STYLIZE_PARAMS 23
 
-/** luxfer_sheet_params. */
+/** The luxfer_sheet_params. */
 #define LUXFER_STRUCT_SHEET_PARAMS 24
 
-/** luxfer_plan_params. */
+/** The luxfer_plan_params. */
 #define LUXFER_STRUCT_PLAN_PARAMS 25
 
-/** luxfer_render_part. */
+/** The luxfer_render_part. */
 #define LUXFER_STRUCT_RENDER_PART 26
 
-/** luxfer_demo_photo_params. */
+/** The luxfer_demo_photo_params. */
 #define LUXFER_STRUCT_DEMO_PHOTO_PARAMS 27
 
 /**
- * Fills the struct at place with the defaults of its type; size is its sizeof. A smaller size, from an older header,
- * fills the fields of that version. Any thread.
- * LUXFER_INVALID_ARGUMENT if the type is unknown, if place is NULL, or if no version of the struct has this size;
- * LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
+ * Fills the struct at place with the defaults of its type, which is given as a LUXFER_STRUCT_ value. The argument
+ * size is sizeof the struct. If the program was built with an older header, in which the struct is smaller, only the
+ * fields of that version are filled. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the type is another value, if place is NULL, or if no version of the struct has this
+ * size; LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
  */
 luxfer_status luxfer_init(luxfer_struct_type which,
                           void *place,
@@ -214,20 +222,21 @@ luxfer_status luxfer_init(luxfer_struct_type which,
  * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
- * Structs: a function that fills a struct takes the size of the struct; pass sizeof. Such functions are the _init
- * functions of settings and the functions that get reports. They set struct_size, the first field; leave it as it is.
- * So a program that was built with an older header works with a newer library: settings that the program does not know
- * keep their defaults.
+ * Structs: each function that fills a struct of the caller takes the size of the struct; pass sizeof. These functions
+ * are the _init functions of settings and the functions that get reports. They store the size in struct_size, the
+ * first field; leave this field as it is. From the size the library knows which version of the header the program was
+ * built with. So a program that was built with an older header works with a newer library: settings that the program
+ * does not know keep their defaults.
  *
- * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
- * handle in most cases, but not if its memory has been reused.
+ * Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. A released
+ * handle gives LUXFER_INVALID_ARGUMENT too, unless its memory has been used again.
  *
  * Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
  * use different objects at the same time, and also the same object: calls that change an object wait for each other.
  * Only the release of the last reference must not overlap with another use of the object.
  *
- * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
- * not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+ * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL). It reads no environment variables,
+ * does not end the process on an error and installs no signal handlers. All state belongs to a context, with one
  * exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
  * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
  *
@@ -235,11 +244,11 @@ luxfer_status luxfer_init(luxfer_struct_type which,
  * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
  * luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
  *
- * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
+ * Stack: a thread of the host needs 128 KiB of stack for calls that load files or do other work before they return.
  *
- * With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
- * any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
- * the mode of the host on return. Callbacks run in the standard mode.
+ * Reproducibility: on one machine, equal inputs, parameters and seeds give results that are equal to the bit, for any
+ * number of threads and any floating-point mode (rounding, flush to zero) of the host. A call sets the standard mode
+ * on entry and restores the mode of the host on return. Callbacks run in the standard mode.
  * ==================================================================================================================== */
 
 /** A context: threads, memory budget and error messages. See luxfer_context_create. */
@@ -250,15 +259,16 @@ typedef struct luxfer_context_params {
     /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
     /**
-     * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
-     * these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
-     * or on another set of as many threads, which the context starts when such a call first needs it.
+     * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
+     * share these threads. Synchronous calls, which do their work before they return, never wait for a job: they run
+     * on the calling thread or on threads of their own. Each such call gets a set of num_threads threads. The context
+     * starts as many sets as calls run at the same time, and keeps up to four sets for later calls.
      */
     uint32_t num_threads;
     /**
-     * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. While a picture file is read, the
-     * memory of its decoder counts too. The working memory of jobs and their results do not count.
+     * Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
+     * default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is
+     * read, the memory of its decoder counts too. The working memory and the results of jobs do not count.
      */
     uint64_t memory_budget_mib;
 } luxfer_context_params;
@@ -277,11 +287,11 @@ luxfer_status luxfer_context_create(const luxfer_context_params *params,
                                     luxfer_context **context);
 
 /**
- * Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
- * truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
- * has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
- * that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
- * valid leaves no message. Any thread.
+ * Copies the message of the calling thread's latest failed call in this context into buffer: zero-terminated UTF-8,
+ * truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole message
+ * needs. If no call of this thread has failed, the message is empty. A message stays until the thread's next failure;
+ * the context keeps the messages of the 256 threads that failed last. buffer may be NULL if capacity is 0. A call
+ * that fails because its first handle is not valid leaves no message. Any thread.
  */
 luxfer_status luxfer_context_get_last_error(luxfer_context *context,
                                             char *buffer,
@@ -305,9 +315,9 @@ luxfer_status luxfer_retain(void *handle);
  * Removes a reference to an object of any kind; NULL does nothing. Any thread.
  *
  * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
- * long as its job, which continues. Two releases take time. The last reference to a job cancels the job and waits
- * until it has ended; the last reference to a context and all objects created in it waits until the worker threads
- * have ended.
+ * long as its job, which continues. Two releases take time. Releasing the last reference to a job cancels the job and
+ * waits until it has ended. Releasing the last reference to a context and all objects created in it waits until the
+ * worker threads have ended.
  * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
  */
 luxfer_status luxfer_release(void *handle);
@@ -315,15 +325,15 @@ luxfer_status luxfer_release(void *handle);
 /* ====================================================================================================================
  * Image
  *
- * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
- * bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
- * the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
+ * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top
+ * to bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels
+ * in the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
  * ==================================================================================================================== */
 
 /** Flag of a view: the first row in memory is the bottom one. */
 #define LUXFER_VIEW_BOTTOM_UP 1
 
-/** An image. See luxfer_image_create. */
+/** An image in the library's memory. See luxfer_image_create. */
 typedef struct luxfer_image luxfer_image;
 
 /** Storage type of a sample, in the machine's byte order: a LUXFER_SAMPLE_ value. */
@@ -332,7 +342,10 @@ typedef int32_t luxfer_sample;
 /** Encoding of the values: a LUXFER_COLOUR_ value. */
 typedef int32_t luxfer_colour_space;
 
-/** An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data. */
+/**
+ * An image in the caller's memory. Fill it with luxfer_image_view_init, then set width, height, sample, byte_size and
+ * data.
+ */
 typedef struct luxfer_image_view {
     /** sizeof(luxfer_image_view), set by luxfer_image_view_init. */
     uint32_t struct_size;
@@ -342,21 +355,27 @@ typedef struct luxfer_image_view {
     luxfer_sample sample;
     /** LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR. */
     luxfer_colour_space colour_space;
-    /** Pixels in a row, in [1, 65536]; default 0, to be set. */
+    /** Width in pixels, in [1, 65536]; default 0: the caller must set it. */
     uint32_t width;
-    /** Rows, in [1, 65536]; default 0, to be set. */
+    /** Height in pixels, in [1, 65536]; default 0: the caller must set it. */
     uint32_t height;
     /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
     uint32_t flags;
     /** Must be 0. */
     uint32_t reserved;
-    /** Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed. */
+    /** Bytes from one pixel to the next, at least the size of a pixel; 0, the default: pixels are packed. */
     size_t pixel_stride;
-    /** Bytes from one row to the next; at least the size of a row, or 0, the default: packed. */
+    /** Bytes from one row to the next, at least the size of a row; 0, the default: rows are packed. */
     size_t row_stride;
-    /** Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set. */
+    /**
+     * Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the pixels
+     * and the strides need more.
+     */
     size_t byte_size;
-    /** The pixels; any alignment. Bytes between pixels and rows are never touched. To be set. */
+    /**
+     * The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
+     * touched.
+     */
     void *data;
 } luxfer_image_view;
 
@@ -384,8 +403,8 @@ static inline luxfer_status luxfer_image_view_init(luxfer_image_view *place, siz
 #define LUXFER_COLOUR_SRGB 1
 
 /**
- * Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
- * caller releases *image. Any thread.
+ * Creates an image from a copy of the caller's pixels. Integers and sRGB are decoded; NaN and infinities are kept.
+ * The caller releases *image. Any thread.
  * LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
@@ -393,26 +412,29 @@ luxfer_status luxfer_image_create(luxfer_context *context,
                                   luxfer_image **image);
 
 /**
- * Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, and rotates it upright by
- * its EXIF orientation. path is UTF-8. With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709
- * from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of
- * OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). Without such a statement, integer samples are sRGB and
- * floating-point samples linear. See luxfer_photo_metadata.colour. With LUXFER_COLOUR_LINEAR, for data such as masks
- * and depth, samples are not converted. An OpenEXR picture has the size of its display window. Grey with alpha
- * becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
- * thread.
+ * Loads an image file and rotates it upright by its EXIF orientation; path is UTF-8. The formats are JPEG, PNG, WebP,
+ * TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR. With LUXFER_COLOUR_SRGB, for pictures, colours are
+ * converted to linear Rec.709 from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of
+ * PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). If the file states none,
+ * integer samples are taken as sRGB and floating-point samples as linear; luxfer_photo_metadata.colour tells which
+ * case applied. With LUXFER_COLOUR_LINEAR, for data such as masks and depth, samples are not converted. An OpenEXR
+ * picture has the size of its display window. Grey with alpha becomes RGBA, palettes and CMYK become RGB; colours are
+ * not multiplied by alpha. The caller releases *image. Any thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
- * the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL, raw
- * data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G,
- * B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY
- * beyond the memory budget.
+ * the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
+ * raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
+ * R, G, B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side,
+ * LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
                                 luxfer_colour_space colour_space,
                                 luxfer_image **image);
 
-/** Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load. */
+/**
+ * Loads an image from a file in memory of size bytes at data. Formats, colours, ownership, threads and errors are as
+ * for luxfer_image_load.
+ */
 luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
@@ -420,19 +442,23 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        luxfer_image **image);
 
 /**
- * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
- * exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
- * states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
- * is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner. Symbolic
- * links are followed; devices, FIFOs and files with several names are written in place. All functions of this library
- * save files in this way. Any thread.
- * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
+ * Saves an image to a file; path is UTF-8, and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied
+ * by exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the
+ * file states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709;
+ * exposure is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner.
+ * Symbolic links are followed; devices, FIFOs and files with several names are written in place. All functions of
+ * this library save files in this way. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
+ * file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
                                 const char *path,
                                 float exposure);
 
-/** Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
+/**
+ * Gets the width and height of an image in pixels and its number of channels; any of the three pointers may be NULL.
+ * Any thread.
+ */
 luxfer_status luxfer_image_get_size(luxfer_image *image,
                                     uint32_t *width,
                                     uint32_t *height,
@@ -440,8 +466,8 @@ luxfer_status luxfer_image_get_size(luxfer_image *image,
 
 /**
  * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
- * of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
- * Any thread.
+ * of the image, starting at first_channel. Integer samples are clamped to their range and rounded; NaN becomes 0 in
+ * them. Any thread.
  * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
  */
 luxfer_status luxfer_image_read(luxfer_image *image,
@@ -452,14 +478,14 @@ luxfer_status luxfer_image_read(luxfer_image *image,
  * Photo metadata
  *
  * The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
- * colours were understood. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
- * focal length as a prior unless the caller sets one; the lines of the photo outweigh it where they determine it
- * better. The library does not use white_luminance by itself: to apply it, copy it to
+ * colours were interpreted. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
+ * focal length as a prior, unless the caller sets a focal length; the lines of the photo outweigh the prior where
+ * they determine the focal length better. The library does not use white_luminance by itself: to apply it, copy it to
  * luxfer_transfer_params.white_luminance.
  * ==================================================================================================================== */
 
 /**
- * How the colours of an image were understood: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
+ * How the colours of an image were interpreted: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
  * ones may be added.
  */
 typedef int32_t luxfer_file_colour;
@@ -494,18 +520,18 @@ typedef struct luxfer_photo_metadata {
      */
     double white_luminance;
     /**
-     * Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard output
-     * sensitivity instead.
+     * Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
+     * standard output sensitivity instead.
      */
     double white_luminance_low;
     /**
-     * Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is a
-     * recommended exposure index.
+     * Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case that the
+     * ISO speed is a recommended exposure index.
      */
     double white_luminance_high;
-    /** How the colours of the file were understood. */
+    /** How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value. */
     luxfer_file_colour colour;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
 } luxfer_photo_metadata;
 
@@ -525,8 +551,8 @@ typedef struct luxfer_photo_metadata {
 
 /**
  * A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
- * inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
- * Export the photo as sRGB.
+ * inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be
+ * wrong. Export the photo as sRGB.
  */
 #define LUXFER_FILE_COLOUR_UNCONVERTED 4
 
@@ -544,26 +570,29 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
 /* ====================================================================================================================
  * Strokes
  *
- * What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
- * or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
- * luxfer_features_set_strokes. A stage copies the strokes; after you have added strokes, hand them to the stage again.
+ * Strokes that a user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a
+ * drawing or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
+ * luxfer_features_set_strokes. A stage copies the strokes; if you add strokes later, hand them to the stage again.
  * ==================================================================================================================== */
 
-/** Strokes for images of one size. See luxfer_strokes_create. */
+/** A set of strokes for images of one size. See luxfer_strokes_create. */
 typedef struct luxfer_strokes luxfer_strokes;
 
-/** The mask that strokes are for: a LUXFER_PHASE_ value. */
+/** The mask for which strokes are painted: a LUXFER_PHASE_ value. */
 typedef int32_t luxfer_phase;
 
-/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
+/**
+ * The mask of the plane that carries the lights: positive strokes lie on the plane; strokes on lights count as
+ * positive strokes too.
+ */
 #define LUXFER_PHASE_PLANE 0
 
-/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
+/** The mask of the lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
 #define LUXFER_PHASE_LIGHTS 1
 
 /**
- * Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes.
- * Any thread.
+ * Creates an empty set of strokes for a photo, or for features, of width x height pixels. The caller releases
+ * *strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
  */
 luxfer_status luxfer_strokes_create(luxfer_context *context,
@@ -572,10 +601,10 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
                                     luxfer_strokes **strokes);
 
 /**
- * Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
- * them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5,
- * 0.5); radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later
- * stroke counts. Any thread.
+ * Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
+ * for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
+ * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096].
+ * Where positive and negative strokes overlap, the later stroke counts. Any thread.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
                                  luxfer_phase phase,
@@ -585,56 +614,60 @@ luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
                                  int32_t positive);
 
 /**
- * Adds the strokes of a drawing of the same size: green (0, 255, 0) is plane, red (255, 0, 0) not plane, yellow (255,
- * 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels are ignored. Load drawings with
- * LUXFER_COLOUR_SRGB. Any thread.
+ * Adds the strokes of a drawing, an image of the size given to luxfer_strokes_create. Green (0, 255, 0) is plane, red
+ * (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels
+ * are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
  * LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
  */
 luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
                                        luxfer_image *drawing);
 
 /**
- * Adds the strokes of a text in UTF-8. Each line has a class, a radius, and x and y of the points in pixels, such as
- * "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a comment. Any thread.
+ * Adds the strokes of a text in UTF-8. Each line has a class, a radius in pixels, and x and y of the points in
+ * pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a
+ * comment. Any thread.
  * LUXFER_FORMAT, naming the line, if the text is malformed.
  */
 luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
                                       const char *description);
 
-/** Removes all strokes. Stages keep their copies. Any thread. */
+/** Removes all strokes of a set. Stages keep their copies. Any thread. */
 luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
 
 /* ====================================================================================================================
  * Job
  *
- * X_start starts long work and returns a job at once; the job runs on threads of the library. It works on the inputs
- * as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
- * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
- * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+ * Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
+ * runs on threads of the library. It works on the inputs as they are at the start: changing or releasing them later
+ * does not affect the job. While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION).
+ * Read the results from the object after the job has succeeded. Releasing the last reference to a running job cancels
+ * the job and waits until it has ended.
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
  * waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
  * ==================================================================================================================== */
 
-/** Work in progress. See luxfer_job_wait. */
+/** A job: work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
 
 /**
- * Receives the progress of a job: fraction starts at 0 and never falls. It is exactly 1 only once: in the last call,
- * after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the
- * function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer function.
- * It must not throw an exception or leave by longjmp.
+ * Receives the progress of a job: fraction starts at 0 and never falls. The fraction is exactly 1 only once: in the
+ * last call, after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait
+ * calls the function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer
+ * function. The function must not throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
- * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
- * progress may be NULL; it receives user. Any thread; several threads may wait for one job.
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
+ * call reports to the function progress, which may be NULL, and passes the pointer user to it. Any thread; several
+ * threads may wait for one job.
  *
- * Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
- * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if
- * the function of the job waits for its own job. If the function of another job (luxfer_job_start) waits for this job,
- * a cancel request to the other job also cancels this job.
+ * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
+ * message of this call.
+ * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
+ * LUXFER_INVALID_OPERATION if the function of the job waits for its own job. If the function of another job
+ * (luxfer_job_start) waits for this job, a cancel request to the other job also cancels this job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -642,9 +675,10 @@ luxfer_status luxfer_job_wait(luxfer_job *job,
                               void *user);
 
 /**
- * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1]; *outcome
- * receives the status with which the job has ended, as luxfer_job_wait returns it, or LUXFER_NOT_READY while the job
- * runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any thread.
+ * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1], which is 1
+ * only after success. *outcome receives the status with which the job has ended, as luxfer_job_wait returns it, or
+ * LUXFER_NOT_READY while the job runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any
+ * thread.
  */
 luxfer_status luxfer_job_get_progress(luxfer_job *job,
                                       double *fraction,
@@ -659,8 +693,8 @@ luxfer_status luxfer_job_cancel(luxfer_job *job);
 /* ====================================================================================================================
  * Functions of the caller as jobs
  *
- * Calls that return when their work is done (files, warps, pictures of results) may take long for large inputs.
- * luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress and cancel it.
+ * Synchronous calls (files, warps, pictures of results) may take long for large inputs. luxfer_job_start runs any
+ * sequence of calls as a job, so that a user interface can show its progress and cancel it.
  * ==================================================================================================================== */
 
 /**
@@ -670,12 +704,12 @@ luxfer_status luxfer_job_cancel(luxfer_job *job);
 typedef int32_t (*luxfer_work_fn)(void *user);
 
 /**
- * Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. work receives
- * user, and may call any function of the library. A cancel request to this job ends the calls that work makes in this
- * context with LUXFER_CANCELLED; a call that loads a file ends between two meshes or pictures. The request also
- * cancels the jobs that work waits for. The progress of this job is the progress of these calls and jobs, and never
- * falls. If work returns an error, the job gets the message of the last call that failed on its thread. The caller
- * releases *job. Any thread.
+ * Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. The function
+ * receives the pointer user, and may call any function of the library. A cancel request to this job makes the
+ * function's calls in this context end with LUXFER_CANCELLED; a call that loads a file ends between two meshes or
+ * pictures. The request also cancels the jobs that the function waits for. The progress of this job is the progress
+ * of these calls and jobs, and never falls. If the function returns an error, the job gets the message of the last
+ * call that failed on its thread. The caller releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

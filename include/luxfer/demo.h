@@ -16,11 +16,11 @@ extern "C" {
 /* ====================================================================================================================
  * Demonstration
  *
- * Scenes and artworks that the library generates itself, for examples and tests: equal to the bit every time, without
- * files.
+ * Scenes and artworks for examples and tests. The library generates them without any files, and every call gives
+ * results that are equal to the bit.
  * ==================================================================================================================== */
 
-/** A generated scene: a LUXFER_DEMO_ value. */
+/** A scene that the library generates: a LUXFER_DEMO_ value. */
 typedef int32_t luxfer_demo;
 
 /** The style of a generated artwork: a LUXFER_ARTWORK_ value. */
@@ -29,37 +29,39 @@ typedef int32_t luxfer_artwork;
 /** A furnished room without lights; its ceiling is the object "Ceiling". */
 #define LUXFER_DEMO_TARGET_ROOM 0
 
-/** An office under a grid of luminaires; camera 0 takes the photo. */
+/** An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0. */
 #define LUXFER_DEMO_EXEMPLAR_ROOM 1
 
 /** A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation. */
 #define LUXFER_DEMO_SPHERE_ON_TABLE 2
 
 /**
- * A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a stylisation.
+ * A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a
+ * stylisation.
  */
 #define LUXFER_DEMO_STILL_LIFE 3
 
-/** Hatching with a pen and two inks. */
+/** Pen: hatching in two inks. */
 #define LUXFER_ARTWORK_PEN 0
 
-/** Dots of two inks. */
+/** Stipple: dots of two inks. */
 #define LUXFER_ARTWORK_STIPPLE 1
 
-/** Oil on canvas. */
+/** Paint: oil on canvas. */
 #define LUXFER_ARTWORK_PAINT 2
 
 /**
- * Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
- * LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
+ * LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_demo_create_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
 
 /**
- * Draws an artwork of a scene in place of an artist, of the size of its guides and aligned with them; designed for
- * LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to a few seconds. The caller releases
- * *image. Any thread.
- * LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
+ * Generates a picture of a scene as an artist would paint it. The parameter guides holds the rendered guide images of
+ * the scene; the artwork has their size and is aligned with them. The styles are designed for
+ * LUXFER_DEMO_SPHERE_ON_TABLE. style is a LUXFER_ARTWORK_ value. The call takes up to a few seconds. The caller
+ * releases *image. Any thread.
+ * LUXFER_INVALID_ARGUMENT if style is another value; LUXFER_NOT_READY before the guides are rendered.
  */
 luxfer_status luxfer_demo_create_artwork(luxfer_guides *guides,
                                          luxfer_artwork style,
@@ -68,14 +70,14 @@ luxfer_status luxfer_demo_create_artwork(luxfer_guides *guides,
 /* ====================================================================================================================
  * Demonstration photo
  *
- * A photo of the generated office, as a camera would take it, and strokes on it, as a user would paint them: the input
- * of a lighting transfer without files.
+ * Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user
+ * would paint them. They are the input of a lighting transfer without files.
  * ==================================================================================================================== */
 
 /** A generator of the demonstration photo. See luxfer_demo_photo_create. */
 typedef struct luxfer_demo_photo luxfer_demo_photo;
 
-/** Settings of the photo. Fill them with luxfer_demo_photo_params_init. */
+/** Settings of the demonstration photo. Fill them with luxfer_demo_photo_params_init. */
 typedef struct luxfer_demo_photo_params {
     /** sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init. */
     uint32_t struct_size;
@@ -83,9 +85,9 @@ typedef struct luxfer_demo_photo_params {
     uint32_t width;
     /** Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2. */
     uint32_t height;
-    /** Paths per pixel, in [2, 1048576]; default 12, which leaves some noise. */
+    /** Paths per pixel, in [2, 1048576]; default 12, which leaves visible noise. */
     uint32_t samples;
-    /** Seed of the paths and the noise; default 1. */
+    /** Seed of the paths and of the sensor noise; default 1. */
     uint64_t seed;
 } luxfer_demo_photo_params;
 
@@ -97,25 +99,26 @@ static inline luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_para
 /** An image of the demonstration photo: a LUXFER_DEMO_PHOTO_ value. */
 typedef int32_t luxfer_demo_photo_image;
 
-/** The photo: linear RGB, 1 = display white; its lamps are clipped. */
+/** The photo: linear RGB, 1 = display white; lamps are clipped to white. */
 #define LUXFER_DEMO_PHOTO_PICTURE 0
 
-/** The strokes on it, in the colours of luxfer_strokes_add_image. */
+/** The strokes on the photo, as a drawing in the colours of luxfer_strokes_add_image. */
 #define LUXFER_DEMO_PHOTO_STROKES 1
 
-/** Creates the stage. The caller releases *demo. Any thread. */
+/** Creates a generator of the demonstration photo. The caller releases *demo. Any thread. */
 luxfer_status luxfer_demo_photo_create(luxfer_context *context, luxfer_demo_photo **demo);
 
 /**
  * Starts a job that renders the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ * LUXFER_INVALID_OPERATION if a job is already running; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
                                       const luxfer_demo_photo_params *params,
                                       luxfer_job **job);
 
 /**
- * Gets an image; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+ * Gets the image that a LUXFER_DEMO_PHOTO_ value selects: the photo or its strokes. The caller releases *image. Any
+ * thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,

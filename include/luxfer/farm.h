@@ -16,12 +16,12 @@ extern "C" {
 /* ====================================================================================================================
  * Renderings in parts
  *
- * Renders an image on several machines: each machine renders parts, rectangles of the image and ranges of its paths,
- * into files, and one machine merges the files. The result equals the image that one machine renders as a single part,
- * for any parts in any order, except for the rounding of sums in double precision. A lost part can be rendered again
- * and is equal to the bit.
+ * Renders an image on several machines. A part is a rectangle of the image and a range of its paths. Each machine
+ * renders parts into files, and one machine merges the files. The result equals the image that one machine renders as
+ * a single part, for any division into parts and any order, except for the rounding of sums in double precision. A
+ * lost part can be rendered again and is then equal to the bit.
  *
- * Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
+ * A part has a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
  * parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
  *
  * The files are OpenEXR: R, G, B show the part at its place in the image, and integer channels store its sums.
@@ -42,7 +42,7 @@ typedef struct luxfer_render_part {
     uint32_t width;
     /** Height in pixels; default 0: up to the bottom edge of the image. */
     uint32_t height;
-    /** Index of the first path of each pixel; default 0. */
+    /** Index of the first path of each pixel, from 0; default 0. */
     uint32_t first_sample;
     /** Paths per pixel; default 0: all paths from first_sample up to luxfer_render_params.samples. */
     uint32_t samples;
@@ -54,12 +54,12 @@ static inline luxfer_status luxfer_render_part_init(luxfer_render_part *place, s
 }
 
 /**
- * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of
- * about equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all
- * rectangles of one range come before the next range. params may be NULL for the defaults; set part->struct_size
- * before the call. size is sizeof *part. Any thread.
- * LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
- * would be empty.
+ * Gets one part of a rendering. The image is split into columns x rows rectangles, and the paths of each pixel into
+ * as many ranges as the parameter ranges says; all parts have about equal size. index is less than columns * rows *
+ * ranges. It counts the rectangles row by row, and all rectangles of one range come before those of the next range.
+ * params may be NULL for the defaults. size is sizeof *part. Any thread.
+ * LUXFER_INVALID_ARGUMENT if there is no such part, or if some parts would be empty because there are more columns,
+ * rows or ranges than pixels or paths to split.
  */
 luxfer_status luxfer_render_split(luxfer_render *render,
                                   const luxfer_render_params *params,
@@ -71,12 +71,12 @@ luxfer_status luxfer_render_split(luxfer_render *render,
                                   size_t size);
 
 /**
- * Starts a job that renders a part, or the whole if part is NULL, and writes it into a file; path is UTF-8, and an
- * existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this part
- * alone. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the number of
- * paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
+ * Starts a job that renders a part, or the whole image if part is NULL, and writes it into a file. path is UTF-8, and
+ * an existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this
+ * part alone. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+ * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the
+ * number of paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        const luxfer_render_params *params,
@@ -85,10 +85,10 @@ luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        luxfer_job **job);
 
 /**
- * Adds a file of luxfer_render_start_part to the files to merge; path is UTF-8. The call reads only the header of the
- * file; the merge reads the rest. Any thread.
- * LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION while a
- * job runs.
+ * Adds a file that luxfer_render_start_part has written to the files to merge; path is UTF-8. The call reads only the
+ * header of the file; the merge reads the rest. Any thread.
+ * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION
+ * while a job runs.
  */
 luxfer_status luxfer_render_add_part(luxfer_render *render,
                                      const char *path);
@@ -100,11 +100,12 @@ luxfer_status luxfer_render_add_part(luxfer_render *render,
 luxfer_status luxfer_render_clear_parts(luxfer_render *render);
 
 /**
- * Starts a job that merges the files, added in any order; afterwards the rendering has its images and layers as after
- * luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene, if
- * parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
+ * Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has its images and layers as
+ * after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+ * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene,
+ * if parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be
+ * read.
  */
 luxfer_status luxfer_render_start_merge(luxfer_render *render,
                                         const luxfer_render_params *params,

@@ -16,28 +16,25 @@ extern "C" {
 /* ====================================================================================================================
  * Illuminance
  *
- * Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates, with the standard
- * error of every point, and with mean and extremes for reports.
+ * Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. An image gives the
+ * standard error of each point, and a report gives the mean, the minimum and the maximum.
  * ==================================================================================================================== */
 
 /** A calculation of illuminance. See luxfer_illuminance_create. */
 typedef struct luxfer_illuminance luxfer_illuminance;
 
 /**
- * A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
- * faces up.
+ * A calculation grid: a parallelogram of columns x rows cells, with a point at the centre of each cell. Fill it with
+ * luxfer_illuminance_grid_init. The default is a square metre at the origin that faces up.
  */
 typedef struct luxfer_illuminance_grid {
     /** sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init. */
     uint32_t struct_size;
     /** Corner of the grid, in metres; default (0, 0, 0). */
     float origin[3];
-    /**
-     * Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the centres
-     * of the cells.
-     */
+    /** Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0). */
     float across[3];
-    /** Edge of the grid along which the rows are counted, in metres; default (0, 0, 1). */
+    /** Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1). */
     float down[3];
     /** Normal of the side that receives the light; any length but 0; default (0, 1, 0). */
     float normal[3];
@@ -50,13 +47,13 @@ static inline luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid
     return luxfer_init(LUXFER_STRUCT_ILLUMINANCE_GRID, place, size);
 }
 
-/** Settings of the calculation. Fill them with luxfer_illuminance_params_init. */
+/** Settings of an illuminance calculation. Fill them with luxfer_illuminance_params_init. */
 typedef struct luxfer_illuminance_params {
     /** sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init. */
     uint32_t struct_size;
-    /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
+    /** Number of points along the first edge of a grid, or along u of a mesh, in [1, 65536]; default 32. */
     uint32_t columns;
-    /** Points along the second edge or texture coordinate, in [1, 65536]; default 32. */
+    /** Number of points along the second edge of a grid, or along v of a mesh, in [1, 65536]; default 32. */
     uint32_t rows;
     /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
     uint32_t samples;
@@ -69,7 +66,7 @@ static inline luxfer_status luxfer_illuminance_params_init(luxfer_illuminance_pa
     return luxfer_init(LUXFER_STRUCT_ILLUMINANCE_PARAMS, place, size);
 }
 
-/** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
+/** An image of an illuminance calculation: a LUXFER_ILLUMINANCE_ value. */
 typedef int32_t luxfer_illuminance_image;
 
 /** Summary of the illuminance, in lux. */
@@ -78,7 +75,7 @@ typedef struct luxfer_illuminance_report {
     uint32_t struct_size;
     /** Number of points; on a mesh, the texels that the surface covers. */
     uint32_t points;
-    /** Smallest illuminance; minimum / mean is the uniformity U0. */
+    /** Smallest illuminance. The uniformity U0 is minimum / mean. */
     double minimum;
     /** Mean illuminance. */
     double mean;
@@ -94,8 +91,9 @@ typedef struct luxfer_illuminance_report {
 /** Standard error of each value, in lux; 1 channel. */
 #define LUXFER_ILLUMINANCE_ERROR 1
 
-/** Creates the stage. The caller releases *illuminance. Any thread. */
-luxfer_status luxfer_illuminance_create(luxfer_context *context, luxfer_illuminance **illuminance);
+/** Creates an object that computes illuminance. It has no inputs yet. The caller releases *illuminance. Any thread. */
+luxfer_status luxfer_illuminance_create(luxfer_context *context,
+                                        luxfer_illuminance **illuminance);
 
 /** Sets the scene; each job uses the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxfer_scene *scene);
@@ -103,8 +101,8 @@ luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxf
 /**
  * Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
  * releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
- * if the scene is not valid, the grid has no normal, or a setting is out of range.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, the grid has no normal, or a setting is out of range.
  */
 luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             const luxfer_illuminance_grid *grid,
@@ -112,12 +110,12 @@ luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             luxfer_job **job);
 
 /**
- * Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
- * along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
- * for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
- * if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if a setting is out of
- * range.
+ * Starts a job that computes the illuminance on a mesh at texels of its first set of texture coordinates: columns
+ * along u, rows along v. The parameter back is 0 for the front side of the triangles (by their winding), 1 for the
+ * back side. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
+ * if a setting is out of range.
  */
 luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
                                             uint32_t mesh,
@@ -126,7 +124,8 @@ luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
                                             luxfer_job **job);
 
 /**
- * Gets an image of the calculation; which is a LUXFER_ILLUMINANCE_ value. The caller releases *image. Any thread.
+ * Gets the image that a LUXFER_ILLUMINANCE_ value selects: the illuminances or their errors. The caller releases
+ * *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
@@ -144,56 +143,57 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
 /* ====================================================================================================================
  * Lamps
  *
- * Finds powers of the lamps of an emission, within bounds, that come nearest to several goals. A goal is a surface or
- * a calculation grid that should receive a given light. For each goal, one set of paths measures its response to all
- * lamps at once, even to thousands.
+ * Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
+ * is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
+ * light that the goal receives from each lamp, for all lamps at once, even for thousands.
  * ==================================================================================================================== */
 
 /** A solver for the powers of lamps. See luxfer_lamps_create. */
 typedef struct luxfer_lamps luxfer_lamps;
 
 /**
- * Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture, or a
- * connected piece of the meshes if the emission has no texture.
+ * Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture,
+ * or a connected piece of the meshes if the emission has no texture.
  */
 typedef int32_t luxfer_group;
 
-/** Settings of the calculation. Fill them with luxfer_lamps_params_init. */
+/** Settings of the solver for lamps. Fill them with luxfer_lamps_params_init. */
 typedef struct luxfer_lamps_params {
     /** sizeof(luxfer_lamps_params), set by luxfer_lamps_params_init. */
     uint32_t struct_size;
-    /** LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
+    /** Lamps that share one power: a LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
     luxfer_group group;
     /**
-     * Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a new
-     * row; default 0.01.
+     * Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
+     * coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
      */
     float row_tolerance;
     /**
-     * 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
-     * for the power only.
+     * 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
+     * luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
      */
     uint32_t free_colour;
     /** Largest factor for the emission of a group, >= 0; default infinity. */
     double max_scale;
     /**
-     * Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
-     * powers equal; default 1e-6.
+     * Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
+     * met, with large values the powers are nearly equal.
      */
     double regularisation;
     /**
-     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its noise;
-     * default 0.01.
+     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
+     * the goal's light is added to this tolerance.
      */
     double tolerance;
     /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop tracing a goal when the relative error of its response to all lamps together is below this value, in [0,
-     * 1]; default 0.01; 0: no target.
+     * Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is known
+     * to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0: do not
+     * stop for this reason.
      */
     float target_error;
-    /** Stop after this number of milliseconds; default 0: no limit. */
+    /** Stop tracing after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
     /** Must be 0. */
     uint32_t reserved;
@@ -212,28 +212,34 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 /** Each lamp is a group of its own. */
 #define LUXFER_GROUP_EACH 1
 
-/** Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes. */
+/**
+ * Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of the
+ * meshes.
+ */
 #define LUXFER_GROUP_BY_X 2
 
-/** Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes. */
+/**
+ * Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of the
+ * meshes.
+ */
 #define LUXFER_GROUP_BY_Y 3
 
-/** Lamps whose centres agree in their third coordinate form a group: z of meshes. */
+/** Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes. */
 #define LUXFER_GROUP_BY_Z 4
 
 /**
- * Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots, and all
- * luminaires with one distribution.
+ * Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot lights
+ * form another, and luminaires with the same distribution form one group for each distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
 
-/** Creates the stage. The caller releases *lamps. Any thread. */
+/** Creates a solver for the powers of lamps. It has no inputs yet. The caller releases *lamps. Any thread. */
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission of
- * each lamp in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
- * luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
+ * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
+ * each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by the
+ * indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
@@ -244,9 +250,9 @@ luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
  * Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
  * with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
  * Any thread.
- * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job is already running. The job may end with
  * LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
- * emission has no lamp, or a setting is out of range.
+ * emission has no lamp, there are more than 64 goals, goals times lamps exceed 2^20, or a setting is out of range.
  */
 luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
                                  const luxfer_lamps_params *params,
@@ -255,13 +261,14 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
 /* ====================================================================================================================
  * Goals of lamps
  *
- * Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit, and
+ * Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit. Also
  * the dimming levels of the lamps' drivers.
  * ==================================================================================================================== */
 
 /**
- * Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
- * LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
+ * Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
+ * 1e15]. quantity is a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other
+ * goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
@@ -273,9 +280,9 @@ luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Adds a goal: the mean illuminance in lux that a calculation grid should have, for light of any colour; weight, >= 0,
- * is relative to the other goals. grid may be NULL for its default. Any thread.
- * LUXFER_INVALID_ARGUMENT if lux is negative or not finite, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ * Adds a goal: the mean illuminance in lux that a calculation grid should have, from light of any colour. grid may be
+ * NULL for its default. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
+ * LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15], LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     const luxfer_illuminance_grid *grid,
@@ -284,8 +291,8 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
 
 /**
  * Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
- * The three values of a goal in lux must be equal. Goals are numbered from 0 in the order in which they were added; a
- * new goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
+ * For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
+ * from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
@@ -295,11 +302,11 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
                                           luxfer_constraint blue);
 
 /**
- * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
- * count is at most 4096, or 0 for drivers without steps. The solution then gives each group one of these levels,
- * chosen for all groups together so that the goals are met best. Half-widths are computed for powers without steps.
- * Any thread.
- * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
+ * Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
+ * and >= 0, in any order. At most 4096 factors are allowed; if count is 0, the drivers have no steps. The solution
+ * then gives each group one of these levels, chosen for all groups together so that the goals are met best. The
+ * half-widths of the powers then include the distance from the level to the power without steps. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
                                       const double *levels,
@@ -311,10 +318,11 @@ luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
 /* ====================================================================================================================
  * Results of lamps
  *
- * The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
+ * The powers that the solver has found, the light that each goal receives, and the contribution of each lamp to each
+ * goal.
  * ==================================================================================================================== */
 
-/** Summary of the result. */
+/** Summary of the solution for lamps. */
 typedef struct luxfer_lamps_report {
     /** sizeof(luxfer_lamps_report), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -330,57 +338,63 @@ typedef struct luxfer_lamps_report {
     uint32_t all_goals_met;
 } luxfer_lamps_report;
 
-/** One lamp. */
+/** The solution for one lamp. */
 typedef struct luxfer_lamp {
     /** sizeof(luxfer_lamp), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Index of the group that the lamp belongs to. */
     uint32_t group;
-    /** Centre: texture coordinates and 0, or, without a texture, the position in metres. */
+    /**
+     * Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
+     * metres.
+     */
     double centre[3];
-    /** Factor for its emission, per channel, >= 0. */
+    /** Factor for the lamp's emission, per channel, >= 0. */
     double scale[3];
     /** Half-widths of the 95 % confidence intervals of scale. */
     double half_width[3];
 } luxfer_lamp;
 
-/** The light that a goal receives. */
+/** The light that the surface or grid of one goal receives with the powers found. */
 typedef struct luxfer_lamps_goal {
     /** sizeof(luxfer_lamps_goal), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_OUTCOME_ value of each channel. */
     luxfer_outcome outcome[3];
-    /** Mean radiance of the goal, in cd/m²; illuminance / pi for a grid. */
+    /**
+     * Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid, illuminance /
+     * pi.
+     */
     double target[3];
-    /** Mean radiance with the powers found, in cd/m². */
+    /** Mean radiance of the goal's surface with the powers found, in cd/m² per channel. */
     double achieved[3];
     /** Half-widths of the 95 % confidence intervals of achieved. */
     double half_width[3];
-    /** Mean radiance from all other light, in cd/m². */
+    /** Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel. */
     double background[3];
     /**
-     * Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
-     * LUXFER_QUANTITY_INCIDENT. This field and the fields below are 0 for other goals.
+     * Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
+     * of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
      */
     double target_lux;
     /** Illuminance with the powers found, in lux. */
     double achieved_lux;
     /**
-     * Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had one
-     * sign.
+     * Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the errors of
+     * all channels had one sign.
      */
     double half_width_lux;
-    /** Illuminance from all other light, in lux. */
+    /** Illuminance from all light but the lamps, in lux. */
     double background_lux;
 } luxfer_lamps_goal;
 
-/** The light that one goal receives from one lamp. */
+/** The light that the surface or grid of one goal receives from one lamp. */
 typedef struct luxfer_lamps_response {
     /** sizeof(luxfer_lamps_response), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
-    /** Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel. */
+    /** Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel. */
     double mean[3];
     /** Half-widths of the 95 % confidence intervals of mean. */
     double half_width[3];
@@ -393,7 +407,7 @@ typedef struct luxfer_lamps_response {
 luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report, size_t size);
 
 /**
- * Gets the power of a lamp. size is sizeof *lamp. Any thread.
+ * Gets the solution for one lamp; index starts at 0. size is sizeof *lamp. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
  */
 luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps,
@@ -402,7 +416,7 @@ luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps,
                                     size_t size);
 
 /**
- * Gets the light that a goal receives. size is sizeof *goal. Any thread.
+ * Gets the light that the surface or grid of one goal receives; index starts at 0. size is sizeof *goal. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
@@ -411,8 +425,8 @@ luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
                                     size_t size);
 
 /**
- * Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. size is sizeof *response.
- * Any thread.
+ * Gets the light that the surface or grid of a goal receives from one lamp, for hosts that mix the light of the lamps
+ * themselves; the indices goal and lamp start at 0. size is sizeof *response. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
  */
 luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
@@ -422,8 +436,9 @@ luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
                                         size_t size);
 
 /**
- * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
- * is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
+ * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
+ * the zero. The text is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text
+ * needs. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
@@ -432,8 +447,8 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
                                       size_t *needed);
 
 /**
- * Gets the emission texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
- * thread.
+ * Gets the emission texture in which every lamp is multiplied by its scale; linear RGB. The caller releases *texture.
+ * Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
  */
 luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
@@ -442,29 +457,29 @@ luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
 /* ====================================================================================================================
  * Importance
  *
- * A map of the light that each point of an emitting surface would send to a target. It is traced once; then it gives
- * the light of any emissive texture on that surface, at any scale, rotation and offset, within milliseconds and with a
- * confidence interval.
+ * An importance map holds, for each point of an emitting surface, the light that the point would send to a target.
+ * The map is traced once. From the map, the light that the target receives from any emissive texture on that surface,
+ * at any scale, rotation and offset, is computed within milliseconds and with a confidence interval.
  * ==================================================================================================================== */
 
-/** A map of importance. See luxfer_importance_create. */
+/** An importance map of an emitting surface. See luxfer_importance_create. */
 typedef struct luxfer_importance luxfer_importance;
 
-/** Settings of the map. Fill them with luxfer_importance_params_init. */
+/** Settings of an importance map. Fill them with luxfer_importance_params_init. */
 typedef struct luxfer_importance_params {
     /** sizeof(luxfer_importance_params), set by luxfer_importance_params_init. */
     uint32_t struct_size;
-    /** Cells along u of the surface, in [1, 512]; default 64. */
+    /** Number of cells of the map along the texture coordinate u of the surface, in [1, 512]; default 64. */
     uint32_t width;
-    /** Cells along v, in [1, 512]; default 64. */
+    /** Number of cells of the map along the texture coordinate v of the surface, in [1, 512]; default 64. */
     uint32_t height;
-    /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
+    /** Quantity of the target that the map predicts: a LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
     luxfer_quantity quantity;
     /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when the relative error of the response to a uniform emission is below this value, in [0, 1]; default 0.01;
-     * 0: no target.
+     * Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
+     * relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this reason.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -480,29 +495,29 @@ static inline luxfer_status luxfer_importance_params_init(luxfer_importance_para
     return luxfer_init(LUXFER_STRUCT_IMPORTANCE_PARAMS, place, size);
 }
 
-/** The light that the target receives from a texture. */
+/** The light that the target receives from a texture: the result of luxfer_importance_respond. */
 typedef struct luxfer_importance_report {
     /** sizeof(luxfer_importance_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of paths of the map. */
+    /** Number of paths that were traced for the map. */
     uint32_t paths;
     /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
     /**
-     * Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
-     * size of the cells is about a third of this change.
+     * Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
+     * the cells had twice the width and height. The error is about a third of this change.
      */
     double band_error[3];
 } luxfer_importance_report;
 
-/** Creates the stage. The caller releases *importance. Any thread. */
+/** Creates an importance map. It has no inputs yet. The caller releases *importance. Any thread. */
 luxfer_status luxfer_importance_create(luxfer_context *context, luxfer_importance **importance);
 
 /**
- * Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is
- * the target. The current emission of the material does not count. Any thread.
+ * Sets the scene, the material of the surfaces that will emit, and the mesh that is the target. The surfaces need
+ * texture coordinates. The current emission of the material is ignored. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
@@ -511,27 +526,29 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
                                           uint32_t mesh);
 
 /**
- * Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
- * releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
- * if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+ * Starts a job that traces the map. The new map replaces the earlier one and the placement that was found with it.
+ * params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
+ * range.
  */
 luxfer_status luxfer_importance_start(luxfer_importance *importance,
                                       const luxfer_importance_params *params,
                                       luxfer_job **job);
 
 /**
- * Gets the map: for each cell, the mean radiance of the target, per channel, if only this cell emitted, with 1 cd/m².
- * The caller releases *image. Any thread.
+ * Gets the map as an image of 3 channels. Each cell holds the mean radiance of the target, per channel, if only this
+ * cell emitted light, with a radiance of 1 cd/m². The caller releases *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
                                           luxfer_image **image);
 
 /**
- * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps texture
- * coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for
- * the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+ * Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
+ * is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
+ * row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
+ * thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -541,10 +558,10 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
                                         size_t size);
 
 /**
- * Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each
- * finite and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond.
- * size is sizeof *report. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+ * Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
+ * blue) in cd/m², each in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and
+ * placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       luxfer_image *texture,
@@ -558,36 +575,39 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
 /* ====================================================================================================================
  * Placement
  *
- * Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
- * radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
+ * Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
+ * a given radiance. The search is a gradient descent on the map of luxfer_importance and traces no more paths.
  * ==================================================================================================================== */
 
 /** Objective of a placement: a LUXFER_AIM_ value. */
 typedef int32_t luxfer_aim;
 
 /**
- * Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated about their
- * centre (0.5, 0.5), and then shifted. Fill it with luxfer_placement_params_init.
+ * Objective and bounds of a placement. A placement scales the texture coordinates of the surface about their centre
+ * (0.5, 0.5), then rotates them about this centre, and then shifts them. Fill it with luxfer_placement_params_init.
  */
 typedef struct luxfer_placement_params {
     /** sizeof(luxfer_placement_params), set by luxfer_placement_params_init. */
     uint32_t struct_size;
-    /** LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE. */
+    /** Objective: a LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE. */
     luxfer_aim aim;
-    /** Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0. */
+    /**
+     * Wanted mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default
+     * 0.
+     */
     float radiance[3];
     /** Number of placements at which the search starts, in [1, 4096]; default 64. */
     uint32_t starts;
-    /** Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5. */
+    /** Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5. */
     double min_offset[2];
     /**
-     * Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
-     * fixed.
+     * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value are
+     * equal, here and in the fields below, the value is fixed.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
     double min_scale[2];
-    /** Largest number of repetitions, in [1/64, 64]; default 1. */
+    /** Largest number of repetitions along u and v, in [1/64, 64]; default 1. */
     double max_scale[2];
     /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
     double min_rotation;
@@ -606,41 +626,43 @@ static inline luxfer_status luxfer_placement_params_init(luxfer_placement_params
 typedef struct luxfer_placement {
     /** sizeof(luxfer_placement), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
-    /** The placement of the texture on the surface, as for luxfer_importance_respond. */
+    /**
+     * The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond takes it.
+     */
     double placement[9];
-    /** Offset along u and v. */
+    /** Offset of the placement along u and v of the texture, in periods. */
     double offset[2];
-    /** Scale along u and v. */
+    /** Number of repetitions of the texture along u and v of the surface. */
     double scale[2];
-    /** Rotation in radians. */
+    /** Rotation of the placement in radians. */
     double rotation;
     /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
     /**
-     * Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
-     * size of the cells is about a third of this change.
+     * Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
+     * the cells had twice the width and height. The error is about a third of this change.
      */
     double band_error[3];
 } luxfer_placement;
 
-/** The largest luminance of the target. */
+/** Make the luminance of the target as large as possible. */
 #define LUXFER_AIM_MAX_LUMINANCE 0
 
-/** The smallest luminance of the target. */
+/** Make the luminance of the target as small as possible. */
 #define LUXFER_AIM_MIN_LUMINANCE 1
 
-/** The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included. */
+/** Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance. */
 #define LUXFER_AIM_RADIANCE 2
 
 /**
- * Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
- * NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
- * LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ * Starts a job that finds the best placement of a texture for the target. The texture is linear, in cd/m², and
+ * repeats. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job is already running. The job may
+ * end with LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
                                                 luxfer_image *texture,
@@ -649,8 +671,7 @@ luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
 
 /**
  * Gets the placement that was found. size is sizeof *placement. Any thread.
- * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
- * started.
+ * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded with the current map.
  */
 luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
                                               luxfer_placement *placement,
@@ -660,10 +681,10 @@ luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
  * Photometry
  *
  * Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
- * These calls return when their work is done.
+ * These calls are synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
-/** The glare of a view. */
+/** The glare of a view: the result of luxfer_image_get_glare. */
 typedef struct luxfer_glare_report {
     /** sizeof(luxfer_glare_report), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -676,25 +697,25 @@ typedef struct luxfer_glare_report {
     double ugr;
     /** Luminance of the background in cd/m². */
     double background;
-    /** Luminance in cd/m² above which a pixel counted as a glare source. */
+    /** The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources. */
     double threshold;
     /** Solid angle of all sources in steradians. */
     double solid_angle;
     /**
-     * Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
-     * out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
-     * luxfer_render_get_layer; 0 for other images. The scene of such an image has LUXFER_WARNING_NOT_IN_PICTURE if it
-     * has luminaires.
+     * Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the image, and
+     * ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image
+     * and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
+     * LUXFER_WARNING_NOT_IN_PICTURE.
      */
     uint32_t unseen_lights;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
 } luxfer_glare_report;
 
 /**
- * Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
- * blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
- * colours. Any thread.
+ * Gets the correlated colour temperature of a linear RGB colour. *kelvin receives the temperature of the nearest
+ * blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
+ * greenish colours. Any thread.
  * LUXFER_DEGENERATE if the colour is black or not finite.
  */
 luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
@@ -705,9 +726,9 @@ luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
                                            double *duv);
 
 /**
- * Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
- * 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
- * Any thread.
+ * Computes the linear RGB colour, with luminance 1, of a colour temperature; rgb receives three numbers. kelvin is in
+ * [1000, 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is
+ * negative if the colour is out of gamut. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
@@ -716,10 +737,10 @@ luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
                                            double *rgb);
 
 /**
- * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with
- * the vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
- * threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
- * luminance. size is sizeof *report. Any thread.
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
+ * level camera whose vertical angle of view is fov_y in radians. Glare sources are the connected patches with a
+ * luminance of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better
+ * estimate of the background luminance. size is sizeof *report. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
 luxfer_status luxfer_image_get_glare(luxfer_image *image,
@@ -731,12 +752,12 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
 /* ====================================================================================================================
  * Glare of observers
  *
- * Computes the unified glare rating (CIE 117) of observers in a scene. The glare sources are its luminaires. The
+ * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
  * luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
  * the eye.
  * ==================================================================================================================== */
 
-/** An eye that looks in a direction. An element of arrays, so this struct never changes. */
+/** An observer: an eye that looks in a direction. An element of arrays, so this struct never changes. */
 typedef struct luxfer_observer {
     /** Position of the eye, in metres. */
     float position[3];
@@ -744,36 +765,37 @@ typedef struct luxfer_observer {
     float direction[3];
 } luxfer_observer;
 
-/** The glare of an observer. An element of arrays, so this struct never changes. */
+/** The glare that an observer experiences. An element of arrays, so this struct never changes. */
 typedef struct luxfer_observer_glare {
     /**
-     * Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a luminaire in
-     * view, infinity if the background is black.
+     * Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire is in
+     * view; infinity if a luminaire is in view and the background is black.
      */
     double ugr;
     /** Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi. */
     double background;
-    /** Standard error of background. */
+    /** Standard error of background, in cd/m². */
     double background_error;
     /**
-     * Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no dimensions,
-     * or that are seen edge-on, points, spots, directional lights, emissive surfaces and the environment.
+     * Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-on or
+     * whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the environment.
      */
     double unrated_lux;
     /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
     double solid_angle;
     /** Number of rated luminaires in view. */
     uint32_t sources;
-    /** Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
+    /** Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
     uint32_t outside_range;
 } luxfer_observer_glare;
 
 /**
- * Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
- * [16, 16777216]; 4096 suit most rooms. Returns when the work is done; the time is proportional to count * samples.
+ * Rates the glare of count observers in a scene; the array ratings receives count elements. The parameter samples is
+ * the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16; 4096 suit
+ * most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count * samples.
  * The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
- * straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
+ * straight up or down, or is inside a luminaire: the message names the observer. In these cases no rating is written.
  */
 luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      const luxfer_observer *observers,
@@ -785,10 +807,11 @@ luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
 /* ====================================================================================================================
  * False colour
  *
- * Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
+ * Shows a luminance or illuminance image in false colours, which become brighter as the value rises, with a scale
+ * bar.
  * ==================================================================================================================== */
 
-/** The scale from values to colours: a LUXFER_SCALE_ value. */
+/** The scale that maps values to colours: a LUXFER_SCALE_ value. */
 typedef int32_t luxfer_scale;
 
 /** The quantity of an image's values: a LUXFER_UNIT_ value. */
@@ -800,16 +823,19 @@ typedef struct luxfer_false_colour_params {
     uint32_t struct_size;
     /** LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR. */
     luxfer_scale scale;
-    /** LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE. */
+    /**
+     * Quantity of the values, whose unit is written above the bar: a LUXFER_UNIT_ value; default
+     * LUXFER_UNIT_LUMINANCE.
+     */
     luxfer_unit unit;
     /** 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar. */
     uint32_t bar;
     /**
-     * Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
-     * colour; default 0.
+     * Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of the
+     * value that gets the lightest colour.
      */
     double minimum;
-    /** Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the image. */
+    /** Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the image. */
     double maximum;
 } luxfer_false_colour_params;
 
@@ -818,10 +844,10 @@ static inline luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_
     return luxfer_init(LUXFER_STRUCT_FALSE_COLOUR_PARAMS, place, size);
 }
 
-/** Linear: equal differences of the value have equal width. */
+/** Linear: equal differences of the value take equal lengths of the scale bar. */
 #define LUXFER_SCALE_LINEAR 0
 
-/** Logarithmic: decades have equal width. */
+/** Logarithmic: each factor of ten takes an equal length of the scale bar. */
 #define LUXFER_SCALE_LOGARITHMIC 1
 
 /** Luminance in cd/m². */
@@ -831,11 +857,11 @@ static inline luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_
 #define LUXFER_UNIT_ILLUMINANCE 1
 
 /**
- * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a
- * value is NaN. params may be NULL for the defaults. Takes a few milliseconds per megapixel. The caller releases
- * *shown. Any thread.
- * LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is black;
- * LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: an image in linear RGB,
+ * grey where a value is NaN. params may be NULL for the defaults. The call takes a few milliseconds per megapixel.
+ * The caller releases *shown. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is
+ * black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_image_false_colour(luxfer_image *image,
                                         const luxfer_false_colour_params *params,
@@ -844,11 +870,12 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
 /* ====================================================================================================================
  * Lighting design
  *
- * Realises a solved light with real luminaires: the drive levels of LED primaries, the nearest blackbody light, the
- * electric power, and the requirements of a standard. These calls return when their work is done.
+ * Helps to realise a solved light with real luminaires: the drive levels of LED primaries that mix a colour, the
+ * blackbody light that is nearest to a target, and the requirements of a standard. These calls are synchronous: they
+ * do their work before they return.
  * ==================================================================================================================== */
 
-/** A colour mixed from primaries. */
+/** A colour mixed from LED primaries: the result of luxfer_mix_primaries. */
 typedef struct luxfer_mixture {
     /** sizeof(luxfer_mixture), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -857,7 +884,7 @@ typedef struct luxfer_mixture {
      * mixture.
      */
     uint32_t in_gamut;
-    /** Linear colour of the mixture. */
+    /** Linear RGB colour of the mixture. */
     double colour[3];
     /**
      * CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
@@ -865,36 +892,42 @@ typedef struct luxfer_mixture {
     double delta_e;
 } luxfer_mixture;
 
-/** The blackbody light that fits a target best. */
+/** The blackbody light that fits a target best: the result of luxfer_fit_temperature. */
 typedef struct luxfer_temperature_fit {
     /** sizeof(luxfer_temperature_fit), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
     /** Correlated colour temperature, in [1000, 20000] kelvin. */
     double kelvin;
-    /** Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m². */
+    /**
+     * Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
+     * cd/m².
+     */
     double luminance;
     /** Mean radiance of the target from this light and all other light, in cd/m². */
     double achieved[3];
-    /** CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle grey. */
+    /**
+     * CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted radiance
+     * as middle grey.
+     */
     double delta_e;
 } luxfer_temperature_fit;
 
 /**
- * Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
- * is binding.
+ * Requirements of EN 12464-1 for one kind of room, as manufacturers of luminaires quote them. Only the standard
+ * itself is binding.
  */
 typedef struct luxfer_preset {
     /** sizeof(luxfer_preset), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Year of the edition of the standard. */
     uint32_t edition;
-    /** Minimum mean illuminance of the task area, in lux. */
+    /** Minimum mean illuminance of the task area (maintained illuminance), in lux. */
     double illuminance;
     /** Maximum unified glare rating. */
     double glare;
-    /** Minimum uniformity U0 of the task area. */
+    /** Minimum uniformity U0 (minimum / mean illuminance) of the task area. */
     double uniformity;
     /** Minimum colour rendering index. */
     double rendering;
@@ -905,10 +938,11 @@ typedef struct luxfer_preset {
 } luxfer_preset;
 
 /**
- * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
- * the linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1,
- * 64]. drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the
- * colour, the one with the smallest sum of squared drive levels is returned. size is sizeof *mixture. Any thread.
+ * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
+ * primaries holds three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative
+ * for LEDs outside the gamut of Rec.709. count is in [1, 64]. The array drives receives count drive levels in [0,
+ * max_drive]; max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture
+ * with the smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -921,10 +955,10 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    size_t size);
 
 /**
- * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
- * a wanted radiance. Each array holds three channels: response is the response to a white emission, from
- * luxfer_relight_get_report or luxfer_importance_respond; background is the radiance from other lights; target is the
- * wanted radiance. size is sizeof *fit. Any thread.
+ * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
+ * to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
+ * a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is its mean
+ * radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
  * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
@@ -934,12 +968,12 @@ luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      luxfer_temperature_fit *fit,
                                      size_t size);
 
-/** Gets the number of presets. Any thread. */
+/** Gets the number of presets. A preset holds the lighting requirements for one kind of room. Any thread. */
 luxfer_status luxfer_preset_get_count(luxfer_context *context, uint32_t *count);
 
 /**
- * Gets the requirements of a preset. size is sizeof *preset. Any thread.
- * LUXFER_NOT_FOUND if there is no such preset.
+ * Gets the requirements for one kind of room; index starts at 0. size is sizeof *preset. Any thread.
+ * LUXFER_NOT_FOUND if index is beyond the last preset.
  */
 luxfer_status luxfer_preset_get(luxfer_context *context,
                                 uint32_t index,
@@ -948,8 +982,9 @@ luxfer_status luxfer_preset_get(luxfer_context *context,
 
 /**
  * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
- * capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
- * LUXFER_NOT_FOUND if there is no such preset.
+ * capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
+ * thread.
+ * LUXFER_NOT_FOUND if index is beyond the last preset.
  */
 luxfer_status luxfer_preset_get_name(luxfer_context *context,
                                      uint32_t index,

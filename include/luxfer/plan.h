@@ -18,28 +18,26 @@ extern "C" {
  * Planning
  *
  * Chooses the settings of relighting and rendering, or of a stylisation, for a given error or a given time, before
- * anything is rendered. A plan also predicts the time and the error of each. The cost of a path and the noise depend
- * on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second,
- * besides the preparation of the scene. A plan assumes that the load of the machine by other programs does not change.
+ * anything is rendered. A plan also predicts the time and the error of each stage. The cost of a path and the noise
+ * depend on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a
+ * second, besides the preparation of the scene. A plan assumes that other programs keep the machine as busy as they
+ * do now.
  *
- * The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
- * the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
- * a stylisation.
+ * The error of a picture is the root mean square error over its pixels, divided by its mean. It includes the noise
+ * and the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the
+ * error of a stylisation.
  * ==================================================================================================================== */
 
-/** A plan. See luxfer_plan_create. */
+/** A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create. */
 typedef struct luxfer_plan luxfer_plan;
 
 /** Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init. */
 typedef struct luxfer_plan_params {
     /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
     uint32_t struct_size;
-    /** Time for all planned work in milliseconds; default 0: the goal is target_error. */
+    /** Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error. */
     uint32_t time_budget_ms;
-    /**
-     * Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the goal is
-     * time_budget_ms.
-     */
+    /** Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms. */
     float target_error;
     /** Must be 0. */
     uint32_t reserved;
@@ -54,35 +52,38 @@ static inline luxfer_status luxfer_plan_params_init(luxfer_plan_params *place, s
 typedef struct luxfer_plan_report {
     /** sizeof(luxfer_plan_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation. */
+    /**
+     * 1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
+     * stylisation.
+     */
     uint32_t relights;
-    /** Seconds for all planned work. */
+    /** Predicted seconds for all planned work. */
     double seconds;
-    /** Error of the picture. */
+    /** Predicted error of the picture or of the stylisation. */
     double error;
-    /** Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer. */
+    /** Predicted seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer. */
     double relight_seconds;
     /** Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer. */
     double relight_error;
     /**
-     * Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
-     * stylisation.
+     * Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in a plan
+     * of a stylisation.
      */
     double render_seconds;
     /** Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation. */
     double render_error;
 } luxfer_plan_report;
 
-/** Creates a plan. The caller releases *plan. Any thread. */
+/** Creates a plan without a result. The caller releases *plan. Any thread. */
 luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
 
 /**
- * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
- * and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
- * *job. Any thread.
+ * Starts a job that plans a rendering with the scene and the camera of the object render. The struct settings gives
+ * the size of the picture and the other settings that do not affect quality; NULL stands for the defaults. The struct
+ * params gives the goal. The caller releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+ * such camera.
  */
 luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_render *render,
@@ -92,13 +93,13 @@ luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
 
 /**
  * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
- * made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
- * the fields relight and render of settings by the results of luxfer_plan_get_relight_params and
- * luxfer_plan_get_render_params, which differ in the settings that affect quality. params gives the goal. The caller
+ * made. The struct settings holds the settings with which the transfer will be started; NULL stands for the defaults.
+ * After the job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and
+ * point the fields relight and render of the struct settings at them. The struct params gives the goal. The caller
  * releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
- * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
- * LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
+ * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
+ * with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
  */
 luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
                                          luxfer_transfer *transfer,
@@ -115,10 +116,10 @@ luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
                                      size_t size);
 
 /**
- * Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
- * rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths, and sets
- * time_budget_ms to a quarter more than the time that these paths should take. So every run gives an equal picture
- * unless the machine becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
+ * Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
+ * has chosen. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan
+ * sets the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So
+ * every run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
@@ -126,8 +127,8 @@ luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
                                             size_t size);
 
 /**
- * Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
- * the call. size is sizeof *params. Any thread.
+ * Gets the settings to relight with: the settings given at the start, except those that affect quality, which the
+ * plan has chosen. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
  */
 luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
@@ -138,20 +139,20 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
  * Planning of stylisations
  *
  * Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
- * actual input at reduced resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
+ * actual input at reduced resolution. This takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
  * target, the smaller the part.
  * ==================================================================================================================== */
 
 /**
- * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
- * plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings (NULL:
- * the defaults). params gives the goal, a time or an error. The error is the square root of
- * luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and guides, whose values
- * are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to it. The caller
- * releases *job. Any thread.
- * LUXFER_INVALID_ARGUMENT if params is NULL or sets no goal or two, or if a setting is out of range;
- * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
- * of luxfer_stylize_start's job.
+ * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of the object
+ * stylize. The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from the
+ * struct settings; NULL stands for the defaults. The struct params gives the goal, a time or an error. The error is
+ * the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and
+ * guides, whose values are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to
+ * it. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with the
+ * statuses of luxfer_stylize_start's job.
  */
 luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
                                         luxfer_stylize *stylize,
@@ -160,8 +161,8 @@ luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
                                         luxfer_job **job);
 
 /**
- * Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
- * the call. size is sizeof *params. Any thread.
+ * Gets the settings to stylise with: the settings given at the start, except the numbers of rounds and sweeps, which
+ * the plan has chosen. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
  */
 luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,

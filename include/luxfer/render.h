@@ -16,7 +16,7 @@ extern "C" {
 /* ====================================================================================================================
  * Rendering
  *
- * A path tracer that renders a scene in cd/m². The image improves pass by pass: while the job runs, and after a
+ * A path tracer that renders a scene in cd/m². The image improves pass by pass. While the job runs, and after a
  * cancel, the current image can be read with an estimate of its error.
  * ==================================================================================================================== */
 
@@ -31,11 +31,14 @@ typedef struct luxfer_render_params {
     uint32_t width;
     /** Height of the image in pixels, in [1, 65536]; default 720. */
     uint32_t height;
-    /** Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image. */
+    /**
+     * Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the mean
+     * number of paths per pixel reaches this value.
+     */
     uint32_t samples;
     /**
-     * Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
-     * error most. Default 0: no target.
+     * Stop when the field error of luxfer_render_report falls to this value, >= 0. With this target, paths go to the
+     * pixels where they reduce the error most. Default 0: no target.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -43,24 +46,24 @@ typedef struct luxfer_render_params {
     /** Seed of the paths; default 1. */
     uint64_t seed;
     /**
-     * Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the root
-     * mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by that
-     * luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19 times
-     * out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target. Default
-     * 0: no target.
+     * Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the
+     * root mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by
+     * that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19
+     * times out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target.
+     * Default 0: no target.
      */
     float pixel_error;
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
-     * 0: no preview, as for final images. It does not change the other images.
+     * Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
+     * Default 0: no preview, as for final images. The preview does not change the other images.
      */
     float preview;
     /**
-     * Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
-     * reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default 0: no
-     * target. With several targets, rendering stops when all are reached.
+     * Stop when the field relative_error of luxfer_render_report falls to this value, >= 0. With this target, paths
+     * go to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
+     * as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
      */
     float relative_error;
 } luxfer_render_params;
@@ -80,21 +83,21 @@ typedef struct luxfer_render_report {
     /** Mean number of paths per pixel so far. */
     uint32_t samples;
     /**
-     * Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a pixel has
+     * Root mean square of the standard errors of all pixels, divided by the image's mean; infinite while a pixel has
      * fewer than two paths.
      */
     double error;
     /** Number of paths that were discarded because their radiance was not finite. */
     uint64_t discarded;
     /**
-     * Estimated bias of the preview: the difference between its expected value and the true image, as root mean square
-     * over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
+     * Estimated bias of the preview: the difference between its expected value and the true image, as root mean
+     * square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
      */
     double preview_bias;
     /**
-     * Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its channels,
-     * but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths. With few paths
-     * it overestimates: with 8 by about a quarter.
+     * Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
+     * the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
+     * paths. With few paths this estimate is too high: with 8 paths by about a quarter.
      */
     double relative_error;
 } luxfer_render_report;
@@ -103,8 +106,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_BEAUTY 0
 
 /**
- * Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of their paths, so
- * their errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
+ * Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the results of
+ * their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is up to eight times
+ * the sum of their variances.
  */
 #define LUXFER_RENDER_VARIANCE 1
 
@@ -119,36 +123,36 @@ typedef struct luxfer_render_report {
 
 /**
  * The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
- * show, such as soft shadows; preview_bias of the report estimates the error. Only if luxfer_render_params.preview is
- * not 0.
+ * show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
+ * luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
-/** Creates the stage. The caller releases *render. Any thread. */
+/** Creates a rendering. It has no inputs yet. The caller releases *render. Any thread. */
 luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **render);
 
 /** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene);
 
 /**
- * Sets the camera, such as one that luxfer_scene_get_camera has written. camera may be NULL, the default: the first
+ * Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
  * camera of the scene. Any thread.
  */
 luxfer_status luxfer_render_set_camera(luxfer_render *render,
                                        const luxfer_camera_params *camera);
 
 /**
- * Starts a job that renders. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ * Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+ * such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
  */
 luxfer_status luxfer_render_start(luxfer_render *render,
                                   const luxfer_render_params *params,
                                   luxfer_job **job);
 
 /**
- * Gets an image of the rendering in its current state; which is a LUXFER_RENDER_ value. The caller releases *image.
- * Any thread.
+ * Gets the image of the rendering that a LUXFER_RENDER_ value selects, in its current state. The caller releases
+ * *image. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
  * 0.
  */
@@ -180,21 +184,21 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 /* ====================================================================================================================
  * Outputs of a rendering
  *
- * Additional images from the same paths as the main image: light selected by light path expressions, and properties of
- * the visible surfaces (AOVs). Request them before luxfer_render_start, and read them as layers while the job runs or
- * afterwards: first the layers of the expressions in the order in which they were added, then the AOVs in the order of
- * their flags. The main image is equal to the bit with and without them.
+ * Additional images (layers) from the same paths as the main image: light that light path expressions select, and
+ * properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
+ * runs or afterwards. First come the layers of the expressions, in the order in which they were added, then the AOVs
+ * in the order of their flags. The main image is equal to the bit with and without layers.
  *
- * An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
- * as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
- * camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R (reflection), T
- * (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy), S (mirror or
- * clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..] [^..] * + ?
- * {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or of its
- * material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
- * light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment. Arnold's
- * built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
- * with _direct or _indirect.
+ * An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye
+ * (E), as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at
+ * the camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R
+ * (reflection), T (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy),
+ * S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..]
+ * [^..] * + ? {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or
+ * of its material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers
+ * them; light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment.
+ * Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
+ * alone or with _direct or _indirect.
  * ==================================================================================================================== */
 
 /** Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z. */
@@ -225,8 +229,8 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 #define LUXFER_AOV_OBJECT 64
 
 /**
- * Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit. Layer
- * IndexMA, channel X.
+ * Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit.
+ * Layer IndexMA, channel X.
  */
 #define LUXFER_AOV_MATERIAL 128
 
@@ -236,13 +240,16 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 /** Luminance of the main image, in cd/m². Layer Luminance, channel Y. */
 #define LUXFER_AOV_LUMINANCE 512
 
-/** Letters that match emissive surfaces and the environment in camera-first expressions: a LUXFER_EMITTER_AS_ value. */
+/**
+ * Letters that match emissive surfaces and the environment in expressions that start at the camera: a
+ * LUXFER_EMITTER_AS_ value.
+ */
 typedef int32_t luxfer_emitter_as;
 
-/** Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default. */
+/** Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default. */
 #define LUXFER_EMITTER_AS_BOTH 0
 
-/** Every light matches L only. */
+/** Emissive surfaces and the environment match L only. */
 #define LUXFER_EMITTER_AS_LIGHT 1
 
 /** As in Open Shading Language: surfaces match O, the environment matches B. */
@@ -252,8 +259,8 @@ typedef int32_t luxfer_emitter_as;
  * Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
  * without dots, quotes or control characters, and different from the names of the other layers. Any thread.
  * LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
- * LUXFER_INVALID_OPERATION while a job runs. The job ends with LUXFER_NOT_FOUND if no object in the scene has a label
- * of the expression, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
+ * LUXFER_INVALID_OPERATION while a job runs. The rendering's job ends with LUXFER_NOT_FOUND if no object of the scene
+ * has a label that the expression names, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
  */
 luxfer_status luxfer_render_add_expression(luxfer_render *render,
                                            const char *name,
@@ -266,10 +273,12 @@ luxfer_status luxfer_render_add_expression(luxfer_render *render,
 luxfer_status luxfer_render_clear_expressions(luxfer_render *render);
 
 /**
- * Sets the letters that match emissive surfaces and the environment; a LUXFER_EMITTER_AS_ value. Any thread.
+ * Sets the letters that match emissive surfaces and the environment; emitter_as is a LUXFER_EMITTER_AS_ value. Any
+ * thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
-luxfer_status luxfer_render_set_emitter_as(luxfer_render *render, luxfer_emitter_as emitter_as);
+luxfer_status luxfer_render_set_emitter_as(luxfer_render *render,
+                                           luxfer_emitter_as emitter_as);
 
 /**
  * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for none. Any thread.
@@ -284,8 +293,8 @@ luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *count);
 
 /**
- * Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
- * receives the capacity that the whole name needs. Any thread.
+ * Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
+ * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
  * LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
@@ -295,13 +304,13 @@ luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
                                            size_t *needed);
 
 /**
- * Finds a layer by its name. Any thread.
+ * Finds a layer by its name; *index receives its index. Any thread.
  * LUXFER_NOT_FOUND if no layer has that name.
  */
 luxfer_status luxfer_render_find_layer(luxfer_render *render, const char *name, uint32_t *index);
 
 /**
- * Gets a layer in its current state: 3 channels of light in cd/m², or the channels of an AOV. The caller releases
+ * Gets a layer in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The caller releases
  * *image. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
  */
@@ -312,8 +321,8 @@ luxfer_status luxfer_render_get_layer(luxfer_render *render,
 /**
  * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
  * LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
- * The header holds the expression of each layer of light in the attribute luxfer.lpe.NAME. path is UTF-8; an existing
- * file is replaced only once the new one is complete. Any thread.
+ * For each layer of light, the attribute luxfer.lpe.NAME of the header holds its expression. path is UTF-8; an
+ * existing file is replaced only once the new one is complete. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_write_exr(luxfer_render *render,

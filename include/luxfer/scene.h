@@ -18,21 +18,21 @@ extern "C" {
  *
  * A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
  * world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
- * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
- * unchanged.
+ * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the
+ * scene unchanged.
  * ==================================================================================================================== */
 
 /** A scene. See luxfer_scene_load and luxfer_scene_create. */
 typedef struct luxfer_scene luxfer_scene;
 
 /**
- * Receives the next size bytes of a file. The export calls it one or more times, in order, on the calling thread and
- * with no lock held. Return 0 to continue, any other value to stop: the export then returns LUXFER_IO. It must not
- * throw an exception or leave by longjmp.
+ * Receives the next size bytes of a file at data, and the pointer user of the caller. The export calls it one or more
+ * times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to continue, any other
+ * value to stop: the export then returns LUXFER_IO. The function must not throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 
-/** Numbers of the objects in a scene. */
+/** Number of objects of each kind in a scene. */
 typedef struct luxfer_scene_counts {
     /** sizeof(luxfer_scene_counts), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -50,27 +50,27 @@ typedef struct luxfer_scene_counts {
     uint64_t triangles;
 } luxfer_scene_counts;
 
-/** A planar surface of a scene. */
+/** A planar surface of a scene: triangles in one plane, and their bounding rectangle. */
 typedef struct luxfer_surface {
     /** sizeof(luxfer_surface), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of triangles. */
+    /** Number of triangles in the plane. */
     uint32_t triangles;
     /** Corner of the bounding rectangle where u = v = 0, in metres. */
     float origin[3];
     /** Unit vector of u, along the first side of the rectangle. */
     float u_axis[3];
-    /** Unit vector of v, along the second side. */
+    /** Unit vector of v, along the second side of the rectangle. */
     float v_axis[3];
     /** Unit normal on the side that will emit; it points into the room. */
     float normal[3];
-    /** Lengths of the sides along u and v, in metres. */
+    /** Lengths of the rectangle's sides along u and v, in metres. */
     float size[2];
     /** Area of the triangles in m². */
     float area;
     /**
-     * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, such
-     * as the sides of a vault; they receive no emission.
+     * Area in m² of the other triangles of the object or material whose planes are inclined to this plane by 5 to 75
+     * degrees, such as the sides of a vault; they receive no emission.
      */
     float sloped_area;
 } luxfer_surface;
@@ -79,29 +79,32 @@ typedef struct luxfer_surface {
 luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
 
 /**
- * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
- * only once the new one is complete. Any thread.
+ * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is
+ * replaced only once the new one is complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_scene_export(luxfer_scene *scene,
-                                  const char *path);
+luxfer_status luxfer_scene_export(luxfer_scene *scene, const char *path);
 
 /**
- * Writes a scene as GLB through the caller's function, which receives user. Any thread.
+ * Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+ * thread.
  * LUXFER_IO if the function returns anything but 0.
  */
-luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
+luxfer_status luxfer_scene_export_memory(luxfer_scene *scene,
+                                         luxfer_write_fn write,
+                                         void *user);
 
-/** Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread. */
+/** Gets the number of objects of each kind in a scene. size is sizeof *counts. Any thread. */
 luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
                                       luxfer_scene_counts *counts,
                                       size_t size);
 
 /**
- * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each in [0, 1e15];
- * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
- * image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
- * right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
+ * Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, the
+ * radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the
+ * radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is
+ * towards -z, its top towards +y, the centre of its right half towards +x. The renderer samples the image in
+ * proportion to its brightness. The image is copied. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -112,8 +115,8 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float blue);
 
 /**
- * Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. An emission texture of the
- * material is multiplied by it. Any thread.
+ * Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. The material's emission texture,
+ * if any, is multiplied by them. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
 luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
@@ -123,8 +126,8 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
                                         float blue);
 
 /**
- * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. size is
- * sizeof *found. Any thread.
+ * Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
+ * object or material, in UTF-8. size is sizeof *found. Any thread.
  * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
  * there is no planar surface.
  */
@@ -135,9 +138,9 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
 
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
- * luxfer_scene_find_surface finds for this name. The surface becomes a separate mesh with a copy of its material,
- * which emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the
- * new mesh and material; mesh and material may be NULL. Any thread.
+ * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material, which
+ * emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the new
+ * mesh and material; each pointer may be NULL. Any thread.
  * Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
@@ -156,25 +159,25 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
  * are not rendered.
  * ==================================================================================================================== */
 
-/** Settings of reading a scene's file. Fill it with luxfer_scene_load_params_init. */
+/** Settings for loading a scene file. Fill them with luxfer_scene_load_params_init. */
 typedef struct luxfer_scene_load_params {
     /** sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init. */
     uint32_t struct_size;
     /**
-     * 1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the default:
-     * such a name gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices
-     * or addresses on a network.
+     * 1: also read files outside the folder of the scene file if the scene file names them by .. or by an absolute
+     * path; 0, the default: such a name gives LUXFER_UNSUPPORTED. Set it only for scene files that you trust. Only
+     * files are read, never devices or addresses on a network.
      */
     uint32_t allow_external_files;
     /**
-     * Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
-     * leaves intensities and luminances as they are. 0.001: the file is in millimetres.
+     * Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF defines; 0.001 for a file in
+     * millimetres. It scales positions, but not intensities and luminances.
      */
     double unit;
     /**
-     * 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
-     * relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the origin
-     * of the file, and are rounded to floats there.
+     * 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
+     * relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
+     * origin of the file, and rounding to floats moves them.
      */
     uint32_t keep_origin;
     /** Must be 0. */
@@ -187,8 +190,9 @@ static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_para
 }
 
 /**
- * Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
- * params may be NULL for the defaults. The caller releases *scene. Any thread.
+ * Loads a scene from a glTF 2.0 file: .glb, or .gltf with the files that it names. These files must lie in its folder
+ * or below, unless allow_external_files is 1. path is UTF-8. params may be NULL for the defaults. The caller releases
+ * *scene. Any thread.
  * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
  * LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
  * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
@@ -200,8 +204,9 @@ luxfer_status luxfer_scene_load(luxfer_context *context,
                                 luxfer_scene **scene);
 
 /**
- * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
- * base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
+ * Loads a scene from a GLB or glTF file in memory of size bytes at data. If the scene file names other files, they
+ * are read from the folder base_path (UTF-8); if base_path is NULL, it must not name other files. Settings,
+ * ownership, threads and errors are as for luxfer_scene_load.
  */
 luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
@@ -211,11 +216,11 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        luxfer_scene **scene);
 
 /**
- * Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres: 0 for scenes near the
- * origin, for scenes that were created, and with keep_origin. The library takes and gives all positions relative to
- * this origin: vertices, cameras, lights, rays and measuring grids. Subtract it, in doubles, from positions in the
- * coordinates of the file. An exported file has the coordinates of the loaded file. Any
- * thread.
+ * Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres. It is 0 for scenes
+ * near the origin, for scenes that were created by luxfer_scene_create, and with keep_origin = 1. The library takes
+ * and gives all positions relative to this origin: vertices, cameras, lights, rays and calculation grids. To convert
+ * a position in the coordinates of the file, subtract the origin from it in doubles. An exported file has the
+ * coordinates of the loaded file. Any thread.
  */
 luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,
                                       double *x,
@@ -226,14 +231,14 @@ luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,
  * Materials
  *
  * Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
- * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
- * values change.
+ * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when
+ * its values change.
  * ==================================================================================================================== */
 
-/** Meaning of a surface's alpha: a LUXFER_ALPHA_ value. */
+/** How a surface uses its alpha: a LUXFER_ALPHA_ value. */
 typedef int32_t luxfer_alpha_mode;
 
-/** A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init. */
+/** A metallic-roughness material, as in glTF 2.0. Fill it with luxfer_material_params_init. */
 typedef struct luxfer_material_params {
     /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
     uint32_t struct_size;
@@ -241,13 +246,13 @@ typedef struct luxfer_material_params {
     uint32_t double_sided;
     /** Name in UTF-8, copied; NULL, the default: no name. */
     const char *name;
-    /** Linear colour of the surface, each channel in [0, 1]; default 0.8. */
+    /** Linear RGB base colour, each channel in [0, 1]; default 0.8. */
     float base_color[3];
     /** Share of the surface that is metal, in [0, 1]; default 0. */
     float metallic;
-    /** Perceptual roughness in [0, 1]; default 1. */
+    /** Perceptual roughness in [0, 1], as in glTF; default 1. */
     float roughness;
-    /** Emitted luminance per channel in cd/m², >= 0; default 0. */
+    /** Emission per channel in cd/m², each in [0, 1e15]; default 0. */
     float emission[3];
     /**
      * Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
@@ -257,11 +262,11 @@ typedef struct luxfer_material_params {
     float ior;
     /** Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1. */
     float alpha;
-    /** LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE. */
+    /** Use of alpha: a LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE. */
     luxfer_alpha_mode alpha_mode;
     /** Threshold of alpha for LUXFER_ALPHA_MASK, >= 0; default 0.5. */
     float alpha_cutoff;
-    /** Strength of the normal texture: multiplies its x and y; finite; default 1. */
+    /** Strength of the normal texture: a factor for the x and y of its normals, finite; default 1. */
     float normal_scale;
 } luxfer_material_params;
 
@@ -270,47 +275,51 @@ static inline luxfer_status luxfer_material_params_init(luxfer_material_params *
     return luxfer_init(LUXFER_STRUCT_MATERIAL_PARAMS, place, size);
 }
 
-/** Continuation of a texture beyond its edges: a LUXFER_WRAP_ value. */
+/** How a texture continues beyond its edges: a LUXFER_WRAP_ value. */
 typedef int32_t luxfer_wrap;
 
-/** Purpose of a material's texture: a LUXFER_TEXTURE_ value. */
+/** Purpose of a texture in a material: a LUXFER_TEXTURE_ value. */
 typedef int32_t luxfer_texture_role;
 
 /** The texture that a material uses for one purpose. */
 typedef struct luxfer_texture_use {
     /** sizeof(luxfer_texture_use), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0. */
+    /**
+     * Index of the texture; LUXFER_NONE if the material has no texture for this purpose: the fields below are then 0.
+     */
     uint32_t texture;
-    /** The mesh's set of texture coordinates that the material uses for this texture, 0 or 1. */
+    /** Set of the mesh's texture coordinates that the material uses for this texture: 0 or 1. */
     uint32_t uv_set;
-    /** LUXFER_WRAP_ value along u. */
+    /** Continuation of the texture along u: a LUXFER_WRAP_ value. */
     luxfer_wrap wrap_u;
-    /** LUXFER_WRAP_ value along v. */
+    /** Continuation of the texture along v: a LUXFER_WRAP_ value. */
     luxfer_wrap wrap_v;
-    /** Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up. */
+    /**
+     * Affine map that is applied to the texture coordinates (u, v, 1) before the look-up: two rows of three numbers.
+     */
     float transform[6];
 } luxfer_texture_use;
 
 /** The alpha is ignored: the surface is opaque. */
 #define LUXFER_ALPHA_OPAQUE 0
 
-/** The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere. */
+/** The surface is opaque where its alpha is at least alpha_cutoff, and absent elsewhere. */
 #define LUXFER_ALPHA_MASK 1
 
-/** The surface stops the share alpha of the light; the rest passes straight through. */
+/** The surface stops a share of the light that is equal to its alpha; the rest of the light passes straight through. */
 #define LUXFER_ALPHA_BLEND 2
 
-/** Multiplies the base colour; its alpha multiplies the material's. */
+/** Base colour: the texture multiplies the material's base colour, and its alpha multiplies the material's alpha. */
 #define LUXFER_TEXTURE_BASE_COLOR 0
 
-/** The green channel multiplies the roughness, the blue channel the metallic value. */
+/** Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic value. */
 #define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
 
 /** Normals in tangent space. */
 #define LUXFER_TEXTURE_NORMAL 2
 
-/** Multiplies the emission; looked up without interpolation. */
+/** Emission: the texture multiplies the emission; it is looked up without interpolation. */
 #define LUXFER_TEXTURE_EMISSION 3
 
 /** The texture repeats. */
@@ -323,7 +332,8 @@ typedef struct luxfer_texture_use {
 #define LUXFER_WRAP_MIRROR 2
 
 /**
- * Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * Adds a material to a scene; *index, unless NULL, receives its index. params may be NULL for the defaults. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
@@ -331,8 +341,8 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
                                         uint32_t *index);
 
 /**
- * Replaces the values of a material. It keeps its textures, and its name if params->name is NULL. params may be NULL
- * for the defaults. To change single values, read the material first. Any thread.
+ * Replaces the values of a material by params, or by the defaults if params is NULL. The material keeps its textures,
+ * and also its name if params->name is NULL. To change single values, read the material first. Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
@@ -340,8 +350,7 @@ luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
                                         const luxfer_material_params *params);
 
 /**
- * Reads a material; set params->struct_size before the call. params->name becomes NULL. size is sizeof *params. Any
- * thread.
+ * Reads the values of a material; params->name becomes NULL. size is sizeof *params. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
 luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
@@ -350,8 +359,9 @@ luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
                                         size_t size);
 
 /**
- * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
- * LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any thread.
+ * Adds a texture to a scene: an image in linear values with 1, 3 or 4 channels, of which the fourth is alpha. wrap_u
+ * and wrap_v are LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
  * memory budget.
  */
@@ -362,9 +372,10 @@ luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
                                        uint32_t *index);
 
 /**
- * Sets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or
- * LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the mesh's set of texture coordinates. transform is two rows of
- * three, finite, applied to (u, v, 1) before the look-up; NULL is the identity. Any thread.
+ * Sets the texture that a material uses for a purpose. role is a LUXFER_TEXTURE_ value; texture is the index of a
+ * texture, or LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the set of the mesh's texture coordinates.
+ * transform, two rows of three finite numbers, is applied to (u, v, 1) before the look-up; NULL is the identity. Any
+ * thread.
  * LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if an
  * emission texture has negative values.
  */
@@ -395,7 +406,7 @@ luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxf
 /* ====================================================================================================================
  * Scene description
  *
- * Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
+ * Builds a scene from arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
  * copy the arrays, which may have any alignment and stride.
  * ==================================================================================================================== */
 
@@ -403,17 +414,17 @@ luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxf
 typedef struct luxfer_mesh_params {
     /** sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init. */
     uint32_t struct_size;
-    /** Index of the mesh's material, from luxfer_scene_add_material; default 0. */
+    /** Index of the mesh's material, as luxfer_scene_add_material returns it; default 0. */
     uint32_t material;
     /** Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. NULL, the default: no name. */
     const char *name;
-    /** Number of vertices in [3, 2^32 - 1]; to be set. */
+    /** Number of vertices in [3, 2^32 - 1]; default 0: the caller must set it. */
     size_t vertex_count;
-    /** Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set. */
+    /** Positions: three floats per vertex, in metres, each in [-1e15, 1e15]; default NULL: the caller must set them. */
     const void *positions;
     /** Bytes from one position to the next; at least 12, or 0, the default: packed. */
     size_t position_stride;
-    /** Three floats per vertex, finite; NULL, the default: flat faces. */
+    /** Normals: three floats per vertex, finite; NULL, the default: faces are flat. */
     const void *normals;
     /** Bytes from one normal to the next; at least 12, or 0, the default: packed. */
     size_t normal_stride;
@@ -424,9 +435,12 @@ typedef struct luxfer_mesh_params {
     const void *uvs;
     /** Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed. */
     size_t uv_stride;
-    /** Number of triangles, at least 1; to be set. */
+    /** Number of triangles, at least 1; default 0: the caller must set it. */
     size_t triangle_count;
-    /** Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be set. */
+    /**
+     * Vertex indices: three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the
+     * front; default NULL: the caller must set them.
+     */
     const void *indices;
     /** Bytes from one triangle to the next; at least 12, or 0, the default: packed. */
     size_t index_stride;
@@ -450,11 +464,14 @@ typedef struct luxfer_camera_params {
     uint32_t struct_size;
     /** Full vertical angle of view in radians, in [0.001, 3.1]; default 1. */
     float fov_y;
-    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position of the eye in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1). */
+    /**
+     * Point that the camera looks at, in metres, each coordinate in [-1e15, 1e15], different from position; default
+     * (0, 0, -1).
+     */
     float target[3];
-    /** Up direction of the image, not parallel to the viewing direction; default (0, 1, 0). */
+    /** Up direction of the image, finite and not parallel to the viewing direction; default (0, 1, 0). */
     float up[3];
     /** Must be 0. */
     uint32_t reserved;
@@ -466,7 +483,7 @@ static inline luxfer_status luxfer_camera_params_init(luxfer_camera_params *plac
 }
 
 /**
- * Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
+ * Adds a mesh to a scene and copies its arrays; *index, unless NULL, receives its index. Any thread.
  * LUXFER_INVALID_ARGUMENT if an array is missing, a stride is too small, a number is not finite or an index is out of
  * range; LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -475,7 +492,7 @@ luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
                                     uint32_t *index);
 
 /**
- * Adds a camera; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * Adds a camera to a scene; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
@@ -483,7 +500,7 @@ luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
                                       uint32_t *index);
 
 /**
- * Replaces a camera. params may be NULL for the defaults. Any thread.
+ * Replaces a camera of a scene; the camera keeps its name. params may be NULL for the defaults. Any thread.
  * LUXFER_NOT_FOUND if there is no such camera; LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
@@ -491,7 +508,7 @@ luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
                                       const luxfer_camera_params *params);
 
 /**
- * Reads a camera; set params->struct_size before the call. size is sizeof *params. Any thread.
+ * Reads a camera of a scene; target becomes a point 1 m in front of the camera. size is sizeof *params. Any thread.
  * LUXFER_NOT_FOUND if there is no such camera.
  */
 luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
@@ -503,7 +520,7 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
  * Luminous intensity distributions
  *
  * The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
- * calls return when their work is done.
+ * calls are synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
 /** A luminous intensity distribution. See luxfer_distribution_load. */
@@ -512,15 +529,15 @@ typedef struct luxfer_distribution luxfer_distribution;
 /** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
 typedef int32_t luxfer_distribution_format;
 
-/** Summary of a distribution. */
+/** Summary of a luminous intensity distribution. */
 typedef struct luxfer_distribution_report {
     /** sizeof(luxfer_distribution_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of C planes. */
+    /** Number of C planes, the half-planes through the axis in which the intensities are given. */
     uint32_t planes;
-    /** Number of vertical angles in each plane. */
+    /** Number of vertical angles gamma in each C plane. */
     uint32_t angles;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
     /** Luminous flux in lumens: the integral of the intensity over all directions. */
     double flux;
@@ -529,30 +546,31 @@ typedef struct luxfer_distribution_report {
     /** Electric power in watts; 0 if unknown. */
     double watts;
     /**
-     * Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones.
-     * These are the length, width and height of IES, and the width, length and height of EULUMDAT.
+     * Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
+     * for a round opening, as in IES: its absolute value is the diameter. IES files name the three values length,
+     * width and height; EULUMDAT files name them width, length and height.
      */
     double size[3];
 } luxfer_distribution_report;
 
-/** IES LM-63, type C. */
+/** IES LM-63 (.ies), with type C photometry. */
 #define LUXFER_DISTRIBUTION_IES 0
 
-/** EULUMDAT. */
+/** EULUMDAT (.ldt). */
 #define LUXFER_DISTRIBUTION_LDT 1
 
 /**
- * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+ * Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
- * LUXFER_UNSUPPORTED for types A and B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+ * LUXFER_UNSUPPORTED for IES photometry of types A and B, LUXFER_INVALID_ARGUMENT if the path has another extension.
  */
 luxfer_status luxfer_distribution_load(luxfer_context *context,
                                        const char *path,
                                        luxfer_distribution **distribution);
 
 /**
- * Loads a distribution from a file in memory of size bytes; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
- * luxfer_distribution_load.
+ * Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value.
+ * Ownership, threads and errors are as for luxfer_distribution_load.
  */
 luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
                                               const void *data,
@@ -563,7 +581,7 @@ luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
 /**
  * Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
  * complete. Any thread.
- * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+ * LUXFER_INVALID_ARGUMENT if the path has another extension, LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
                                        const char *path);
@@ -574,8 +592,8 @@ luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
                                              size_t size);
 
 /**
- * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
- * receives the capacity that the whole name needs. Any thread.
+ * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes including the zero.
+ * *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
  */
 luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
                                            char *buffer,
@@ -583,8 +601,8 @@ luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
                                            size_t *needed);
 
 /**
- * Gets the luminous intensity in candela in a direction. Angles are in degrees: c turns around the axis, gamma goes
- * from straight down at 0 to straight up at 180. Any thread.
+ * Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
+ * the C plane around the axis, and gamma is the angle from straight down (0) to straight up (180). Any thread.
  */
 luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
                                                 double c,
@@ -594,31 +612,35 @@ luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distributio
 /* ====================================================================================================================
  * Lights of a scene
  *
- * Punctual lights: points, spots, directional lights (parallel light from far away) and luminaires with a measured
- * intensity distribution. Area lights are surfaces whose material emits.
+ * Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
+ * luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
  * ==================================================================================================================== */
 
-/** A kind of light: a LUXFER_LIGHT_ value. */
+/** A kind of punctual light: a LUXFER_LIGHT_ value. */
 typedef int32_t luxfer_light_kind;
 
 /** A punctual light. Fill it with luxfer_light_params_init. */
 typedef struct luxfer_light_params {
     /** sizeof(luxfer_light_params), set by luxfer_light_params_init. */
     uint32_t struct_size;
-    /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
+    /** Kind of the light: a LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
     luxfer_light_kind kind;
-    /** Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position of a point or spot light, in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0). */
+    /** Direction in which a spot or directional light shines; any length but 0; default (0, -1, 0). */
     float direction[3];
     /**
-     * Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in lux on
-     * a surface that faces it. Each channel >= 0; default (1, 1, 1).
+     * Strength of the light per channel, each in [0, 1e15]; default (1, 1, 1). For a point light it is the luminous
+     * intensity in cd; for a spot light, the luminous intensity in cd on its axis; for a directional light, the
+     * illuminance in lux on a surface that faces the light.
      */
     float intensity[3];
-    /** Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default 0. */
+    /**
+     * Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle]; default
+     * 0.
+     */
     float inner_angle;
-    /** Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
+    /** Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. */
     float outer_angle;
     /** Must be 0. */
     uint32_t reserved;
@@ -635,20 +657,20 @@ typedef struct luxfer_luminaire_params {
     uint32_t struct_size;
     /** Must be 0. */
     uint32_t reserved;
-    /** Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution. */
+    /** Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution. */
     double flux;
-    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
+    /** Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
     float axis[3];
     /**
-     * Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0; default (1,
-     * 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise.
+     * Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
+     * default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
      */
     float c0[3];
     /**
-     * Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts; default (1,
-     * 1, 1).
+     * Linear RGB colour of the light, each channel in [0, 1e15] and not all 0; only the ratio of the channels counts;
+     * default (1, 1, 1).
      */
     float colour[3];
 } luxfer_luminaire_params;
@@ -661,14 +683,15 @@ static inline luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params
 /** A point light: equal intensity in every direction. */
 #define LUXFER_LIGHT_POINT 0
 
-/** A spot light: shines into a cone. */
+/** A spot light: it shines into a cone. */
 #define LUXFER_LIGHT_SPOT 1
 
-/** A directional light: shines from infinitely far away. */
+/** A directional light: it shines from infinitely far away, with parallel rays. */
 #define LUXFER_LIGHT_DIRECTIONAL 2
 
 /**
- * Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * Adds a punctual light to a scene; *index, unless NULL, receives its index among the punctual lights. params may be
+ * NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
@@ -676,10 +699,11 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
                                      uint32_t *index);
 
 /**
- * Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
- * index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
- * the surfaces that it lights. No picture shows it: rate its glare with luxfer_scene_get_glare. params may be NULL for
- * the defaults. Any thread.
+ * Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction comes from the object
+ * distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
+ * luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
+ * luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the
+ * defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
@@ -690,42 +714,46 @@ luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene queries
  *
- * Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls return
- * when their work is done.
+ * Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls are
+ * synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
-/** No index: no mesh, no triangle, no texture. */
+/** No index: stands for no mesh, no triangle, no texture or no material. */
 #define LUXFER_NONE 4294967295
 
 /** A ray. An element of arrays, so this struct never changes. */
 typedef struct luxfer_ray {
     /** Start of the ray, in metres. */
     float origin[3];
-    /** Direction; any length but 0. */
+    /** Direction of the ray; any length but 0. Its length is the unit of distances along the ray. */
     float direction[3];
-    /** Hits lie at distances in (0, t_max), in units of direction; may be infinite. */
+    /**
+     * Maximum distance of a hit, in units of the length of direction; may be infinite. Only hits at distances in (0,
+     * t_max) count.
+     */
     float t_max;
 } luxfer_ray;
 
 /** The nearest hit of a ray. An element of arrays, so this struct never changes. */
 typedef struct luxfer_hit {
-    /** Distance in units of the ray's direction; infinite for a miss. */
+    /** Distance of the hit in units of the length of the ray's direction; infinite for a miss. */
     float t;
     /** Index of the mesh; LUXFER_NONE for a miss. */
     uint32_t mesh;
     /** Index of the triangle in its mesh; LUXFER_NONE for a miss. */
     uint32_t triangle;
-    /** Barycentric coordinate of the triangle's second corner. */
+    /** Barycentric coordinate of the hit for the triangle's second corner; 0 for a miss. */
     float u;
-    /** Barycentric coordinate of the triangle's third corner. */
+    /** Barycentric coordinate of the hit for the triangle's third corner; 0 for a miss. */
     float v;
 } luxfer_hit;
 
 /**
- * Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
- * with the lower index of mesh, then of triangle, is returned. Rays that are not finite or whose direction is 0 hit
- * nothing. The first call after a scene is loaded or changed prepares it for tracing, which takes longer. Any thread.
- * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the place.
+ * Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
+ * two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
+ * that are not finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares
+ * the scene for tracing, which takes longer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
  */
 luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      const luxfer_ray *rays,
@@ -752,13 +780,13 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /** At least one surface is a clear pane of glass. */
 #define LUXFER_SCATTERING_GLASS 8
 
-/** At least one surface is partly transparent by its alpha. */
+/** At least one surface is partly transparent because of its alpha. */
 #define LUXFER_SCATTERING_ALPHA 16
 
 /** At least one surface emits. */
 #define LUXFER_LIGHTS_SURFACE 1
 
-/** At least one surface emits by a texture. */
+/** At least one surface has an emission texture. */
 #define LUXFER_LIGHTS_TEXTURE 2
 
 /** At least one point light has an intensity above 0. */
@@ -784,9 +812,9 @@ typedef struct luxfer_requirements {
     /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * Number of bounces that matter: light that is scattered more often is at most a share of all light that surfaces
-     * scatter; the argument error gives this share. 0 if the albedos give no bound. For information only: no rendering
-     * ends paths at this number.
+     * Number of bounces that matter. Light with more bounces than this makes up at most the share error of all light
+     * that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
+     * bound. For information only: no rendering ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
@@ -801,9 +829,9 @@ typedef struct luxfer_requirements {
 } luxfer_requirements;
 
 /**
- * Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
- * bounces. The first call after a change of the scene prepares it for tracing. size is sizeof *requirements. Any
- * thread.
+ * Gets the features that a scene requires of the renderer. The parameter error, in [0, 1), is the share of the
+ * scattered light that may be neglected when the field bounces is computed. The first call after a change of the
+ * scene prepares the scene for tracing. size is sizeof *requirements. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
  */
 luxfer_status luxfer_scene_get_requirements(luxfer_scene *scene,
@@ -812,10 +840,10 @@ luxfer_status luxfer_scene_get_requirements(luxfer_scene *scene,
                                             size_t size);
 
 /**
- * Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
- * rendered, with the objects that have it: one sentence per line, as zero-terminated UTF-8, truncated to capacity
- * bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
- * capacity is 0. Any thread.
+ * Describes in words what the renderer skips in a scene. It also names each extension and feature of the scene's file
+ * that is not rendered, with the objects that have it. The text has one sentence per line and is zero-terminated
+ * UTF-8, truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole
+ * text needs. buffer may be NULL if capacity is 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
@@ -826,11 +854,11 @@ luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene read-back
  *
- * Reads the meshes of a scene. With luxfer_scene_get_counts and the functions that read materials, textures and
+ * Reads the meshes of a scene back. With luxfer_scene_get_counts and the functions that read materials, textures and
  * cameras, a host can copy a whole scene.
  * ==================================================================================================================== */
 
-/** A mesh of a scene. */
+/** Sizes and attributes of a mesh. */
 typedef struct luxfer_mesh_info {
     /** sizeof(luxfer_mesh_info), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -846,7 +874,7 @@ typedef struct luxfer_mesh_info {
     uint32_t uv_sets;
     /** 1 if each vertex has a colour, else 0. */
     uint32_t has_colours;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
 } luxfer_mesh_info;
 
@@ -878,7 +906,8 @@ luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene,
                                     size_t size);
 
 /**
- * Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
+ * Copies the name of a mesh into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
+ * *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
 luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
@@ -888,8 +917,8 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
                                          size_t *needed);
 
 /**
- * Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
- * thread.
+ * Copies an attribute of a mesh's vertices into the array values, a packed array of the caller with room for capacity
+ * vertices. attribute is a LUXFER_VERTEX_ value. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
  * unknown, the capacity is too small, or values is NULL though the mesh has vertices.
  */
@@ -900,8 +929,8 @@ luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
                                          float *values);
 
 /**
- * Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
- * number of triangles. Any thread.
+ * Copies the triangles of a mesh into the array indices, a packed array of the caller with room for capacity
+ * triangles: three vertex indices per triangle. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if the capacity is too small, or indices is
  * NULL though the mesh has triangles.
  */
@@ -913,73 +942,86 @@ luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
 /* ====================================================================================================================
  * Candidates for the ceiling
  *
- * The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
- * that let the user choose the surface with the lights. Pass the name of a candidate to luxfer_scene_find_surface or
- * luxfer_transfer_set_scene. A list is a copy, which stays as it is when the scene changes.
+ * Lists the objects and the materials of a scene with their area, height and direction, sorted so that the likeliest
+ * ceiling comes first. A host can show this list to let the user choose the surface that receives the lights. Pass
+ * the name of the chosen candidate to luxfer_scene_find_surface or luxfer_transfer_set_scene. A list is a copy: later
+ * changes of the scene do not change it.
  * ==================================================================================================================== */
 
-/** A list of candidates. See luxfer_scene_get_candidates. */
+/** A list of candidates for the ceiling. See luxfer_scene_get_candidates. */
 typedef struct luxfer_candidates luxfer_candidates;
 
-/** The kind of a candidate: a LUXFER_CANDIDATE_ value. */
+/** Whether a candidate is an object or a material: a LUXFER_CANDIDATE_ value. */
 typedef int32_t luxfer_candidate_kind;
 
-/** An object or a material of a scene. */
+/** A candidate for the ceiling: an object or a material of a scene. */
 typedef struct luxfer_candidate {
     /** sizeof(luxfer_candidate), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_CANDIDATE_ value. */
     luxfer_candidate_kind kind;
-    /** Index of the object's first mesh, or of the material. */
+    /** Index of the object's first mesh in the scene, or index of the material. */
     uint32_t index;
     /** Number of triangles whose area is not 0. */
     uint32_t triangles;
-    /** Area in m². */
+    /** Area of all triangles in m². */
     float area;
-    /** Area in m² of the triangles that are inclined by less than 15 degrees, on either side. */
+    /**
+     * Area in m² of the level triangles. A triangle is level if it faces up or down and is inclined by at most 15
+     * degrees to the horizontal.
+     */
     float level_area;
-    /** Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0. */
+    /**
+     * Mean height (y coordinate) in metres, weighted by area, of the level triangles, or of all triangles if no
+     * triangle is level.
+     */
     float height;
-    /** Lowest point, in metres. */
+    /** Height (y coordinate) of the lowest point, in metres. */
     float low;
-    /** Highest point, in metres. */
+    /** Height (y coordinate) of the highest point, in metres. */
     float high;
-    /** Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a box. */
+    /**
+     * Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals cancel,
+     * as for a closed box.
+     */
     float normal[3];
     /**
-     * Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the floor
-     * area of the scene's bounding box, and of the square of the height as a share of the scene's height. A name such
-     * as "ceiling" raises the score.
+     * Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area / area;
+     * level_area / floor area of the scene's bounding box; and the square of the height above the scene's lowest
+     * point / height of the scene. A name such as "ceiling" raises the score.
      */
     float score;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
-    /** Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates. */
+    /** Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates. */
     const char *name;
-    /** The reason for the score, in English and with its figures. */
+    /**
+     * The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string lives as
+     * long as the luxfer_candidates.
+     */
     const char *reason;
 } luxfer_candidate;
 
-/** All meshes of one name. */
+/** An object: all meshes with one name. */
 #define LUXFER_CANDIDATE_OBJECT 0
 
-/** All triangles of one material. */
+/** A material: all triangles that use it. */
 #define LUXFER_CANDIDATE_MATERIAL 1
 
 /**
- * Lists the objects of a scene and the materials in use, the likeliest ceilings first. The call reads each triangle
- * once. The caller releases *candidates. Any thread.
+ * Creates a list of the candidates for the ceiling: all objects of a scene and all materials that its triangles use,
+ * the likeliest ceiling first. The call reads each triangle once. The caller releases *candidates. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
                                           luxfer_candidates **candidates);
 
-/** Counts the candidates of a list. Any thread. */
+/** Gets the number of candidates in a list. Any thread. */
 luxfer_status luxfer_candidates_get_count(luxfer_candidates *candidates, uint32_t *count);
 
 /**
- * Gets a candidate of a list. size is sizeof *candidate. Any thread.
- * LUXFER_NOT_FOUND if there is no such candidate.
+ * Gets one candidate of a list; index starts at 0. size is sizeof *candidate. Any thread.
+ * LUXFER_NOT_FOUND if index is beyond the end of the list.
  */
 luxfer_status luxfer_candidates_get(luxfer_candidates *candidates,
                                     uint32_t index,

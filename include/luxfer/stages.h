@@ -16,14 +16,14 @@ extern "C" {
 /* ====================================================================================================================
  * Plane geometry
  *
- * Homographies: maps between two views of a plane, as 3 x 3 matrices of homogeneous points in row-major order. Points
- * are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These calls return when their
- * work is done.
+ * Homographies map points between two views of a plane. They are 3 x 3 matrices of homogeneous coordinates, stored
+ * row by row. Points are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These
+ * calls are synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
 /**
- * Computes the homography that maps four points to four points: from and to hold x and y of each point, homography
- * receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+ * Computes the homography that maps four points to four other points. The arrays from and to hold x and y of each
+ * point, 8 doubles; homography receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
  * LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
  */
 luxfer_status luxfer_homography_from_corners(luxfer_context *context,
@@ -32,10 +32,10 @@ luxfer_status luxfer_homography_from_corners(luxfer_context *context,
                                              double *homography);
 
 /**
- * Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]: the pixel at p takes
- * the value of the source at to_source(p), where to_source holds the nine entries of the matrix. Pixels outside the
- * source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it
- * is minified. Takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+ * Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. The pixel at p takes
+ * the value of the source at to_source(p); to_source holds the nine entries of the matrix. Pixels that lie outside
+ * the source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint
+ * where it is minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
  * LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -48,59 +48,60 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
 /* ====================================================================================================================
  * Rectification
  *
- * Finds vanishing points and the camera from the straight lines of a photo and, if a mask marks a plane, unwarps that
- * plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel is
- * (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
+ * Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
+ * that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
+ * is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1
+ * is vertical. Camera space is x to the right, y down, z forward.
  * ==================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
 typedef struct luxfer_rectify luxfer_rectify;
 
-/** Detector of lines: a LUXFER_LINES_ value. */
+/** The detector of lines: a LUXFER_LINES_ value. */
 typedef int32_t luxfer_lines;
 
-/** Search for vanishing points: a LUXFER_SEARCH_ value. */
+/** The search for vanishing points: a LUXFER_SEARCH_ value. */
 typedef int32_t luxfer_search;
 
-/** Distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
+/** The distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
 typedef int32_t luxfer_metric;
 
 /** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
 typedef struct luxfer_rectify_params {
     /** sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init. */
     uint32_t struct_size;
-    /** LUXFER_LINES_ value; default LUXFER_LINES_REGIONS. */
+    /** Detector of lines: a LUXFER_LINES_ value; default LUXFER_LINES_REGIONS. */
     luxfer_lines detector;
-    /** LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN. */
+    /** Search for vanishing points: a LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN. */
     luxfer_search search;
-    /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
+    /** Distance of a vanishing point from a line: a LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
     luxfer_metric metric;
     /**
-     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
-     * LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
+     * Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for lines,
+     * in [1e-4, pi/2], for LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
      */
     double hough_band;
     /**
-     * Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if it has
-     * any.
+     * Focal length in pixels, in [1e-3, 1e9]; 0, the default: estimated from the lines, and from the photo's metadata
+     * if it has any.
      */
     double focal;
-    /** Principal point in pixels; NaN, the default: the image's centre. */
+    /** Principal point in pixels, x and y in [-1e9, 1e9]; NaN, the default: the image's centre. */
     double principal[2];
     /**
      * The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the plane.
      */
     int32_t plane_axes[2];
     /**
-     * Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
-     * resolution of the photo does not support this size.
+     * Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is
+     * smaller if the resolution of the photo does not support this size.
      */
     uint32_t max_side;
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they would be
-     * magnified more are cut off.
+     * Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane with a
+     * larger magnification, which lie far from the camera, are cut off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -115,7 +116,7 @@ static inline luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *pl
 /** An image of a rectification: a LUXFER_RECTIFY_ value. */
 typedef int32_t luxfer_rectify_image;
 
-/** Where a focal length came from: a LUXFER_FOCAL_ value. */
+/** The source of a focal length: a LUXFER_FOCAL_ value. */
 typedef int32_t luxfer_focal_source;
 
 /** The camera found from the lines of a photo, and the unwarping of the plane. */
@@ -125,15 +126,15 @@ typedef struct luxfer_rectify_report {
     /** Number of line segments found. */
     uint32_t segments;
     /**
-     * Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
-     * infinity.
+     * Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0
+     * at infinity.
      */
     double vanishing_points[3][3];
     /** Standard deviations of the directions of the vanishing points in camera space, in radians. */
     double vanishing_errors[3];
-    /** Number of segments that agree with each vanishing point; 0: derived from the other two. */
+    /** Number of segments that agree with each vanishing point; 0: the point is derived from the other two. */
     uint32_t vanishing_support[3];
-    /** LUXFER_FOCAL_ value. */
+    /** Source of the focal length: a LUXFER_FOCAL_ value. */
     luxfer_focal_source focal_source;
     /** Focal length in pixels. */
     double focal;
@@ -143,46 +144,47 @@ typedef struct luxfer_rectify_report {
     double axes[3][3];
     /** 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0. */
     uint32_t is_unwarped;
-    /** Must be 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
-    /** Homography from unwarped pixels to photo pixels, row by row. */
+    /** Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. */
     double to_photo[9];
-    /** Corners of the unwarped rectangle in the photo, x and y in pixels. */
+    /** Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise. */
     double corners[4][2];
     /** Expected error of each corner, in unwarped pixels. */
     double corner_errors[4];
-    /** Size of an unwarped pixel, divided by the camera's distance from the plane. */
+    /** Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane. */
     double pixel_size;
     /** Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed. */
     double aspect_confidence;
     /**
      * Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
-     * below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
-     * and not corrected. NaN if the photo has too few lines.
+     * below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
+     * edges, and not corrected. NaN if the photo has too few lines.
      */
     double distortion;
     /** Standard deviation of distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
      * For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
-     * estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point show
-     * here; axes is orthogonal in any case. NaN if one of the two axes has no lines.
+     * estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point make
+     * it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other axes
+     * has no lines.
      */
     double squareness[3];
     /** Standard deviations of squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
 } luxfer_rectify_report;
 
-/** Segments from regions of similar gradient direction, with sub-pixel end points. */
+/** Fits segments with sub-pixel end points to regions of similar gradient direction. */
 #define LUXFER_LINES_REGIONS 0
 
 /** The paper's method: gradient-restricted Hough transform of Canny edges. */
 #define LUXFER_LINES_HOUGH 1
 
-/** Searches three orthogonal directions and the focal length together, then refines each direction freely. */
+/** Finds three orthogonal directions and the focal length together, then refines each direction by itself. */
 #define LUXFER_SEARCH_MANHATTAN 0
 
-/** The paper's method: one group of lines after the other. */
+/** The paper's method: finds one vanishing point after the other, each from the lines that are left. */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
 /** The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity. */
@@ -212,33 +214,34 @@ typedef struct luxfer_rectify_report {
 /** 1 where the photo shows the plane, else 0; 1 channel. */
 #define LUXFER_RECTIFY_VALID 1
 
-/** Creates the stage. The caller releases *rectify. Any thread. */
+/** Creates a rectification. It has no inputs yet. The caller releases *rectify. Any thread. */
 luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **rectify);
 
 /** Sets the photo: linear RGB. Any thread. */
 luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
 
 /**
- * Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then the
- * job finds only lines and vanishing points. Any thread.
+ * Sets the mask of the plane to unwarp: 1 on the plane, 0 elsewhere; 1 channel, the photo's size. mask may be NULL:
+ * the job then finds only lines, vanishing points and the camera. Any thread.
  */
 luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
                                       luxfer_image *mask);
 
 /**
- * Starts a job that finds lines, vanishing points and the camera, unless they are known for this photo from an earlier
- * job, and unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any
- * thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
- * range.
+ * Starts a job that finds lines, vanishing points and the camera, and unwarps the plane if its mask is set. If an
+ * earlier job with equal settings has found the camera of this photo, the job uses that camera. params may be NULL
+ * for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
+ * LUXFER_DEGENERATE if there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
+ * setting is out of range.
  */
 luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
                                    const luxfer_rectify_params *params,
                                    luxfer_job **job);
 
 /**
- * Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+ * Gets the image that a LUXFER_RECTIFY_ value selects: the unwarped plane or its mask. The caller releases *image.
+ * Any thread.
  * LUXFER_NOT_READY before a job with a mask has succeeded.
  */
 luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
@@ -247,7 +250,7 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
 
 /**
  * Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
- * pixels outside the photo become 0. Returns when its work is done, after a few milliseconds per megapixel. The caller
+ * pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
  * releases *warped. Any thread.
  * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
  */
@@ -256,7 +259,7 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
                                   luxfer_image **warped);
 
 /**
- * Gets the results and their errors. size is sizeof *report. Any thread.
+ * Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
@@ -268,8 +271,9 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
  *
  * Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
  * position x, y, z and normal x, y, z. The depth comes from one of four sources: a depth map that the caller
- * supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found by
- * a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the photo.
+ * supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found
+ * by a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the
+ * photo.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -279,7 +283,8 @@ typedef struct luxfer_features luxfer_features;
 typedef int32_t luxfer_depth_kind;
 
 /**
- * How the photo's colours are normalised for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
+ * How the photo's colours are normalised for a network: a LUXFER_NORMALISATION_ value. An ONNX file does not state
+ * it.
  */
 typedef int32_t luxfer_normalisation;
 
@@ -287,13 +292,19 @@ typedef int32_t luxfer_normalisation;
 typedef struct luxfer_features_params {
     /** sizeof(luxfer_features_params), set by luxfer_features_params_init. */
     uint32_t struct_size;
-    /** Near plane of the paper's Eq. 1, in its own units, in [1e-3, 1e3]; default 1. */
+    /**
+     * Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
+     * unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane.
+     */
     float near_plane;
-    /** Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10. */
+    /**
+     * Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
+     * near_plane; default 10.
+     */
     float far_plane;
     /**
-     * Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
-     * size.
+     * Normals come from planes fitted in a square window; this is half the width of the window in pixels, in [0, 64];
+     * default 0: chosen by the photo's size.
      */
     uint32_t normal_radius;
 } luxfer_features_params;
@@ -306,14 +317,14 @@ static inline luxfer_status luxfer_features_params_init(luxfer_features_params *
 /** An image of the features: a LUXFER_FEATURES_ value. */
 typedef int32_t luxfer_features_image;
 
-/** Source of the depth: a LUXFER_DEPTH_FROM_ value. */
+/** The source of the depth: a LUXFER_DEPTH_FROM_ value. */
 typedef int32_t luxfer_depth_source;
 
 /** Quality of the features. */
 typedef struct luxfer_features_report {
     /** sizeof(luxfer_features_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** LUXFER_DEPTH_FROM_ value. */
+    /** Source of the depth: a LUXFER_DEPTH_FROM_ value. */
     luxfer_depth_source depth_source;
     /** Mean confidence of the depth, in [0, 1]. */
     double depth_confidence;
@@ -330,15 +341,15 @@ typedef struct luxfer_features_report {
 /** Distance along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
-/** The ten channels; luxfer_image_read reads up to four of them at a time. */
+/** The ten channels of the features; luxfer_image_read reads up to four of them at a time. */
 #define LUXFER_FEATURES_CHANNELS 0
 
 /** Confidence of the depth of each pixel, in [0, 1]; 1 channel. */
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
 /**
- * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the depth map of
- * later jobs, or of a luxfer_transfer, to avoid running the network again.
+ * The depth along z that a network has estimated, in the unit of near_plane and from near_plane to far_plane; 1
+ * channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
  */
 #define LUXFER_FEATURES_NETWORK_DEPTH 2
 
@@ -363,21 +374,22 @@ typedef struct luxfer_features_report {
 /** A box-shaped room fitted to the lines of the photo and to strokes. */
 #define LUXFER_DEPTH_FROM_LAYOUT 1
 
-/** A neutral guess that does not depend on the photo. */
+/** No source: a fixed depth that does not depend on the photo. */
 #define LUXFER_DEPTH_FROM_NOTHING 2
 
 /** The caller's network. */
 #define LUXFER_DEPTH_FROM_NETWORK 3
 
-/** Creates the stage. The caller releases *features. Any thread. */
+/** Creates an object that computes features. It has no inputs yet. The caller releases *features. Any thread. */
 luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
 
 /** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
 luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
 
 /**
- * Sets a depth map of the photo's size, 1 channel, in any unit; values that are not positive and finite are holes.
- * kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
+ * Sets a depth map of the photo's size, 1 channel, in any unit. Pixels whose value is not positive and finite are
+ * holes, which are filled from their surroundings. kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map.
+ * Any thread.
  */
 luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_image *depth,
@@ -385,9 +397,9 @@ luxfer_status luxfer_features_set_depth(luxfer_features *features,
 
 /**
  * Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
- * input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of
- * relative inverse depth, as of MiDaS and DPT. The map is normalised by its extremes: the nearest pixel lies on
- * near_plane, the farthest on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+ * input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096. Its first output is a map of
+ * relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on near_plane
+ * and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
  * The call reads the file, which is not needed afterwards. Any thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
  * that the library does not support, or if the library was built without the Cargo feature onnx.
@@ -397,36 +409,38 @@ luxfer_status luxfer_features_set_network(luxfer_features *features,
                                           luxfer_normalisation normalisation);
 
 /**
- * Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
- * lines. Any thread.
+ * Sets the lines and the camera that a luxfer_rectify has found in this photo; the call copies its latest result.
+ * rectify may be NULL: no lines. Any thread.
  * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
 
 /**
- * Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); they have no effect if the depth
- * comes from another source. The fit prefers boxes that have a face, such as the ceiling with the lights, with these
- * two properties: it contains all positive strokes, those for LUXFER_PHASE_PLANE as well as those on lights; and it
- * contains no negative stroke for LUXFER_PHASE_PLANE. The stage copies the strokes, which replace earlier strokes;
- * NULL removes them. Any thread.
- * LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
+ * Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
+ * prefers a room in which one surface, such as the ceiling, contains every positive stroke, whether for the plane or
+ * for the lights, and no stroke that is negative for the plane (LUXFER_PHASE_PLANE). The strokes have no effect if
+ * the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes them.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
                                           luxfer_strokes *strokes);
 
 /**
  * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
- * if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
+ * LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all
+ * holes.
  */
 luxfer_status luxfer_features_start(luxfer_features *features,
                                     const luxfer_features_params *params,
                                     luxfer_job **job);
 
 /**
- * Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a network.
+ * Gets the image of the result that a LUXFER_FEATURES_ value selects. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a
+ * network.
  */
 luxfer_status luxfer_features_get_image(luxfer_features *features,
                                         luxfer_features_image which,
@@ -443,8 +457,9 @@ luxfer_status luxfer_features_get_report(luxfer_features *features,
 /* ====================================================================================================================
  * Segmentation
  *
- * Computes a mask, with a confidence for each pixel, from a few strokes on a photo. The lighting transfer needs two
- * masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
+ * Computes a mask, with a confidence for each pixel, from a few strokes on a photo. A lighting transfer needs two
+ * masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start
+ * again.
  * ==================================================================================================================== */
 
 /** A segmentation by strokes. See luxfer_segment_create. */
@@ -460,29 +475,33 @@ typedef struct luxfer_segment_params {
     /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
     uint32_t samples_per_class;
     /**
-     * Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of luxfer_features,
-     * the best of colour, colour and position, colour and normal, or all, as measured on held-out strokes; for another
-     * number of channels, all of them. For lights use 7, colour only, since lights and plane have one geometry.
+     * Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
+     * tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
+     * smallest error on held-out strokes. With another number of channels, 0 uses all channels. For lights use 7,
+     * colour only, since lights and plane have one geometry.
      */
     uint32_t channels;
     /**
-     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the
-     * edges of the photo: a guided filter with the first three channels of the features as guide. 0, the default: no
-     * refinement.
+     * Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
+     * The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three
+     * channels of the features as guide.
      */
     uint32_t refine_radius;
-    /** Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
+    /**
+     * Strength of the prior that keeps the weights of the classifier small (ridge regression), in [1e-9, 1e3];
+     * default 1e-3.
+     */
     double ridge;
-    /** Seed of the samples; default 1. */
+    /** Seed of the samples that are drawn; default 1. */
     uint64_t seed;
     /**
-     * Difference of the first three channels, in their units (CIELAB units for colour), below which the refinement
-     * treats neighbours as one surface, in [1e-3, 1e6]; default 8.
+     * The refinement treats neighbouring pixels as one surface if their first three channels differ by less than
+     * this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
     /**
-     * The subject of the positive strokes: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. For lamps the
-     * settings above have no effect.
+     * What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
+     * lamps, the settings above have no effect.
      */
     luxfer_subject subject;
     /** Must be 0. */
@@ -501,7 +520,7 @@ typedef int32_t luxfer_segment_image;
 typedef struct luxfer_segment_report {
     /** sizeof(luxfer_segment_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Channels of the features that were used, bit i for channel i. */
+    /** Channels of the features that the segmentation has used, bit i for channel i. */
     uint32_t channels;
     /** Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training. */
     double error;
@@ -513,74 +532,82 @@ typedef struct luxfer_segment_report {
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
 
-/** 1 where the confidence is above one half, else 0; 1 channel. */
+/** The mask: 1 where the confidence is above one half, else 0; 1 channel. */
 #define LUXFER_SEGMENT_MASK 0
 
-/** Probability that a pixel is of the positive class, in [0, 1]; 1 channel. */
+/** The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel. */
 #define LUXFER_SEGMENT_CONFIDENCE 1
 
 /**
- * Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
+ * The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another
+ * stroke helps.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
 /**
- * Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features makes them;
- * else a surface.
+ * Chooses the subject: lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as
+ * luxfer_features makes them; else a surface.
  */
 #define LUXFER_SUBJECT_AUTO 0
 
-/** A surface, such as the plane that carries the lamps: each pixel is judged by its features. */
+/**
+ * A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
+ * restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of
+ * these, the mask is restricted to its connected parts that positive strokes touch.
+ */
 #define LUXFER_SUBJECT_SURFACE 1
 
 /**
- * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or
- * more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as
- * well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
+ * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
+ * or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
+ * count as lamps too. Negative strokes are not needed. The first three channels of the features must be CIELAB.
  */
 #define LUXFER_SUBJECT_LAMPS 2
 
-/** Creates the stage. The caller releases *segment. Any thread. */
+/** Creates a segmentation. It has no inputs yet. The caller releases *segment. Any thread. */
 luxfer_status luxfer_segment_create(luxfer_context *context, luxfer_segment **segment);
 
 /**
- * Sets the features of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for another
- * size are removed. Any thread.
+ * Sets the features of each pixel: the image LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for
+ * images of another size are removed. Any thread.
  */
 luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
                                           luxfer_image *features);
 
 /**
- * Restricts the segmentation to the pixels where region is 1, such as the mask of the plane when you segment lights; 0
- * elsewhere; 1 channel, the size of the features. region may be NULL: no restriction. Any thread.
+ * Restricts the segmentation to the pixels where the mask region is 1. The mask has 1 channel, values of 0 and 1, and
+ * the size of the features; for a segmentation of lights, it is the mask of the plane. region may be NULL: no
+ * restriction. Any thread.
  */
 luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
                                         luxfer_image *region);
 
 /**
- * Sets the strokes from which this mask is made. The stage copies those strokes that are for phase, a LUXFER_PHASE_
- * value; they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
- * LUXFER_INVALID_ARGUMENT if strokes is for images of another size than the features.
+ * Sets the strokes from which the mask is made. The call copies the strokes for phase, a LUXFER_PHASE_ value; they
+ * replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the features.
  */
 luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
                                          luxfer_strokes *strokes,
                                          luxfer_phase phase);
 
 /**
- * Starts a job that segments. If strokes are missing and the features come from luxfer_features, the job proposes a
- * mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive strokes, or
- * else the ceiling; for lamps it proposes lamps among the brightest things of the region. params may be NULL for the
- * defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
- * if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
- * finite or a setting is out of range.
+ * Starts a job that computes the mask. If strokes are missing and the features come from luxfer_features, the job
+ * proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the wall, the floor or the ceiling under
+ * the positive strokes; without positive strokes it proposes the ceiling. For lamps it proposes lamps among the
+ * brightest regions of the mask of luxfer_segment_set_region. params may be NULL for the defaults. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job is already running. The job may end with
+ * LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ,
+ * a feature is not finite or a setting is out of range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,
                                    luxfer_job **job);
 
 /**
- * Gets an image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any thread.
+ * Gets the image of the result that a LUXFER_SEGMENT_ value selects, for example the mask. The caller releases
+ * *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
@@ -598,19 +625,22 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
 /* ====================================================================================================================
  * Laws of an emission
  *
- * How an emissive texture continues the lights of its exemplar.
+ * A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
  * ==================================================================================================================== */
 
 /** The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value. */
 typedef int32_t luxfer_emission_law;
 
 /**
- * The law that predicts the lamps of the photo best: the law of LUXFER_LAW_CORRELATION, unless another law is clearly
- * better.
+ * The law that predicts the lamps of the photo best. If no law is clearly better than the law that
+ * LUXFER_LAW_CORRELATION selects, the latter is used.
  */
 #define LUXFER_LAW_BEST 0
 
-/** The law that follows from the autocorrelation of the lights and from min_regularity. */
+/**
+ * The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a shift by
+ * this period is at least min_regularity of luxfer_emission_params.
+ */
 #define LUXFER_LAW_CORRELATION 1
 
 /** The lamps form a lattice with two periods. */
@@ -619,26 +649,26 @@ typedef int32_t luxfer_emission_law;
 /** The lamps form a row with one period; the extent of the exemplar serves as the other period. */
 #define LUXFER_LAW_ROW 3
 
-/** The exemplar repeats as a whole. */
+/** The exemplar repeats as a whole, edge to edge. */
 #define LUXFER_LAW_WHOLE 4
 
 /** The lights have no period: patches of the exemplar may lie anywhere. */
 #define LUXFER_LAW_FREE 5
 
-/** In results only: the texture is a part of the exemplar, or the caller gave it. */
+/** In results only: the texture is a copied part of the exemplar, or the caller supplied the texture. */
 #define LUXFER_LAW_COPY 6
 
 /* ====================================================================================================================
  * Emission
  *
- * Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
- * luminaires.
+ * Synthesises an emissive texture of any size and lists its luminaires. The texture continues the light pattern of an
+ * exemplar, which is an unwarped photo of a plane with lamps.
  * ==================================================================================================================== */
 
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
 
-/** Settings of the emission. Fill them with luxfer_emission_params_init. */
+/** Settings of an emissive texture. Fill them with luxfer_emission_params_init. */
 typedef struct luxfer_emission_params {
     /** sizeof(luxfer_emission_params), set by luxfer_emission_params_init. */
     uint32_t struct_size;
@@ -646,68 +676,80 @@ typedef struct luxfer_emission_params {
     uint32_t width;
     /** Height of the texture in texels, in [1, 65536]; default 1024. */
     uint32_t height;
-    /** Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights. */
+    /**
+     * Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its reduction to
+     * working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights.
+     */
     uint32_t block;
     /** Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
     double scale;
-    /** Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256. */
+    /**
+     * Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
+     * 256.
+     */
     uint32_t working_side;
-    /** Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting. */
+    /**
+     * Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
+     * in [0, 1e3]; default 1; 0 is plain image quilting.
+     */
     float metadata_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
-     * Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
-     * continued exactly; at 1 no repetition is, and patches may lie anywhere.
+     * The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
+     * 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
+     * anywhere.
      */
     float min_regularity;
-    /** 1, the default: every lamp stays in one piece; 0: seams may cut lamps. */
+    /** 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps. */
     uint32_t whole_lamps;
     /**
      * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-     * default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is tileable, where
-     * it shifts the lamps.
+     * default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must be 0 for
+     * other textures.
      */
     double offset[2];
     /**
-     * Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the colour
-     * of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped.
+     * A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
+     * core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0:
+     * no lamp counts as clipped.
      */
     float clip_level;
-    /** 1: every lamp has its mean colour everywhere; 0, the default: as in the photo. */
+    /** 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo. */
     uint32_t even_lamps;
     /**
-     * 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side, and
-     * a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps. Default 0.
+     * 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side,
+     * and a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps.
+     * Default 0.
      */
     uint32_t tileable;
     /**
-     * 1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle between
-     * two lamps, so that the border cuts as few lamps as possible. Default 0.
+     * 1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle between two
+     * lamps, then lies at the centre of the texture, so that the border cuts as few lamps as possible.
      */
     uint32_t centred;
     /**
-     * Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536]; default
-     * 192.
+     * Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
+     * lattice, in [1, 65536]; default 192.
      */
     uint32_t candidates;
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * The law by which the texture continues the lights: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default
-     * LUXFER_LAW_BEST.
+     * The law, which is the rule by which the texture continues the lights: a LUXFER_LAW_ value other than
+     * LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
      */
     luxfer_emission_law law;
     /**
-     * 1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie exactly
-     * at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its outline in
-     * the mask.
+     * 1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is exact at
+     * any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
+     * lamp has the outline of the mask.
      */
     uint32_t clean_lamps;
     /**
-     * Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which the
-     * photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts beyond it
-     * count as not shown. Default 0: all parts are used.
+     * Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out, as if
+     * the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the factor in
+     * length by which unwarping has magnified the photo there, relative to the least magnified pixel of the exemplar.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -720,16 +762,19 @@ static inline luxfer_status luxfer_emission_params_init(luxfer_emission_params *
 /** An image of the emission: a LUXFER_EMISSION_ value. */
 typedef int32_t luxfer_emission_image;
 
-/** Quality of the texture. */
+/**
+ * Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no texels are
+ * set.
+ */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of luminaires; see luxfer_emission_get_luminaire. */
+    /** Number of luminaires in the texture; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
-     * whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as exemplar_lamps
-     * allows. NaN for a plan, which has no texture yet.
+     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
+     * of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the less
+     * reliable is this error. NaN for a plan, which has no texels yet.
      */
     double error;
     /**
@@ -742,30 +787,29 @@ typedef struct luxfer_emission_report {
      */
     uint32_t exemplar_lamps;
     /**
-     * Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
-     * error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
-     * this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
-     * exemplars, and for a plan.
+     * Estimated sampling error of the statistics that error compares: their root mean square difference between the
+     * whole texture and parts of it that are as large as the exemplar. If error is at most twice this value, it does
+     * not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended exemplars, and for
+     * a plan.
      */
     float sampling_error;
     /** The law by which the texture continues the lights: a LUXFER_LAW_ value. */
     luxfer_emission_law law;
-    /** The best of the other laws: a LUXFER_LAW_ value. */
+    /** The law with the best score among all laws but the field law: a LUXFER_LAW_ value. */
     luxfer_emission_law runner_up;
     /**
-     * How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in proportion to
-     * their pixels in the photo. NaN if laws were not compared, for example because too few of the lights are whole
-     * lamps.
+     * Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps. Lamps
+     * weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
+     * few of the lights are whole lamps.
      */
     double law_score;
     /**
-     * law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
-     * better.
+     * law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly better.
      */
     double margin;
 } luxfer_emission_report;
 
-/** A lamp of the texture. */
+/** A luminaire: one lamp of the texture. */
 typedef struct luxfer_luminaire {
     /** sizeof(luxfer_luminaire), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -777,35 +821,41 @@ typedef struct luxfer_luminaire {
     double size[2];
     /** Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]. */
     double orientation;
-    /** Area in texels; texels at the edge count with the share that the lamp covers. */
+    /** Area in square texels; texels at the edge count with the share that the lamp covers. */
     double area;
     /** Share of the luminous flux of all lamps of the texture, in [0, 1]. */
     double flux_share;
-    /** Mean linear colour, relative to the photo's white. */
+    /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
     /**
-     * Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are sorted by
-     * the number of their lamps, the largest first. 0 if the border cuts the lamp.
+     * Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
+     * lamps. 0 if the border of the texture cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
 
-/** The texture: linear RGB relative to the photo's white; 0 outside lamps. */
+/** The texture: linear RGB, where 1 is the photo's white; 0 outside lamps. */
 #define LUXFER_EMISSION_TEXTURE 0
 
-/** 1 on lamps, else 0; 1 channel. */
+/** The mask of the texture: 1 on lamps, else 0; 1 channel. */
 #define LUXFER_EMISSION_MASK 1
 
 /**
- * Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
+ * The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a pixel
+ * shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3 channels, at the
+ * resolution that working_side gives.
  */
 #define LUXFER_EMISSION_EXEMPLAR_METADATA 2
 
-/** Metadata of the result, with the channels of LUXFER_EMISSION_EXEMPLAR_METADATA. */
+/**
+ * The guide channels of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch in the
+ * same way as the colours of the texture.
+ */
 #define LUXFER_EMISSION_METADATA 3
 
-/** Creates the stage. The caller releases *emission. Any thread. */
-luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
+/** Creates a synthesis of an emissive texture. It has no inputs yet. The caller releases *emission. Any thread. */
+luxfer_status luxfer_emission_create(luxfer_context *context,
+                                     luxfer_emission **emission);
 
 /**
  * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
@@ -818,26 +868,27 @@ luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *valid);
 
 /**
- * Sets the photo from which full detail is recovered, and the homography from unwarped to photo pixels, 9 doubles row
- * by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the unwarped image only. Any
- * thread.
+ * Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
+ * pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the
+ * unwarped image only. Any thread.
  */
 luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         luxfer_image *photo,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the whole texture in memory; for very large textures use luxfer_emission_start_plan. params
- * may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * Starts a job that makes the whole texture in memory. For textures that are too large for that, use
+ * luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
+ * LUXFER_DEGENERATE if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+ * range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
                                     luxfer_job **job);
 
 /**
- * Gets an image of the result; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
+ * Gets the image of the texture that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
@@ -845,7 +896,8 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Gets the quality of the texture, or the contents of a plan. size is sizeof *report. Any thread.
+ * Gets the quality of the texture. For a plan, only the fields that need no texels are set. size is sizeof *report.
+ * Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
@@ -853,9 +905,9 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          size_t size);
 
 /**
- * Describes a luminaire of the texture. A plan has no texels yet, so it describes each luminaire as the exemplar shows
- * it, cut at the edges of the texture; only lights that cross their whole exemplar are described as they are in the
- * texture. size is sizeof *luminaire. Any thread.
+ * Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
+ * described as it appears in the exemplar, cut at the edges of the texture. Only lights that run through the whole
+ * exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -864,12 +916,13 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
                                             size_t size);
 
 /**
- * Gets a corner of a luminaire's outline, in texels. Any thread.
+ * Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
  *
- * The outline runs where the lamp would cover half of a texel. If the confidence of the lights has values between 0
- * and 1, the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels
- * are larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead for
- * lamps up to two texels wide, for masks of only 0 and 1, and for lights of a plan that follow its patches.
+ * The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
+ * the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
+ * larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead in three
+ * cases: lamps up to two texels wide, masks of only 0 and 1, and lights of a plan that run through the whole
+ * exemplar.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
@@ -881,20 +934,21 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
 /* ====================================================================================================================
  * Styles and tiles
  *
- * Textures from several exemplars, and textures that are too large to make as a whole: luxfer_emission_start_plan
- * decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of the texture. A plan holds
- * the exemplars, the place of each lamp and the outlines of the patches, but no texels.
+ * Textures from several exemplars, and textures that are too large to make as a whole. For such large textures,
+ * luxfer_emission_start_plan decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of
+ * the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
  * ==================================================================================================================== */
 
 /**
- * Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
- * are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
- * luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
- * channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images
- * of one size whose sum is at most 1; the first exemplar has the rest of the weight.
+ * Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
+ * and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+ * luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. The
+ * image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
+ * added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
+ * has the rest.
  *
- * Each lamp comes from one exemplar, chosen with the probability of its weight there, so that the light per area
- * blends linearly. Each lattice keeps its own period and phase. Any thread.
+ * Each lamp of the texture comes from one exemplar, chosen at random with the weights as probabilities, so that the
+ * light per area blends linearly. The lattice of each exemplar keeps its own period and phase. Any thread.
  */
 luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
                                         luxfer_image *unwarped,
@@ -909,20 +963,21 @@ luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
 luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 
 /**
- * Starts a job that plans the texture instead of making it as luxfer_emission_start does, and removes the results of
- * that function. params, and the statuses of the call and the job, are as for luxfer_emission_start.
- * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan. The caller releases
- * *job. Any thread.
+ * Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
+ * texture that luxfer_emission_start has made. params, and the statuses of the call and the job, are as for
+ * luxfer_emission_start. luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan.
+ * The caller releases *job. Any thread.
  */
 luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
                                          const luxfer_emission_params *params,
                                          luxfer_job **job);
 
 /**
- * Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
- * linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
- * luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
- * *tile. Any thread; several threads may render tiles at the same time.
+ * Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
+ * texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
+ * bit to the texture and mask of luxfer_emission_start, whatever the sizes of the tiles and the order in which they
+ * are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads
+ * may render tiles at the same time.
  * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
  * is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -936,33 +991,33 @@ luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
 /* ====================================================================================================================
  * Relighting
  *
- * Solves for the colour and intensity of an emission so that a surface of the scene has the same colour as in the
- * photo. The solution is a factor for the emission, per channel, with a confidence interval.
+ * Solves for the colour and intensity of an emission with which a surface of the scene, the target, has the same
+ * colour as in the photo. The solution is a factor for the emission, per channel, with a confidence interval.
  * ==================================================================================================================== */
 
-/** A relighting of a scene. See luxfer_relight_create. */
+/** A relighting: a solver for the emission of one material. See luxfer_relight_create. */
 typedef struct luxfer_relight luxfer_relight;
 
 /** Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value. */
 typedef int32_t luxfer_constraint;
 
-/** Quantity that should match the photo: a LUXFER_QUANTITY_ value. */
+/** The quantity of the target surface that should match the photo: a LUXFER_QUANTITY_ value. */
 typedef int32_t luxfer_quantity;
 
-/** How the target surface is compared: a LUXFER_FIT_ value. */
+/** How the light of the target surface is compared with its target value: a LUXFER_FIT_ value. */
 typedef int32_t luxfer_fit;
 
 /** Settings of a relighting. Fill them with luxfer_relight_params_init. */
 typedef struct luxfer_relight_params {
     /** sizeof(luxfer_relight_params), set by luxfer_relight_params_init. */
     uint32_t struct_size;
-    /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
+    /** Quantity to match: a LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
     luxfer_quantity quantity;
     /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in [0, 1];
-     * default 0.01; 0: no target.
+     * Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the scale,
+     * in [0, 1]; default 0.01; 0: do not stop for this reason.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -981,7 +1036,7 @@ static inline luxfer_status luxfer_relight_params_init(luxfer_relight_params *pl
 /** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value. */
 typedef int32_t luxfer_outcome;
 
-/** The solution and its confidence. */
+/** The solution of a relighting and its confidence. */
 typedef struct luxfer_relight_report {
     /** sizeof(luxfer_relight_report), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -991,19 +1046,23 @@ typedef struct luxfer_relight_report {
     double scale[3];
     /** Half-widths of the 95 % confidence intervals of scale. */
     double half_width[3];
-    /** Mean radiance of the target from the emission at scale 1, in cd/m². */
+    /** Mean radiance of the target from the emission at scale 1, in cd/m² per channel. */
     double response[3];
-    /** Mean radiance of the target from all other light, in cd/m². */
+    /** Mean radiance of the target from all other light, in cd/m² per channel. */
     double background[3];
     /** LUXFER_OUTCOME_ value of each channel. */
     luxfer_outcome outcome[3];
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
-    /** The largest relative half-width among the channels that meet their target. */
+    /**
+     * The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
+     * channels.
+     */
     double error;
     /**
-     * Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this value, at
-     * the exposure that shows the target as middle grey.
+     * Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the colour that
+     * the target has and the colour that it should have is below this value, at the exposure that shows the target as
+     * middle grey.
      */
     double delta_e;
 } luxfer_relight_report;
@@ -1014,13 +1073,14 @@ typedef struct luxfer_relight_report {
 /** Light that arrives at the target surface, as if the surface were white. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
-/** The mean over the target surface. */
+/** By the mean over the target surface. */
 #define LUXFER_FIT_MEAN 0
 
 /**
- * Every point of the target surface, by least squares, as gradient descent on texels does. Bright points count more,
- * so the emission is dimmer than with LUXFER_FIT_MEAN: by the factor 1 / (1 + CV²) without other light, where CV is
- * the coefficient of variation of the response over the target.
+ * At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
+ * more, so the emission is dimmer than with LUXFER_FIT_MEAN. If there is no other light, it is dimmer by the factor 1
+ * / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives from
+ * the emission.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
@@ -1028,11 +1088,12 @@ typedef struct luxfer_relight_report {
 #define LUXFER_CONSTRAINT_EQUAL 0
 
 /**
- * The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
+ * The light should be at least the value, for example because a standard requires it on a desk, or because the photo
+ * clips this channel.
  */
 #define LUXFER_CONSTRAINT_AT_LEAST 1
 
-/** The light should be at most the value, as a limit against glare. */
+/** The light should be at most the value, for example to limit glare. */
 #define LUXFER_CONSTRAINT_AT_MOST 2
 
 /** The target is met. */
@@ -1047,13 +1108,14 @@ typedef struct luxfer_relight_report {
 /** All lamps at their largest power are too weak, or two goals contradict each other. */
 #define LUXFER_OUTCOME_TOO_DIM 3
 
-/** Creates the stage. The caller releases *relight. Any thread. */
+/** Creates a relighting. It has no inputs yet. The caller releases *relight. Any thread. */
 luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);
 
 /**
- * Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
- * luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
- * the scene. Any thread.
+ * Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
+ * luxfer_scene_place_emission returns the index of the emitting material, and the index of the mesh with this
+ * material, which can serve as the target. The solution is a factor for the emission that the material has in the
+ * scene. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
@@ -1062,16 +1124,19 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
                                        uint32_t mesh);
 
 /**
- * Sets the mean radiance that the mesh should have, in cd/m² per channel, each finite and >= 0; for
- * LUXFER_QUANTITY_INCIDENT the radiance of a white surface in the same light, illuminance / pi. Any thread.
+ * Sets the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
+ * LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
  */
-luxfer_status luxfer_relight_set_target(luxfer_relight *relight, float red, float green, float blue);
+luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
+                                        float red,
+                                        float green,
+                                        float blue);
 
 /**
  * Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
- * channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale
- * of the channels that should equal their target if this scale respects the limit, else the scale that just reaches
- * the limit. Any thread.
+ * channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+ * scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the
+ * limit. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
@@ -1080,10 +1145,11 @@ luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
                                             luxfer_constraint blue);
 
 /**
- * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
- * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
- * valid or a setting is out of range.
+ * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
+ * caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
+ * LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
+ * setting is out of range.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,

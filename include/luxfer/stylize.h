@@ -16,15 +16,15 @@ extern "C" {
 /* ====================================================================================================================
  * Guides
  *
- * Renders the guide images of a stylisation, which show different kinds of light in a scene: once for the exemplar
- * scene and once for the target scene. Guides from another renderer do not need this object: see
- * luxfer_stylize_add_guide.
+ * Renders the guide images of a stylisation: images of one scene, each of which shows one kind of its light, its
+ * normals, its edges or its materials. A stylisation needs the guides of the exemplar scene and of the target scene.
+ * Guides from another renderer do not need this object: see luxfer_stylize_add_guide.
  * ==================================================================================================================== */
 
 /** The guides of a scene. See luxfer_guides_create. */
 typedef struct luxfer_guides luxfer_guides;
 
-/** Settings of guides. Fill them with luxfer_guides_params_init. */
+/** Settings of the guides. Fill them with luxfer_guides_params_init. */
 typedef struct luxfer_guides_params {
     /** sizeof(luxfer_guides_params), set by luxfer_guides_params_init. */
     uint32_t struct_size;
@@ -34,7 +34,7 @@ typedef struct luxfer_guides_params {
     uint32_t height;
     /** Paths per pixel, in [1, 1048576]; default 64. */
     uint32_t samples;
-    /** Index of the scene's camera; default 0. */
+    /** Index of the camera in the scene; default 0. */
     uint32_t camera;
     /**
      * 1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep the
@@ -50,7 +50,7 @@ static inline luxfer_status luxfer_guides_params_init(luxfer_guides_params *plac
     return luxfer_init(LUXFER_STRUCT_GUIDES_PARAMS, place, size);
 }
 
-/** An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m². */
+/** A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m². */
 typedef int32_t luxfer_guides_image;
 
 /** All light, reflected any number of times. */
@@ -80,7 +80,7 @@ typedef int32_t luxfer_guides_image;
 /** Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE). */
 #define LUXFER_GUIDES_CAUSTICS 8
 
-/** Creates the stage. The caller releases *guides. Any thread. */
+/** Creates an object that renders guides. It has no inputs yet. The caller releases *guides. Any thread. */
 luxfer_status luxfer_guides_create(luxfer_context *context, luxfer_guides **guides);
 
 /** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
@@ -88,15 +88,15 @@ luxfer_status luxfer_guides_set_scene(luxfer_guides *guides, luxfer_scene *scene
 
 /**
  * Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+ * such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
  */
 luxfer_status luxfer_guides_start(luxfer_guides *guides,
                                   const luxfer_guides_params *params,
                                   luxfer_job **job);
 
 /**
- * Gets a guide; which is a LUXFER_GUIDES_ value. The caller releases *image. Any thread.
+ * Gets the guide image that a LUXFER_GUIDES_ value selects. The caller releases *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
@@ -104,10 +104,12 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
                                       luxfer_image **image);
 
 /**
- * Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
- * pixel of this frame, the offset to the position of the same point in the frame before, x and y in pixels; NaN where
- * the frame before does not show the point. The caller releases *motion. Any thread.
- * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
+ * Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
+ * The parameter guides is the current frame; the parameter before is the previous frame. For each pixel of the
+ * current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
+ * in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
+ * thread.
+ * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
                                        luxfer_guides *before,
@@ -116,13 +118,14 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
 /* ====================================================================================================================
  * Settings of a stylisation
  *
- * Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
+ * Presets and settings. The defaults were chosen from the curves of quality against time that benches/stylit.rs
+ * draws.
  * ==================================================================================================================== */
 
 /** How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value. */
 typedef int32_t luxfer_stylize_mode;
 
-/** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
+/** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
 typedef int32_t luxfer_stylize_search;
 
 /** How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value. */
@@ -135,13 +138,16 @@ typedef int32_t luxfer_stylize_vote;
 typedef struct luxfer_stylize_params {
     /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
     uint32_t struct_size;
-    /** LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
+    /** Assignment of patches: a LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
     luxfer_stylize_mode mode;
-    /** LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
+    /** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
     luxfer_stylize_search search;
     /** Width of a patch in pixels, odd, in [1, 33]; default 5. */
     uint32_t patch;
-    /** Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2. */
+    /**
+     * Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
+     * 1e6]; default 2.
+     */
     float guide_weight;
     /** Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. */
     uint32_t levels;
@@ -150,23 +156,23 @@ typedef struct luxfer_stylize_params {
     /** Rounds of matching and painting on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Additional rounds on the finest level without the error budget, in which each target patch takes its nearest
-     * match, in [0, 100]; default 3; the paper has 0. In other modes than LUXFER_STYLIZE_MODE_BUDGET these are
+     * Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In LUXFER_STYLIZE_MODE_BUDGET
+     * each target patch takes its nearest match in these rounds, without the error budget. In other modes these are
      * additional rounds of that mode.
      */
     uint32_t polish;
-    /** PatchMatch sweeps of a search, in [1, 100]; default 1. */
+    /** Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1. */
     uint32_t sweeps;
     /**
      * Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
      * default 0.9.
      */
     float coverage;
-    /** Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6. */
+    /** Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6. */
     uint32_t passes;
     /**
-     * Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
-     * the paper has 0.
+     * Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target patch
+     * may continue the match of its neighbour, which leaves fewer seams.
      */
     uint32_t settle;
     /**
@@ -174,7 +180,10 @@ typedef struct luxfer_stylize_params {
      * default 0.2.
      */
     float seam;
-    /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
+    /**
+     * How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
+     * LUXFER_STYLIZE_VOTE_WEIGHTED.
+     */
     luxfer_stylize_vote vote;
     /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST. */
     luxfer_stylize_vote final_vote;
@@ -194,23 +203,23 @@ typedef struct luxfer_stylize_params {
      */
     float coherence;
     /**
-     * How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in [0, 1];
-     * default 0.
+     * Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
+     * guides of light, in [0, 1]; 0, the default: not at all.
      */
     float match_appearance;
     /** Seed of the search; default 1. */
     uint64_t seed;
     /**
-     * Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger factor
-     * follows the guides more closely, with smaller connected pieces of the artwork.
+     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+     * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
      */
     float coarse_guides;
     /** Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6. */
     uint32_t coarse_iterations;
     /**
-     * Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
-     * al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of average
-     * usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+     * Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser
+     * et al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
+     * distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
      * LUXFER_STYLIZE_MODE_NEAREST.
      */
     float occurrence;
@@ -223,7 +232,7 @@ static inline luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *pl
     return luxfer_init(LUXFER_STRUCT_STYLIZE_PARAMS, place, size);
 }
 
-/** Presets between quality and speed: a LUXFER_STYLIZE_ preset. */
+/** A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset. */
 typedef int32_t luxfer_stylize_preset;
 
 /** Full quality, the default. */
@@ -247,12 +256,12 @@ typedef int32_t luxfer_stylize_preset;
 /** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
 #define LUXFER_STYLIZE_MODE_NEAREST 2
 
-/** One pass in scan order (Hertzmann et al. 2001); runs on one thread. */
+/** Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread. */
 #define LUXFER_STYLIZE_MODE_GREEDY 3
 
 /**
- * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan et
- * al. 2001).
+ * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
+ * et al. 2001).
  */
 #define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
 
@@ -265,7 +274,7 @@ typedef int32_t luxfer_stylize_preset;
 /** PatchMatch, the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
 
-/** A k-d tree over the means of patches instead of PatchMatch. */
+/** A k-d tree over the mean colours and guides of patches. */
 #define LUXFER_STYLIZE_SEARCH_TABLE 1
 
 /** The mean of the overlapping patches. */
@@ -274,18 +283,19 @@ typedef int32_t luxfer_stylize_preset;
 /** The mean of the overlapping patches, weighted so that closer matches count more. */
 #define LUXFER_STYLIZE_VOTE_WEIGHTED 1
 
-/** The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork. */
+/** The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork. */
 #define LUXFER_STYLIZE_VOTE_NEAREST 2
 
 /**
- * The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
- * their seams.
+ * The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork stay whole
+ * up to their seams.
  */
 #define LUXFER_STYLIZE_VOTE_MOST 3
 
 /**
- * Fills *params with a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
- * LUXFER_INVALID_ARGUMENT for another value.
+ * Fills *params with a preset: LUXFER_STYLIZE_FULL, LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or
+ * LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
+ * LUXFER_INVALID_ARGUMENT if preset is another value.
  */
 luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
                                            luxfer_stylize_preset preset,
@@ -295,9 +305,9 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
  * Stylisation
  *
  * Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
- * the guides (pairs of images that show the light in the exemplar and in the target) and start. Or set a half-painted
- * picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the finest
- * finished level can be read.
+ * the guides (pairs of images that show the light in the exemplar and in the target) and start a job. Or set a
+ * half-painted picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the
+ * finest finished resolution level can be read.
  *
  * Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
  * functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
@@ -306,47 +316,54 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
 /** Flag of luxfer_stylize_add_guides: add the normals. */
 #define LUXFER_GUIDES_WITH_NORMALS 1
 
-/** Flag: add the edges, for shapes finer than the strokes. */
+/** Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes. */
 #define LUXFER_GUIDES_WITH_EDGES 2
 
-/** Flag: add the colour code of materials, so that objects of a material are painted from objects of that material. */
+/**
+ * Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are painted
+ * from objects of that material.
+ */
 #define LUXFER_GUIDES_WITH_MATERIALS 4
 
-/** Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto others. */
+/**
+ * Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other kinds of
+ * light. Use it for scenes in which glossy objects reflect light onto others.
+ */
 #define LUXFER_GUIDES_WITH_CAUSTICS 8
 
 /** A stylisation. See luxfer_stylize_create. */
 typedef struct luxfer_stylize luxfer_stylize;
 
-/** Meaning of the values of a guide: a LUXFER_GUIDE_ value. */
+/** How the values of a guide are compared: a LUXFER_GUIDE_ value. */
 typedef int32_t luxfer_guide_range;
 
-/** Linear light >= 0, such as renderings; it is compared as it would look on a screen. */
+/** Linear light >= 0, such as a rendering; its values are compared as they would look on a screen. */
 #define LUXFER_GUIDE_LIGHT 0
 
-/** Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1]. */
+/** Data, such as normals, object codes and edges; the common range of source and target is scaled to [0, 1]. */
 #define LUXFER_GUIDE_DATA 1
 
 /**
- * Creates the stage. The caller releases *stylize. Any thread.
+ * Creates a stylisation. It has no inputs yet. The caller releases *stylize. Any thread.
  * LUXFER_UNSUPPORTED if stylisation was left out of this build.
  */
 luxfer_status luxfer_stylize_create(luxfer_context *context, luxfer_stylize **stylize);
 
 /**
- * Sets the artwork: the exemplar scene as painted by the artist, in linear colour, 1, 3 or 4 channels, of the size of
- * the guides' sources and aligned with them. Any thread.
+ * Sets the artwork: the exemplar scene as painted by the artist. It is an image in linear colour with 1, 3 or 4
+ * channels, of the size of the guides' sources and aligned with them. Any thread.
  */
 luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
                                          luxfer_image *artwork);
 
 /**
- * Adds a guide, or replaces the guide of that name. source shows the exemplar and target the scene to paint; both have
- * the same number of channels, at most 60 in all guides together. target may be NULL to use source for both, for a
- * half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a
- * LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. Values that are not finite count as 0
- * in the target; pixels of the exemplar with such values are not used. Any thread.
- * LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
+ * Adds a guide, or replaces the guide with that name. The image source shows the exemplar scene, and the image target
+ * shows the scene to paint. Both have the same number of channels, and all guides together have at most 60 channels.
+ * If target is NULL, source serves as the target too; use this for a picture of which one part is painted already
+ * (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
+ * All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
+ * pixels of a source with such values are not used. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
  */
 luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
                                        const char *name,
@@ -356,11 +373,13 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
                                        luxfer_guide_range range);
 
 /**
- * Adds the rendered guides of two scenes. It adds the five light guides LUXFER_GUIDES_FULL to
- * LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full", "direct", "specular", "indirect" and "two
- * bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics",
- * "normals", "edges" or "materials" with weight extra_weight. Any thread.
- * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
+ * Adds the rendered guides of two scenes: the parameter source is for the exemplar scene, the parameter target for
+ * the scene to paint. The call adds the five guides of light LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a
+ * common exposure, under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1.
+ * For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or
+ * "materials", each with weight extra_weight, in [0, 1e6]. Any thread.
+ * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
+ * range.
  */
 luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
                                         luxfer_guides *source,
@@ -372,33 +391,35 @@ luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
 luxfer_status luxfer_stylize_clear_guides(luxfer_stylize *stylize);
 
 /**
- * Sets the pixels of the artwork that may be copied: those where mask is above 0.5; 1 channel, the artwork's size.
- * mask may be NULL: all pixels. Any thread.
+ * Sets the pixels of the artwork that may be copied: the pixels where mask is above 0.5. mask has 1 channel and the
+ * artwork's size; NULL stands for all pixels. Any thread.
  */
 luxfer_status luxfer_stylize_set_source_mask(luxfer_stylize *stylize,
                                              luxfer_image *mask);
 
 /**
- * Sets the pixels of the target to paint: those where mask is above 0.5; 1 channel, the size of the guides' targets.
- * The other pixels are taken from known (linear, with the number of channels of the artwork), and the new paint is
- * fitted to them; if known is NULL they are black. mask may be NULL: all pixels are painted. Any thread.
+ * Sets the pixels of the target to paint: the pixels where mask is above 0.5. mask has 1 channel and the size of the
+ * guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from the image known (linear,
+ * with the number of channels of the artwork), and the new paint is fitted to them; if known is NULL, the other
+ * pixels are black. Any thread.
  */
 luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
                                              luxfer_image *mask,
                                              luxfer_image *known);
 
 /**
- * Makes each job start from the previous result, for the frames of an animation. motion (2 channels, the size of the
- * guides' targets) holds for each pixel the offset to its position in the previous frame, x and y in pixels; NaN where
- * it was not visible. The paint of the previous frame moves along and stays where it fits; see
- * luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any thread.
+ * Makes each job start from the previous result, for the frames of an animation. The image motion has 2 channels and
+ * the size of the guides' targets. It holds for each pixel the offset to the position of its surface point in the
+ * previous frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves with
+ * the surfaces and stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from
+ * nothing. Any thread.
  */
 luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
                                         luxfer_image *motion);
 
 /**
- * Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+ * Starts a job that paints the target. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running; LUXFER_INVALID_ARGUMENT if a
  * setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
  * LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
  * leaves no exemplar patch.
@@ -408,12 +429,13 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
                                    luxfer_job **job);
 
 /**
- * Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
- * artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the picture that were painted
- * from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
- * thread.
- * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
- * LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work too.
+ * Starts a job that updates the picture after a change of the artwork. The image artwork is the changed artwork, with
+ * the size and channels of the first artwork. The mask changed (1 channel) is above 0.5 where the artwork has new
+ * paint; the pixels of the picture that were painted from these places are painted again. The job takes a fraction of
+ * the time of luxfer_stylize_start. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end
+ * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
+ * too.
  */
 luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_image *artwork,
@@ -421,10 +443,11 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_job **job);
 
 /**
- * Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, the
- * artwork's size) is above 0.5 where the picture is finished; the sources of the guides show the scene of the picture,
- * and their targets are NULL. The call is a shorthand: it sets painted as the source mask, its inverse as the target
- * mask, and the artwork as known. Any thread.
+ * Lets the library paint the rest of a half-painted picture. The artwork is the picture. The mask painted has 1
+ * channel and the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the
+ * scene of the picture, and their targets are NULL. The call is a shorthand: it sets the mask painted as the source
+ * mask, its inverse as the target mask, and the artwork as the image known of luxfer_stylize_set_target_mask. Any
+ * thread.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */
@@ -434,8 +457,8 @@ luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
 /* ====================================================================================================================
  * Results of a stylisation
  *
- * The picture, the source of each pixel in the artwork, the error of the guides, and statistics of the run level by
- * level.
+ * The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
+ * the run level by level.
  * ==================================================================================================================== */
 
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
@@ -445,19 +468,22 @@ typedef int32_t luxfer_stylize_image;
 typedef struct luxfer_stylize_report {
     /** sizeof(luxfer_stylize_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0. */
+    /**
+     * 1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and energy
+     * are 0.
+     */
     uint32_t is_complete;
     /** Number of finished levels; see luxfer_stylize_get_level. */
     uint32_t levels;
-    /** Number of times that the sides of the target were halved to get the size of the picture. */
+    /** Number of times that the target's sides were halved to get the size of the picture. */
     uint32_t halvings;
     /** Width of the patches, in pixels. */
     uint32_t patch;
-    /** Largest number of uses of an exemplar patch. */
+    /** Number of uses of the exemplar patch that was used most often. */
     uint32_t max_uses;
     /**
-     * Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
-     * channels of the artwork have the weight 1 together, the guides guide_weight.
+     * Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All channels
+     * of the artwork together have the weight 1, all guides together have the weight guide_weight.
      */
     double energy;
     /** Share of the exemplar patches that were used, in [0, 1]. */
@@ -472,25 +498,25 @@ typedef struct luxfer_stylize_report {
     uint64_t broken_target;
 } luxfer_stylize_report;
 
-/** One round of matching and painting. */
+/** One round of matching and painting on a level. */
 typedef struct luxfer_stylize_round {
     /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
     uint32_t passes;
-    /** Energy after this round, as luxfer_stylize_report.energy. */
+    /** Energy after this round, defined as for luxfer_stylize_report.energy. */
     double energy;
 } luxfer_stylize_round;
 
-/** One matching pass under the error budget. */
+/** One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET. */
 typedef struct luxfer_stylize_pass {
     /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** 0. */
+    /** Reserved; always 0. */
     uint32_t reserved;
     /**
      * Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
-     * the error curve.
+     * the sorted matching errors, where they begin to rise steeply.
      */
     double knee;
     /** Share of the target with a match after this pass, in [0, 1]. */
@@ -500,14 +526,14 @@ typedef struct luxfer_stylize_pass {
 } luxfer_stylize_pass;
 
 /**
- * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it is
- * smaller: the sides of the target are halved luxfer_stylize_report.halvings times, rounded down.
+ * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it
+ * is smaller than the target: the target's sides are halved luxfer_stylize_report.halvings times, rounded down.
  */
 #define LUXFER_STYLIZE_IMAGE_PICTURE 0
 
 /**
- * Difference between the guides at each pixel and at the place in the exemplar from which it was painted, in [0, 1]; 1
- * channel. It is high where nothing in the exemplar fits.
+ * Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from which the
+ * pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
  */
 #define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
 
@@ -518,8 +544,9 @@ typedef struct luxfer_stylize_pass {
 #define LUXFER_STYLIZE_IMAGE_SOURCES 2
 
 /**
- * Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
- * the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
+ * Gets the image of the result that a LUXFER_STYLIZE_IMAGE_ value selects, for example the picture.
+ * luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
+ * The caller releases *image. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
  * level is finished.
  */
@@ -536,8 +563,8 @@ luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
                                         size_t size);
 
 /**
- * Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
- * NULL. Any thread.
+ * Gets the size of a level in pixels and the number of its rounds; level 0 is the coarsest. width, height and rounds
+ * may be NULL. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
  */
 luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
@@ -547,7 +574,7 @@ luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
                                        uint32_t *rounds);
 
 /**
- * Describes a round of a level. size is sizeof *round. Any thread.
+ * Describes a round of a level; the numbers level and index start at 0. size is sizeof *round. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
  */
 luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
@@ -557,7 +584,8 @@ luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
                                        size_t size);
 
 /**
- * Describes a pass of a round. size is sizeof *pass. Any thread.
+ * Describes a matching pass of a round; the numbers level, round and index start at 0. size is sizeof *pass. Any
+ * thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
  * pass.
  */
@@ -571,17 +599,21 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
 /* ====================================================================================================================
  * Print sheets
  *
- * For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
- * scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
+ * For artists who paint on paper: draws a sheet to print, which shows the exemplar in pale colours between alignment
+ * marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
+ * synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
-/** Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and aligning. */
+/**
+ * Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and for
+ * aligning.
+ */
 typedef struct luxfer_sheet_params {
     /** sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init. */
     uint32_t struct_size;
     /**
-     * 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1; 0: no
-     * correction.
+     * 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the value 1;
+     * 0: no correction.
      */
     uint32_t even_light;
     /** Width of the paper in millimetres, in [60, 2000]; default 297. */
@@ -601,15 +633,15 @@ static inline luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *place,
     return luxfer_init(LUXFER_STRUCT_SHEET_PARAMS, place, size);
 }
 
-/** Quality of the alignment of a photo. */
+/** Quality of the alignment of a photo with its picture. */
 typedef struct luxfer_sheet_report {
     /** sizeof(luxfer_sheet_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of marks found, of 10; at least 6 are needed. */
     uint32_t marks;
     /**
-     * Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives them.
-     * More than one or two pixels mean that the paper is not flat or that the lens distorts.
+     * Root mean square distance, in pixels of the photo, between the found marks and the positions that to_photo
+     * predicts for them. If it is more than one or two pixels, the paper is not flat or the lens distorts.
      */
     double residual;
     /** Expected alignment error in pixels of the picture. */
@@ -619,9 +651,9 @@ typedef struct luxfer_sheet_report {
 } luxfer_sheet_report;
 
 /**
- * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
- * paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be
- * NULL for the defaults. The caller releases *sheet. Any thread.
+ * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels). The sheet shows the picture in
+ * pale colours, as large as the paper allows, with ten marks around it. Save it as PNG and print it at params->dpi
+ * without scaling. params may be NULL for the defaults. The caller releases *sheet. Any thread.
  * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
  * memory budget.
  */
@@ -630,10 +662,11 @@ luxfer_status luxfer_sheet_print(luxfer_image *picture,
                                  luxfer_image **sheet);
 
 /**
- * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of
- * width x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
- * perspective. params may be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not
- * matter. Takes up to a few seconds. The caller releases *artwork. Any thread.
+ * Aligns a photo or scan (linear RGB) of a painted sheet with the picture of width x height pixels for which the
+ * sheet was printed. The call finds the marks in the photo and resamples the photo to the pixels of the picture: the
+ * result is the artwork, in linear RGB. params must be equal to those of luxfer_sheet_print; NULL stands for the
+ * defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size does
+ * not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,

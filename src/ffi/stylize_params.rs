@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::patch::Vote;
 use crate::stylize::{self, Finder, Mode};
 
-/// A preset of the settings, which trades quality for speed: one of the four values below.
+/// A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset.
 pub type luxfer_stylize_preset = i32;
 /// Full quality, the default.
 pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;

@@ -296,15 +296,15 @@ class luxfer_context(Structure):
 
 
 class luxfer_image(Structure):
-    """An image. See luxfer_image_create."""
+    """An image in the library's memory. See luxfer_image_create."""
 
 
 class luxfer_strokes(Structure):
-    """Strokes for images of one size. See luxfer_strokes_create."""
+    """A set of strokes for images of one size. See luxfer_strokes_create."""
 
 
 class luxfer_job(Structure):
-    """Work in progress. See luxfer_job_wait."""
+    """A job: work in progress. See luxfer_job_wait."""
 
 
 class luxfer_scene(Structure):
@@ -316,7 +316,7 @@ class luxfer_distribution(Structure):
 
 
 class luxfer_candidates(Structure):
-    """A list of candidates. See luxfer_scene_get_candidates."""
+    """A list of candidates for the ceiling. See luxfer_scene_get_candidates."""
 
 
 class luxfer_render(Structure):
@@ -340,7 +340,7 @@ class luxfer_emission(Structure):
 
 
 class luxfer_relight(Structure):
-    """A relighting of a scene. See luxfer_relight_create."""
+    """A relighting: a solver for the emission of one material. See luxfer_relight_create."""
 
 
 class luxfer_transfer(Structure):
@@ -360,7 +360,7 @@ class luxfer_lamps(Structure):
 
 
 class luxfer_importance(Structure):
-    """A map of importance. See luxfer_importance_create."""
+    """An importance map of an emitting surface. See luxfer_importance_create."""
 
 
 class luxfer_guides(Structure):
@@ -372,7 +372,7 @@ class luxfer_stylize(Structure):
 
 
 class luxfer_plan(Structure):
-    """A plan. See luxfer_plan_create."""
+    """A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create."""
 
 
 class luxfer_demo_photo(Structure):
@@ -440,7 +440,7 @@ class luxfer_photo_metadata(Structure):
 
 
 class luxfer_scene_counts(Structure):
-    """Numbers of the objects in a scene."""
+    """Number of objects of each kind in a scene."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -455,7 +455,7 @@ class luxfer_scene_counts(Structure):
 
 
 class luxfer_surface(Structure):
-    """A planar surface of a scene."""
+    """A planar surface of a scene: triangles in one plane, and their bounding rectangle."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -472,7 +472,7 @@ class luxfer_surface(Structure):
 
 
 class luxfer_scene_load_params(Structure):
-    """Settings of reading a scene's file."""
+    """Settings for loading a scene file."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -485,7 +485,7 @@ class luxfer_scene_load_params(Structure):
 
 
 class luxfer_material_params(Structure):
-    """A material: metallic-roughness, as in glTF 2.0."""
+    """A metallic-roughness material, as in glTF 2.0."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -559,7 +559,7 @@ class luxfer_camera_params(Structure):
 
 
 class luxfer_distribution_report(Structure):
-    """Summary of a distribution."""
+    """Summary of a luminous intensity distribution."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -648,7 +648,7 @@ class luxfer_requirements(Structure):
 
 
 class luxfer_mesh_info(Structure):
-    """A mesh of a scene."""
+    """Sizes and attributes of a mesh."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -664,7 +664,7 @@ class luxfer_mesh_info(Structure):
 
 
 class luxfer_candidate(Structure):
-    """An object or a material of a scene."""
+    """A candidate for the ceiling: an object or a material of a scene."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -827,7 +827,7 @@ class luxfer_segment_report(Structure):
 
 
 class luxfer_emission_params(Structure):
-    """Settings of the emission."""
+    """Settings of an emissive texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -856,7 +856,8 @@ class luxfer_emission_params(Structure):
 
 
 class luxfer_emission_report(Structure):
-    """Quality of the texture."""
+    """Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no
+    texels are set."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -875,7 +876,7 @@ class luxfer_emission_report(Structure):
 
 
 class luxfer_luminaire(Structure):
-    """A lamp of the texture."""
+    """A luminaire: one lamp of the texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -908,7 +909,7 @@ class luxfer_relight_params(Structure):
 
 
 class luxfer_relight_report(Structure):
-    """The solution and its confidence."""
+    """The solution of a relighting and its confidence."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -927,7 +928,8 @@ class luxfer_relight_report(Structure):
 
 
 class luxfer_pattern_params(Structure):
-    """Layout of the pattern on the surface. Surface has the corner and the axes u and v of the surface."""
+    """Layout of the light pattern on a surface; Surface gives the corner and the axes u and v of the
+    surface."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -943,7 +945,7 @@ class luxfer_pattern_params(Structure):
 
 
 class luxfer_transfer_params(Structure):
-    """Settings of a transfer. The structs behind the pointers are read during the call."""
+    """Settings of a transfer. Its pointers are used during the call only."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1011,7 +1013,7 @@ class luxfer_fixture(Structure):
 
 
 class luxfer_warning(Structure):
-    """A reason to doubt a result."""
+    """A warning: a reason to doubt a result."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1029,7 +1031,8 @@ class luxfer_warning(Structure):
 
 
 class luxfer_illuminance_grid(Structure):
-    """A calculation grid."""
+    """A calculation grid: a parallelogram of columns x rows cells, with a point at the centre of each cell. The
+    default is a square metre at the origin that faces up."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1043,7 +1046,7 @@ class luxfer_illuminance_grid(Structure):
 
 
 class luxfer_illuminance_params(Structure):
-    """Settings of the calculation."""
+    """Settings of an illuminance calculation."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1070,7 +1073,7 @@ class luxfer_illuminance_report(Structure):
 
 
 class luxfer_lamps_params(Structure):
-    """Settings of the calculation."""
+    """Settings of the solver for lamps."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1091,7 +1094,7 @@ class luxfer_lamps_params(Structure):
 
 
 class luxfer_lamps_report(Structure):
-    """Summary of the result."""
+    """Summary of the solution for lamps."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1105,7 +1108,7 @@ class luxfer_lamps_report(Structure):
 
 
 class luxfer_lamp(Structure):
-    """One lamp."""
+    """The solution for one lamp."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1118,7 +1121,7 @@ class luxfer_lamp(Structure):
 
 
 class luxfer_lamps_goal(Structure):
-    """The light that a goal receives."""
+    """The light that the surface or grid of one goal receives with the powers found."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1137,7 +1140,7 @@ class luxfer_lamps_goal(Structure):
 
 
 class luxfer_lamps_response(Structure):
-    """The light that one goal receives from one lamp."""
+    """The light that the surface or grid of one goal receives from one lamp."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1149,7 +1152,7 @@ class luxfer_lamps_response(Structure):
 
 
 class luxfer_importance_params(Structure):
-    """Settings of the map."""
+    """Settings of an importance map."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1167,7 +1170,7 @@ class luxfer_importance_params(Structure):
 
 
 class luxfer_importance_report(Structure):
-    """The light that the target receives from a texture."""
+    """The light that the target receives from a texture: the result of luxfer_importance_respond."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1180,8 +1183,8 @@ class luxfer_importance_report(Structure):
 
 
 class luxfer_placement_params(Structure):
-    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
-    about their centre (0.5, 0.5), and then shifted."""
+    """Objective and bounds of a placement. A placement scales the texture coordinates of the surface about
+    their centre (0.5, 0.5), then rotates them about this centre, and then shifts them."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1218,7 +1221,7 @@ class luxfer_placement(Structure):
 
 
 class luxfer_glare_report(Structure):
-    """The glare of a view."""
+    """The glare of a view: the result of luxfer_image_get_glare."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1234,7 +1237,7 @@ class luxfer_glare_report(Structure):
 
 
 class luxfer_observer(Structure):
-    """An eye that looks in a direction. An element of arrays, so this struct never changes."""
+    """An observer: an eye that looks in a direction. An element of arrays, so this struct never changes."""
 
     _fields_ = [
         ("position", c_float * 3),
@@ -1244,7 +1247,7 @@ class luxfer_observer(Structure):
 
 
 class luxfer_observer_glare(Structure):
-    """The glare of an observer. An element of arrays, so this struct never changes."""
+    """The glare that an observer experiences. An element of arrays, so this struct never changes."""
 
     _fields_ = [
         ("ugr", c_double),
@@ -1274,7 +1277,7 @@ class luxfer_false_colour_params(Structure):
 
 
 class luxfer_mixture(Structure):
-    """A colour mixed from primaries."""
+    """A colour mixed from LED primaries: the result of luxfer_mix_primaries."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1286,7 +1289,7 @@ class luxfer_mixture(Structure):
 
 
 class luxfer_temperature_fit(Structure):
-    """The blackbody light that fits a target best."""
+    """The blackbody light that fits a target best: the result of luxfer_fit_temperature."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1300,7 +1303,7 @@ class luxfer_temperature_fit(Structure):
 
 
 class luxfer_preset(Structure):
-    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
+    """Requirements of EN 12464-1 for one kind of room, as manufacturers of luminaires quote them. Only the
     standard itself is binding."""
 
     _fields_ = [
@@ -1317,7 +1320,7 @@ class luxfer_preset(Structure):
 
 
 class luxfer_guides_params(Structure):
-    """Settings of guides."""
+    """Settings of the guides."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1386,7 +1389,7 @@ class luxfer_stylize_report(Structure):
 
 
 class luxfer_stylize_round(Structure):
-    """One round of matching and painting."""
+    """One round of matching and painting on a level."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1397,7 +1400,7 @@ class luxfer_stylize_round(Structure):
 
 
 class luxfer_stylize_pass(Structure):
-    """One matching pass under the error budget."""
+    """One matching pass under the error budget, in StylizeMode.BUDGET."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1425,7 +1428,7 @@ class luxfer_sheet_params(Structure):
 
 
 class luxfer_sheet_report(Structure):
-    """Quality of the alignment of a photo."""
+    """Quality of the alignment of a photo with its picture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1481,7 +1484,7 @@ class luxfer_render_part(Structure):
 
 
 class luxfer_demo_photo_params(Structure):
-    """Settings of the photo."""
+    """Settings of the demonstration photo."""
 
     _fields_ = [
         ("struct_size", c_uint32),

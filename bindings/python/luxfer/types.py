@@ -17,7 +17,8 @@ class Status(IntEnum):
     UNKNOWN = 1
     """An error that has no status value of its own."""
     INVALID_ARGUMENT = 2
-    """A parameter is None, out of range, of the wrong kind or from another context, or contradicts another."""
+    """A parameter is None, out of range, of the wrong kind or from another context, or contradicts another
+    parameter."""
     INVALID_OPERATION = 3
     """The call is not allowed in the object's present state: a job is still running on it, or an input is
     missing."""
@@ -36,12 +37,13 @@ class Status(IntEnum):
     INTERNAL = 10
     """A bug in this library: please report it."""
     DEGENERATE = 11
-    """The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only."""
+    """The input is well formed but has no answer: for example a photo without lines, a plane seen edge-on, or
+    strokes of one class only."""
     NOT_FOUND = 12
     """No surface, image or entry has the given name or index."""
     UNREACHABLE = 13
-    """No light can reach the target: there is no light path, a channel is fully absorbed, or negative light
-    would be needed."""
+    """No light can reach the target: there is no light path, all light of a channel is absorbed, or negative
+    light would be needed."""
 
 
 class Sample(IntEnum):
@@ -67,7 +69,7 @@ class ColourSpace(IntEnum):
 
 
 class FileColour(IntEnum):
-    """How the colours of an image were understood."""
+    """How the colours of an image were interpreted."""
 
     NONE = 0
     """The image was not loaded from a file."""
@@ -87,28 +89,30 @@ class FileColour(IntEnum):
 
 
 class Phase(IntEnum):
-    """The mask that strokes are for."""
+    """The mask for which strokes are painted."""
 
     PLANE = 0
-    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
-    too."""
+    """The mask of the plane that carries the lights: positive strokes lie on the plane; strokes on lights count
+    as positive strokes too."""
     LIGHTS = 1
-    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
+    """The mask of the lights on the plane: positive strokes lie on lights, negative strokes on the plane beside
+    them."""
 
 
 class AlphaMode(IntEnum):
-    """Meaning of a surface's alpha."""
+    """How a surface uses its alpha."""
 
     OPAQUE = 0
     """The alpha is ignored: the surface is opaque."""
     MASK = 1
-    """The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere."""
+    """The surface is opaque where its alpha is at least alpha_cutoff, and absent elsewhere."""
     BLEND = 2
-    """The surface stops the share alpha of the light; the rest passes straight through."""
+    """The surface stops a share of the light that is equal to its alpha; the rest of the light passes straight
+    through."""
 
 
 class Wrap(IntEnum):
-    """Continuation of a texture beyond its edges."""
+    """How a texture continues beyond its edges."""
 
     REPEAT = 0
     """The texture repeats."""
@@ -119,36 +123,38 @@ class Wrap(IntEnum):
 
 
 class TextureRole(IntEnum):
-    """Purpose of a material's texture."""
+    """Purpose of a texture in a material."""
 
     BASE_COLOR = 0
-    """Multiplies the base colour; its alpha multiplies the material's."""
+    """Base colour: the texture multiplies the material's base colour, and its alpha multiplies the material's
+    alpha."""
     METALLIC_ROUGHNESS = 1
-    """The green channel multiplies the roughness, the blue channel the metallic value."""
+    """Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic
+    value."""
     NORMAL = 2
     """Normals in tangent space."""
     EMISSION = 3
-    """Multiplies the emission; looked up without interpolation."""
+    """Emission: the texture multiplies the emission; it is looked up without interpolation."""
 
 
 class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
     IES = 0
-    """IES LM-63, type C."""
+    """IES LM-63 (.ies), with type C photometry."""
     LDT = 1
-    """EULUMDAT."""
+    """EULUMDAT (.ldt)."""
 
 
 class LightKind(IntEnum):
-    """A kind of light."""
+    """A kind of punctual light."""
 
     POINT = 0
     """A point light: equal intensity in every direction."""
     SPOT = 1
-    """A spot light: shines into a cone."""
+    """A spot light: it shines into a cone."""
     DIRECTIONAL = 2
-    """A directional light: shines from infinitely far away."""
+    """A directional light: it shines from infinitely far away, with parallel rays."""
 
 
 class VertexAttribute(IntEnum):
@@ -167,12 +173,12 @@ class VertexAttribute(IntEnum):
 
 
 class CandidateKind(IntEnum):
-    """The kind of a candidate."""
+    """Whether a candidate is an object or a material."""
 
     OBJECT = 0
-    """All meshes of one name."""
+    """An object: all meshes with one name."""
     MATERIAL = 1
-    """All triangles of one material."""
+    """A material: all triangles that use it."""
 
 
 class RenderImage(IntEnum):
@@ -181,9 +187,9 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of
-    their paths, so their errors are correlated: the variance of a sum over pixels is up to eight times the sum
-    of their variances."""
+    """Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the
+    results of their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is
+    up to eight times the sum of their variances."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3
@@ -191,42 +197,43 @@ class RenderImage(IntEnum):
     where a pixel has fewer than two paths."""
     PREVIEW = 4
     """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
-    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
+    do not show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
     RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
-    """Letters that match emissive surfaces and the environment in camera-first expressions."""
+    """Letters that match emissive surfaces and the environment in expressions that start at the camera: a
+    EmitterAs."""
 
     BOTH = 0
-    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
+    """Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default."""
     LIGHT = 1
-    """Every light matches L only."""
+    """Emissive surfaces and the environment match L only."""
     OBJECT = 2
     """As in Open Shading Language: surfaces match O, the environment matches B."""
 
 
 class Lines(IntEnum):
-    """Detector of lines."""
+    """The detector of lines."""
 
     REGIONS = 0
-    """Segments from regions of similar gradient direction, with sub-pixel end points."""
+    """Fits segments with sub-pixel end points to regions of similar gradient direction."""
     HOUGH = 1
     """The paper's method: gradient-restricted Hough transform of Canny edges."""
 
 
 class Search(IntEnum):
-    """Search for vanishing points."""
+    """The search for vanishing points."""
 
     MANHATTAN = 0
-    """Searches three orthogonal directions and the focal length together, then refines each direction
-    freely."""
+    """Finds three orthogonal directions and the focal length together, then refines each direction by
+    itself."""
     SUCCESSIVE = 1
-    """The paper's method: one group of lines after the other."""
+    """The paper's method: finds one vanishing point after the other, each from the lines that are left."""
 
 
 class Metric(IntEnum):
-    """Distance of a vanishing point from a line, for Search.SUCCESSIVE."""
+    """The distance of a vanishing point from a line, for Search.SUCCESSIVE."""
 
     SEGMENT = 0
     """The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity."""
@@ -244,7 +251,7 @@ class RectifyImage(IntEnum):
 
 
 class FocalSource(IntEnum):
-    """Where a focal length came from."""
+    """The source of a focal length."""
 
     GIVEN = 0
     """Set by the caller."""
@@ -269,7 +276,7 @@ class DepthKind(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """How the photo's colours are normalised for a network, whose file does not state it."""
+    """How the photo's colours are normalised for a network."""
 
     BY_SIZE = 0
     """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
@@ -286,23 +293,24 @@ class FeaturesImage(IntEnum):
     """An image of the features."""
 
     CHANNELS = 0
-    """The ten channels; luxfer_image_read reads up to four of them at a time."""
+    """The ten channels of the features; luxfer_image_read reads up to four of them at a time."""
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
-    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the
-    depth map of later jobs, or of a luxfer_transfer, to avoid running the network again."""
+    """The depth along z that a network has estimated, in the unit of near_plane and from near_plane to
+    far_plane; 1 channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the
+    network again."""
 
 
 class DepthSource(IntEnum):
-    """Source of the depth."""
+    """The source of the depth."""
 
     CALLER = 0
     """The caller's depth map."""
     LAYOUT = 1
     """A box-shaped room fitted to the lines of the photo and to strokes."""
     NOTHING = 2
-    """A neutral guess that does not depend on the photo."""
+    """No source: a fixed depth that does not depend on the photo."""
     NETWORK = 3
     """The caller's network."""
 
@@ -311,61 +319,66 @@ class Subject(IntEnum):
     """The subject of a segmentation."""
 
     AUTO = 0
-    """Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features
-    makes them; else a surface."""
+    """Chooses the subject: lamps if luxfer_segment_set_region gave a mask and the features have ten channels,
+    as luxfer_features makes them; else a surface."""
     SURFACE = 1
-    """A surface, such as the plane that carries the lamps: each pixel is judged by its features."""
+    """A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask
+    is restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more
+    than one of these, the mask is restricted to its connected parts that positive strokes touch."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
-    one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region
-    are found as well. Negative strokes are not needed. The first three channels of the features must be
-    CIELAB."""
+    one lamp or more. Regions without a stroke that resemble the marked lamps and lie in the mask of
+    luxfer_segment_set_region count as lamps too. Negative strokes are not needed. The first three channels of
+    the features must be CIELAB."""
 
 
 class SegmentImage(IntEnum):
     """An image of a segmentation."""
 
     MASK = 0
-    """1 where the confidence is above one half, else 0; 1 channel."""
+    """The mask: 1 where the confidence is above one half, else 0; 1 channel."""
     CONFIDENCE = 1
-    """Probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
+    """The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
     UNSEEN = 2
-    """Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1
-    channel."""
+    """The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is
+    high, another stroke helps."""
 
 
 class EmissionLaw(IntEnum):
     """The law by which a texture continues the lights of its exemplar."""
 
     BEST = 0
-    """The law that predicts the lamps of the photo best: the law of EmissionLaw.CORRELATION, unless another law
-    is clearly better."""
+    """The law that predicts the lamps of the photo best. If no law is clearly better than the law that
+    EmissionLaw.CORRELATION selects, the latter is used."""
     CORRELATION = 1
-    """The law that follows from the autocorrelation of the lights and from min_regularity."""
+    """The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a
+    shift by this period is at least min_regularity of EmissionParams."""
     LATTICE = 2
     """The lamps form a lattice with two periods."""
     ROW = 3
     """The lamps form a row with one period; the extent of the exemplar serves as the other period."""
     WHOLE = 4
-    """The exemplar repeats as a whole."""
+    """The exemplar repeats as a whole, edge to edge."""
     FREE = 5
     """The lights have no period: patches of the exemplar may lie anywhere."""
     COPY = 6
-    """In results only: the texture is a part of the exemplar, or the caller gave it."""
+    """In results only: the texture is a copied part of the exemplar, or the caller supplied the texture."""
 
 
 class EmissionImage(IntEnum):
     """An image of the emission."""
 
     TEXTURE = 0
-    """The texture: linear RGB relative to the photo's white; 0 outside lamps."""
+    """The texture: linear RGB, where 1 is the photo's white; 0 outside lamps."""
     MASK = 1
-    """1 on lamps, else 0; 1 channel."""
+    """The mask of the texture: 1 on lamps, else 0; 1 channel."""
     EXEMPLAR_METADATA = 2
-    """Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3
-    channels."""
+    """The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a
+    pixel shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3
+    channels, at the resolution that working_side gives."""
     METADATA = 3
-    """Metadata of the result, with the channels of EmissionImage.EXEMPLAR_METADATA."""
+    """The guide channels of the texture: the channels of EmissionImage.EXEMPLAR_METADATA, copied patch by patch
+    in the same way as the colours of the texture."""
 
 
 class Constraint(IntEnum):
@@ -374,14 +387,14 @@ class Constraint(IntEnum):
     EQUAL = 0
     """The light should equal the value."""
     AT_LEAST = 1
-    """The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a
-    photo shows."""
+    """The light should be at least the value, for example because a standard requires it on a desk, or because
+    the photo clips this channel."""
     AT_MOST = 2
-    """The light should be at most the value, as a limit against glare."""
+    """The light should be at most the value, for example to limit glare."""
 
 
 class Quantity(IntEnum):
-    """Quantity that should match the photo."""
+    """The quantity of the target surface that should match the photo."""
 
     OUTGOING = 0
     """Light that the target surface reflects, its albedo included: the radiance that a photo shows."""
@@ -390,14 +403,15 @@ class Quantity(IntEnum):
 
 
 class Fit(IntEnum):
-    """How the target surface is compared."""
+    """How the light of the target surface is compared with its target value."""
 
     MEAN = 0
-    """The mean over the target surface."""
+    """By the mean over the target surface."""
     LEAST_SQUARES = 1
-    """Every point of the target surface, by least squares, as gradient descent on texels does. Bright points
-    count more, so the emission is dimmer than with Fit.MEAN: by the factor 1 / (1 + CV²) without other light,
-    where CV is the coefficient of variation of the response over the target."""
+    """At every point of the target surface, by least squares, as gradient descent on texels does. Bright points
+    count more, so the emission is dimmer than with Fit.MEAN. If there is no other light, it is dimmer by the
+    factor 1 / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that
+    it receives from the emission."""
 
 
 class Outcome(IntEnum):
@@ -414,29 +428,29 @@ class Outcome(IntEnum):
 
 
 class PatternScale(IntEnum):
-    """The length that sets the size of the pattern on the surface."""
+    """Choice of the length that sets the size of the pattern on the surface."""
 
     DISTANCE = 0
-    """The distance of the photo's camera from the plane with the lights: plane_distance of TransferParams, or
-    if that is 0, the estimate from the size of the lamps."""
+    """The distance of the photo's camera from the plane with the lights. It is plane_distance of
+    TransferParams, or if that is 0, an estimate from the size of the lamps."""
     LAMP = 1
-    """The length of a lamp: the median of the longer sides of the photo's lamps."""
+    """The length of a lamp: PatternParams.length is the median of the longer sides of the photo's lamps."""
     SPACING = 2
-    """The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to its
-    nearest neighbour."""
+    """The spacing of the lamps: PatternParams.length is the shorter period of their lattice or, without a
+    lattice, the median distance from a lamp to its nearest neighbour."""
     ACROSS = 3
-    """The width of the surface: it shows as many lamps across as the plane in the photo."""
+    """The width of the surface: the surface is as many lamps wide as the plane in the photo."""
 
 
 class Stage(IntEnum):
     """A stage of the transfer."""
 
     SCENE = -1
-    """No stage, but a scene that was loaded: only in warnings."""
+    """No stage, but a loaded scene: occurs only in warnings."""
     VIEW = 0
-    """Finds lines, vanishing points and the photo's camera."""
+    """Finds lines, vanishing points and the camera of the photo."""
     FEATURES = 1
-    """Computes the ten channels of the features."""
+    """Computes the ten feature channels of each pixel of the photo."""
     PLANE = 2
     """Segments the plane that carries the lights."""
     LIGHTS = 3
@@ -448,11 +462,11 @@ class Stage(IntEnum):
     RELIGHT = 6
     """Solves for the colour and intensity of the emission."""
     RENDER = 7
-    """Renders the picture."""
+    """Renders the scene in its new light."""
 
 
 class Target(IntEnum):
-    """The part of the photo that gives the colour to match."""
+    """The part of the photo whose mean colour is matched."""
 
     SURFACE = 0
     """The plane that carries the lights, without the lights and their halo."""
@@ -461,44 +475,44 @@ class Target(IntEnum):
 
 
 class TransferImage(IntEnum):
-    """An image of the transfer."""
+    """An image that a stage of the transfer has made."""
 
     FEATURES = 0
-    """The ten channels of the features."""
+    """The ten channels of the features, as FeaturesImage.CHANNELS."""
     PLANE_MASK = 1
-    """1 on the plane, else 0; 1 channel."""
+    """The mask of the plane in the photo: 1 on the plane, else 0; 1 channel."""
     PLANE_CONFIDENCE = 2
-    """Probability that a pixel is on the plane; 1 channel."""
+    """Probability that a pixel of the photo is on the plane, in [0, 1]; 1 channel."""
     LIGHTS_MASK = 3
-    """1 on lights, else 0; 1 channel."""
+    """The mask of the lights in the photo: 1 on lights, else 0; 1 channel."""
     LIGHTS_CONFIDENCE = 4
-    """Probability that a pixel is a light; 1 channel."""
+    """Probability that a pixel of the photo is a light, in [0, 1]; 1 channel."""
     UNWARPED = 5
-    """The plane seen straight on, linear RGB."""
+    """The unwarped image: the plane in frontal view, linear RGB."""
     UNWARPED_VALID = 6
-    """1 where the photo shows the plane, else 0; 1 channel."""
+    """1 where the photo shows the plane of the unwarped image, else 0; 1 channel."""
     EMISSION = 7
-    """The emissive texture, linear RGB relative to the photo's white."""
+    """The emissive texture: linear RGB, where 1 is the photo's white."""
     EMISSION_MASK = 8
-    """1 on lamps of the texture, else 0; 1 channel."""
+    """The mask of the emissive texture: 1 on lamps, else 0; 1 channel."""
     RENDER = 9
-    """The scene in its new light, linear RGB in cd/m²; in its current state while the rendering runs."""
+    """The scene in its new light: linear RGB in cd/m²; in its current state while the rendering runs."""
     RENDER_VARIANCE = 10
-    """Variance of the rendering; 3 channels."""
+    """Variance of the rendering, as RenderImage.VARIANCE; 3 channels."""
     RENDER_PREVIEW = 11
-    """The rendering after a noise filter, if the settings of the stage RENDER have a preview; see
+    """The rendering after a noise filter, if the settings of the stage RENDER ask for a preview; see
     RenderImage.PREVIEW."""
 
 
 class TransferScene(IntEnum):
-    """A scene of the transfer."""
+    """A scene that the transfer has made."""
 
     UNSOLVED = 0
     """The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor."""
     LIT = 1
     """The scene with the solved emission: the result."""
     WHITE = 2
-    """As TransferScene.LIT, with white light of equal luminance."""
+    """The scene TransferScene.LIT with white light of equal luminance."""
 
 
 class WarningCode(IntEnum):
@@ -517,11 +531,11 @@ class WarningCode(IntEnum):
     deviation in radians."""
     LAYOUT_UNCERTAIN = 5
     """There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity
-    is the confidence of the fit, below the limit."""
+    is the confidence of the fit, which is below the limit."""
     UNSEEN = 6
     """Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted
-    lamps; the severity is the share of these pixels in the mask and these regions. The place is the pixel where
-    one more stroke helps most."""
+    lamps; the severity is the area of these pixels and regions as a share of the mask and these regions
+    together. The warning points to the pixel where one more stroke helps most."""
     CONTRADICTORY_STROKES = 7
     """Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the
     number of samples drawn from the strokes."""
@@ -531,43 +545,45 @@ class WarningCode(IntEnum):
     UNCERTAIN_MASK = 9
     """A mask is uncertain; the severity is the expected share of wrong pixels."""
     EMPTY_MASK = 10
-    """A mask has no pixel; the severity is 0, below the limit."""
+    """A mask has no pixel; the severity is 0, which is below the limit."""
     MISSED_STROKES = 11
     """A mask contradicts the strokes that it was made from; the severity is the share of the painted pixels
-    that it contradicts. The place is one of these pixels."""
+    that it contradicts. The warning points to one of these pixels."""
     ALMOST_ALL_LIT = 12
     """Lights cover much of their plane; the severity is the share of the plane that they cover."""
     MAGNIFIED = 13
     """Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane
-    that is strongly magnified. The place is the point with the largest magnification."""
+    that is strongly magnified. The warning points to the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
     """The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the
-    angle between the plane and the viewing ray, below the limit. The place is the point with the smallest
-    angle."""
+    angle between the plane and the viewing ray, and is below the limit. The warning points to the point with
+    the smallest angle."""
     PATTERN_UNCERTAIN = 15
     """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
     FEW_LAMPS = 16
-    """The photo shows too few whole lamps for a pattern; the severity is their number, below the limit."""
+    """The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is
+    below the limit."""
     NO_LATTICE = 17
     """The lamps lie on no lattice that could be found; the severity is the error of EmissionReport."""
     UNREACHABLE = 18
-    """Colour channels do not meet their target; the severity is their number."""
+    """Colour channels do not meet their target; the severity is the number of these channels."""
     TARGET_CLIPPED = 19
-    """The photo clips channels of the target, which are then lower bounds; the severity is the number of these
-    channels."""
+    """The photo clips channels of the target colour; the values of these channels are then lower bounds; the
+    severity is the number of these channels."""
     IMPLAUSIBLE_SIZE = 20
-    """A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in
-    metres, below the limit if the scene is too small. The message names the likely unit."""
+    """A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this
+    extent in metres. It is below the limit if the scene is too small, else above it. The message names the
+    likely unit."""
     NOT_RENDERED = 21
-    """The file of a scene has a feature or an extension that is not rendered, which the message names with the
-    first objects that have it; the severity is their number."""
+    """The file of a scene has a feature or an extension that is not rendered. The message names the feature and
+    the first objects that have it; the severity is the number of these objects."""
     DIM_LAMPS = 22
     """The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the
-    probability that a pixel painted as light is brighter than one painted as plane, below the limit. The place
-    is on the darkest lamp."""
+    probability that a pixel painted as light is brighter than a pixel painted as plane, and is below the limit.
+    The warning points to the darkest lamp."""
     NO_PATTERN = 23
-    """A texture without light would differ less from the photo than this one; the severity is the error of
-    EmissionReport. It takes the place of WarningCode.PATTERN_UNCERTAIN."""
+    """A texture without any light would differ less from the photo than the synthesised texture does; the
+    severity is the error of EmissionReport. It takes the place of WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
     """A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are
     missing; the severity is the share of the mask that is expected to be wrong."""
@@ -577,12 +593,13 @@ class WarningCode(IntEnum):
     coordinates of its vertices are so large that floats have rounded them, it is the step of the rounding in
     metres."""
     NOT_IN_PICTURE = 26
-    """Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate
-    them; the severity is their number, and the message lists the first ones with their positions."""
+    """Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare
+    does not rate them; the severity is their number, and the message lists the first ones with their
+    positions."""
 
 
 class IlluminanceImage(IntEnum):
-    """An image of the calculation."""
+    """An image of an illuminance calculation."""
 
     LUX = 0
     """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
@@ -591,41 +608,43 @@ class IlluminanceImage(IntEnum):
 
 
 class Group(IntEnum):
-    """Which lamps share one power."""
+    """Groups of lamps that share one power."""
 
     ALL = 0
     """All lamps form one group."""
     EACH = 1
     """Each lamp is a group of its own."""
     BY_X = 2
-    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
+    """Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of
+    the meshes."""
     BY_Y = 3
-    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
+    """Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of
+    the meshes."""
     BY_Z = 4
-    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
+    """Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes."""
     BY_TYPE = 5
-    """Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots,
-    and all luminaires with one distribution."""
+    """Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot
+    lights form another, and luminaires with the same distribution form one group for each distribution."""
 
 
 class Aim(IntEnum):
     """Objective of a placement."""
 
     MAX_LUMINANCE = 0
-    """The largest luminance of the target."""
+    """Make the luminance of the target as large as possible."""
     MIN_LUMINANCE = 1
-    """The smallest luminance of the target."""
+    """Make the luminance of the target as small as possible."""
     RADIANCE = 2
-    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
+    """Bring the mean radiance of the target, all other light included, nearest to PlacementParams.radiance."""
 
 
 class Scale(IntEnum):
-    """The scale from values to colours."""
+    """The scale that maps values to colours."""
 
     LINEAR = 0
-    """Linear: equal differences of the value have equal width."""
+    """Linear: equal differences of the value take equal lengths of the scale bar."""
     LOGARITHMIC = 1
-    """Logarithmic: decades have equal width."""
+    """Logarithmic: each factor of ten takes an equal length of the scale bar."""
 
 
 class Unit(IntEnum):
@@ -638,7 +657,7 @@ class Unit(IntEnum):
 
 
 class GuidesImage(IntEnum):
-    """An image of guides."""
+    """A guide image."""
 
     FULL = 0
     """All light, reflected any number of times."""
@@ -671,7 +690,7 @@ class StylizeMode(IntEnum):
     NEAREST = 2
     """Each target patch takes its nearest exemplar patch (Wexler et al. 2007)."""
     GREEDY = 3
-    """One pass in scan order (Hertzmann et al. 2001); runs on one thread."""
+    """Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread."""
     LIT_SPHERE = 4
     """Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit
     Sphere (Sloan et al. 2001)."""
@@ -681,12 +700,12 @@ class StylizeMode(IntEnum):
 
 
 class StylizeSearch(IntEnum):
-    """Search for nearest patches."""
+    """The search for nearest patches."""
 
     PATCHMATCH = 0
     """PatchMatch, the default."""
     TABLE = 1
-    """A k-d tree over the means of patches instead of PatchMatch."""
+    """A k-d tree over the mean colours and guides of patches."""
 
 
 class StylizeVote(IntEnum):
@@ -697,14 +716,15 @@ class StylizeVote(IntEnum):
     WEIGHTED = 1
     """The mean of the overlapping patches, weighted so that closer matches count more."""
     NEAREST = 2
-    """The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork."""
+    """The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the
+    artwork."""
     MOST = 3
-    """The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay
-    whole up to their seams."""
+    """The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork
+    stay whole up to their seams."""
 
 
 class StylizePreset(IntEnum):
-    """Presets between quality and speed."""
+    """A preset of the settings, which trades quality for speed."""
 
     FULL = 0
     """Full quality, the default."""
@@ -717,12 +737,13 @@ class StylizePreset(IntEnum):
 
 
 class GuideRange(IntEnum):
-    """Meaning of the values of a guide."""
+    """How the values of a guide are compared."""
 
     LIGHT = 0
-    """Linear light >= 0, such as renderings; it is compared as it would look on a screen."""
+    """Linear light >= 0, such as a rendering; its values are compared as they would look on a screen."""
     DATA = 1
-    """Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1]."""
+    """Data, such as normals, object codes and edges; the common range of source and target is scaled to [0,
+    1]."""
 
 
 class StylizeImage(IntEnum):
@@ -730,22 +751,23 @@ class StylizeImage(IntEnum):
 
     PICTURE = 0
     """The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a
-    cancel it is smaller: the sides of the target are halved StylizeReport.halvings times, rounded down."""
+    cancel it is smaller than the target: the target's sides are halved StylizeReport.halvings times, rounded
+    down."""
     GUIDE_ERROR = 1
-    """Difference between the guides at each pixel and at the place in the exemplar from which it was painted,
-    in [0, 1]; 1 channel. It is high where nothing in the exemplar fits."""
+    """Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from
+    which the pixel was painted; 1 channel. It is high where nothing in the exemplar fits."""
     SOURCES = 2
     """Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was
     painted; 2 channels."""
 
 
 class Demo(IntEnum):
-    """A generated scene."""
+    """A scene that the library generates."""
 
     TARGET_ROOM = 0
     """A furnished room without lights; its ceiling is the object "Ceiling"."""
     EXEMPLAR_ROOM = 1
-    """An office under a grid of luminaires; camera 0 takes the photo."""
+    """An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0."""
     SPHERE_ON_TABLE = 2
     """A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation."""
     STILL_LIFE = 3
@@ -757,20 +779,20 @@ class Artwork(IntEnum):
     """The style of a generated artwork."""
 
     PEN = 0
-    """Hatching with a pen and two inks."""
+    """Pen: hatching in two inks."""
     STIPPLE = 1
-    """Dots of two inks."""
+    """Stipple: dots of two inks."""
     PAINT = 2
-    """Oil on canvas."""
+    """Paint: oil on canvas."""
 
 
 class DemoPhotoImage(IntEnum):
     """An image of the demonstration photo."""
 
     PICTURE = 0
-    """The photo: linear RGB, 1 = display white; its lamps are clipped."""
+    """The photo: linear RGB, 1 = display white; lamps are clipped to white."""
     STROKES = 1
-    """The strokes on it, in the colours of luxfer_strokes_add_image."""
+    """The strokes on the photo, as a drawing in the colours of luxfer_strokes_add_image."""
 
 
 class Aov(IntFlag):
@@ -809,13 +831,13 @@ class GuidesWith(IntFlag):
     NORMALS = 1
     """Flag of luxfer_stylize_add_guides: add the normals."""
     EDGES = 2
-    """Flag: add the edges, for shapes finer than the strokes."""
+    """Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes."""
     MATERIALS = 4
-    """Flag: add the colour code of materials, so that objects of a material are painted from objects of that
-    material."""
+    """Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are
+    painted from objects of that material."""
     CAUSTICS = 8
-    """Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto
-    others."""
+    """Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other
+    kinds of light. Use it for scenes in which glossy objects reflect light onto others."""
 
 
 class Lights(IntFlag):
@@ -824,7 +846,7 @@ class Lights(IntFlag):
     SURFACE = 1
     """At least one surface emits."""
     TEXTURE = 2
-    """At least one surface emits by a texture."""
+    """At least one surface has an emission texture."""
     POINT = 4
     """At least one point light has an intensity above 0."""
     SPOT = 8
@@ -847,7 +869,7 @@ class Scattering(IntFlag):
     GLASS = 8
     """At least one surface is a clear pane of glass."""
     ALPHA = 16
-    """At least one surface is partly transparent by its alpha."""
+    """At least one surface is partly transparent because of its alpha."""
 
 
 class View(IntFlag):
@@ -861,13 +883,14 @@ class ContextParams(TypedDict, total=False):
     """Settings of a context."""
 
     num_threads: int
-    """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs
-    share these threads. Calls that return when their work is done never wait for a job: they run on the calling
-    thread, or on another set of as many threads, which the context starts when such a call first needs it."""
+    """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All
+    jobs share these threads. Synchronous calls, which do their work before they return, never wait for a job:
+    they run on the calling thread or on threads of their own. Each such call gets a set of num_threads threads.
+    The context starts as many sets as calls run at the same time, and keeps up to four sets for later calls."""
     memory_budget_mib: int
-    """Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context;
-    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. While a picture file is
-    read, the memory of its decoder counts too. The working memory of jobs and their results do not count."""
+    """Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0,
+    the default: no limit. A call that would exceed the limit returns Status.OUT_OF_MEMORY. While a picture file
+    is read, the memory of its decoder counts too. The working memory and the results of jobs do not count."""
 
 
 class ImageView(TypedDict, total=False):
@@ -880,19 +903,21 @@ class ImageView(TypedDict, total=False):
     colour_space: ColourSpace | str | int
     """ColourSpace; default ColourSpace.LINEAR."""
     width: int
-    """Pixels in a row, in [1, 65536]; default 0, to be set."""
+    """Width in pixels, in [1, 65536]; default 0: the caller must set it."""
     height: int
-    """Rows, in [1, 65536]; default 0, to be set."""
+    """Height in pixels, in [1, 65536]; default 0: the caller must set it."""
     flags: View | str | int
     """View, or 0, the default. Unknown flags are an error."""
     pixel_stride: int
-    """Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed."""
+    """Bytes from one pixel to the next, at least the size of a pixel; 0, the default: pixels are packed."""
     row_stride: int
-    """Bytes from one row to the next; at least the size of a row, or 0, the default: packed."""
+    """Bytes from one row to the next, at least the size of a row; 0, the default: rows are packed."""
     byte_size: int
-    """Size of the memory at data in bytes; Status.INVALID_ARGUMENT if the layout needs more. To be set."""
+    """Size of the memory at data in bytes; default 0: the caller must set it. Status.INVALID_ARGUMENT if the
+    pixels and the strides need more."""
     data: int
-    """The pixels; any alignment. Bytes between pixels and rows are never touched. To be set."""
+    """The pixels, at any alignment; default None: the caller must set it. Bytes between pixels and rows are
+    never touched."""
 
 
 @dataclass(frozen=True)
@@ -919,18 +944,18 @@ class PhotoMetadata:
     based speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change
     the brightness keep these tags."""
     white_luminance_low: float
-    """Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard
-    output sensitivity instead."""
+    """Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
+    standard output sensitivity instead."""
     white_luminance_high: float
-    """Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is
-    a recommended exposure index."""
+    """Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case
+    that the ISO speed is a recommended exposure index."""
     colour: FileColour
-    """How the colours of the file were understood."""
+    """How the colours of the file were interpreted: FileColour."""
 
 
 @dataclass(frozen=True)
 class SceneCounts:
-    """Numbers of the objects in a scene."""
+    """Number of objects of each kind in a scene."""
 
     meshes: int
     """Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below."""
@@ -948,58 +973,58 @@ class SceneCounts:
 
 @dataclass(frozen=True)
 class Surface:
-    """A planar surface of a scene."""
+    """A planar surface of a scene: triangles in one plane, and their bounding rectangle."""
 
     triangles: int
-    """Number of triangles."""
+    """Number of triangles in the plane."""
     origin: tuple[float, float, float]
     """Corner of the bounding rectangle where u = v = 0, in metres."""
     u_axis: tuple[float, float, float]
     """Unit vector of u, along the first side of the rectangle."""
     v_axis: tuple[float, float, float]
-    """Unit vector of v, along the second side."""
+    """Unit vector of v, along the second side of the rectangle."""
     normal: tuple[float, float, float]
     """Unit normal on the side that will emit; it points into the room."""
     size: tuple[float, float]
-    """Lengths of the sides along u and v, in metres."""
+    """Lengths of the rectangle's sides along u and v, in metres."""
     area: float
     """Area of the triangles in m²."""
     sloped_area: float
-    """Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75
-    degrees, such as the sides of a vault; they receive no emission."""
+    """Area in m² of the other triangles of the object or material whose planes are inclined to this plane by 5
+    to 75 degrees, such as the sides of a vault; they receive no emission."""
 
 
 class SceneLoadParams(TypedDict, total=False):
-    """Settings of reading a scene's file."""
+    """Settings for loading a scene file."""
 
     allow_external_files: int
-    """1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the
-    default: such a name gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read,
-    never devices or addresses on a network."""
+    """1: also read files outside the folder of the scene file if the scene file names them by .. or by an
+    absolute path; 0, the default: such a name gives Status.UNSUPPORTED. Set it only for scene files that you
+    trust. Only files are read, never devices or addresses on a network."""
     unit: float
-    """Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions,
-    and leaves intensities and luminances as they are. 0.001: the file is in millimetres."""
+    """Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF defines; 0.001 for a file in
+    millimetres. It scales positions, but not intensities and luminances."""
     keep_origin: int
     """0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
-    relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the
-    origin of the file, and are rounded to floats there."""
+    made relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative
+    to the origin of the file, and rounding to floats moves them."""
 
 
 class MaterialParams(TypedDict, total=False):
-    """A material: metallic-roughness, as in glTF 2.0."""
+    """A metallic-roughness material, as in glTF 2.0."""
 
     double_sided: int
     """1, the default: back faces reflect and emit as front faces do; 0: only front faces do."""
     name: str
     """Name in UTF-8, copied; None, the default: no name."""
     base_color: Sequence[float]
-    """Linear colour of the surface, each channel in [0, 1]; default 0.8."""
+    """Linear RGB base colour, each channel in [0, 1]; default 0.8."""
     metallic: float
     """Share of the surface that is metal, in [0, 1]; default 0."""
     roughness: float
-    """Perceptual roughness in [0, 1]; default 1."""
+    """Perceptual roughness in [0, 1], as in glTF; default 1."""
     emission: Sequence[float]
-    """Emitted luminance per channel in cd/m², >= 0; default 0."""
+    """Emission per channel in cd/m², each in [0, 1e15]; default 0."""
     transmission: float
     """Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1];
     default 0."""
@@ -1008,11 +1033,11 @@ class MaterialParams(TypedDict, total=False):
     alpha: float
     """Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1."""
     alpha_mode: AlphaMode | str | int
-    """AlphaMode; default AlphaMode.OPAQUE."""
+    """Use of alpha: AlphaMode; default AlphaMode.OPAQUE."""
     alpha_cutoff: float
     """Threshold of alpha for AlphaMode.MASK, >= 0; default 0.5."""
     normal_scale: float
-    """Strength of the normal texture: multiplies its x and y; finite; default 1."""
+    """Strength of the normal texture: a factor for the x and y of its normals, finite; default 1."""
 
 
 @dataclass(frozen=True)
@@ -1020,32 +1045,35 @@ class TextureUse:
     """The texture that a material uses for one purpose."""
 
     texture: int
-    """Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0."""
+    """Index of the texture; LUXFER_NONE if the material has no texture for this purpose: the fields below are
+    then 0."""
     uv_set: int
-    """The mesh's set of texture coordinates that the material uses for this texture, 0 or 1."""
+    """Set of the mesh's texture coordinates that the material uses for this texture: 0 or 1."""
     wrap_u: Wrap
-    """Wrap along u."""
+    """Continuation of the texture along u: Wrap."""
     wrap_v: Wrap
-    """Wrap along v."""
+    """Continuation of the texture along v: Wrap."""
     transform: tuple[float, ...]
-    """Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up."""
+    """Affine map that is applied to the texture coordinates (u, v, 1) before the look-up: two rows of three
+    numbers."""
 
 
 class MeshParams(TypedDict, total=False):
     """A triangle mesh in world space."""
 
     material: int
-    """Index of the mesh's material, from luxfer_scene_add_material; default 0."""
+    """Index of the mesh's material, as luxfer_scene_add_material returns it; default 0."""
     name: str
     """Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. None, the default: no name."""
     vertex_count: int
-    """Number of vertices in [3, 2^32 - 1]; to be set."""
+    """Number of vertices in [3, 2^32 - 1]; default 0: the caller must set it."""
     positions: int
-    """Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set."""
+    """Positions: three floats per vertex, in metres, each in [-1e15, 1e15]; default None: the caller must set
+    them."""
     position_stride: int
     """Bytes from one position to the next; at least 12, or 0, the default: packed."""
     normals: int
-    """Three floats per vertex, finite; None, the default: flat faces."""
+    """Normals: three floats per vertex, finite; None, the default: faces are flat."""
     normal_stride: int
     """Bytes from one normal to the next; at least 12, or 0, the default: packed."""
     uvs: int
@@ -1054,10 +1082,10 @@ class MeshParams(TypedDict, total=False):
     uv_stride: int
     """Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed."""
     triangle_count: int
-    """Number of triangles, at least 1; to be set."""
+    """Number of triangles, at least 1; default 0: the caller must set it."""
     indices: int
-    """Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be
-    set."""
+    """Vertex indices: three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the
+    front; default None: the caller must set them."""
     index_stride: int
     """Bytes from one triangle to the next; at least 12, or 0, the default: packed."""
     colours: int
@@ -1073,21 +1101,22 @@ class CameraParams(TypedDict, total=False):
     fov_y: float
     """Full vertical angle of view in radians, in [0.001, 3.1]; default 1."""
     position: Sequence[float]
-    """Position in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position of the eye in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0)."""
     target: Sequence[float]
-    """The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1)."""
+    """Point that the camera looks at, in metres, each coordinate in [-1e15, 1e15], different from position;
+    default (0, 0, -1)."""
     up: Sequence[float]
-    """Up direction of the image, not parallel to the viewing direction; default (0, 1, 0)."""
+    """Up direction of the image, finite and not parallel to the viewing direction; default (0, 1, 0)."""
 
 
 @dataclass(frozen=True)
 class DistributionReport:
-    """Summary of a distribution."""
+    """Summary of a luminous intensity distribution."""
 
     planes: int
-    """Number of C planes."""
+    """Number of C planes, the half-planes through the axis in which the intensities are given."""
     angles: int
-    """Number of vertical angles in each plane."""
+    """Number of vertical angles gamma in each C plane."""
     flux: float
     """Luminous flux in lumens: the integral of the intensity over all directions."""
     lamp_flux: float
@@ -1095,44 +1124,47 @@ class DistributionReport:
     watts: float
     """Electric power in watts; 0 if unknown."""
     size: tuple[float, float, float]
-    """Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round
-    ones. These are the length, width and height of IES, and the width, length and height of EULUMDAT."""
+    """Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value
+    stands for a round opening, as in IES: its absolute value is the diameter. IES files name the three values
+    length, width and height; EULUMDAT files name them width, length and height."""
 
 
 class LightParams(TypedDict, total=False):
     """A punctual light."""
 
     kind: LightKind | str | int
-    """LightKind; default LightKind.POINT."""
+    """Kind of the light: LightKind; default LightKind.POINT."""
     position: Sequence[float]
-    """Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position of a point or spot light, in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0)."""
     direction: Sequence[float]
-    """Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0)."""
+    """Direction in which a spot or directional light shines; any length but 0; default (0, -1, 0)."""
     intensity: Sequence[float]
-    """Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in
-    lux on a surface that faces it. Each channel >= 0; default (1, 1, 1)."""
+    """Strength of the light per channel, each in [0, 1e15]; default (1, 1, 1). For a point light it is the
+    luminous intensity in cd; for a spot light, the luminous intensity in cd on its axis; for a directional
+    light, the illuminance in lux on a surface that faces the light."""
     inner_angle: float
-    """Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default
-    0."""
+    """Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle];
+    default 0."""
     outer_angle: float
-    """Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4."""
+    """Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4."""
 
 
 class LuminaireParams(TypedDict, total=False):
     """Flux, position, orientation and colour of a luminaire."""
 
     flux: float
-    """Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution."""
+    """Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution."""
     position: Sequence[float]
-    """Position in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0)."""
     axis: Sequence[float]
-    """Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down."""
+    """Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines
+    down."""
     c0: Sequence[float]
-    """Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
-    default (1, 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise."""
+    """Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
+    default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above."""
     colour: Sequence[float]
-    """Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts;
-    default (1, 1, 1)."""
+    """Linear RGB colour of the light, each channel in [0, 1e15] and not all 0; only the ratio of the channels
+    counts; default (1, 1, 1)."""
 
 
 @dataclass(frozen=True)
@@ -1142,9 +1174,10 @@ class Ray:
     origin: tuple[float, float, float]
     """Start of the ray, in metres."""
     direction: tuple[float, float, float]
-    """Direction; any length but 0."""
+    """Direction of the ray; any length but 0. Its length is the unit of distances along the ray."""
     t_max: float
-    """Hits lie at distances in (0, t_max), in units of direction; may be infinite."""
+    """Maximum distance of a hit, in units of the length of direction; may be infinite. Only hits at distances
+    in (0, t_max) count."""
 
 
 @dataclass(frozen=True)
@@ -1152,15 +1185,15 @@ class Hit:
     """The nearest hit of a ray. An element of arrays, so this struct never changes."""
 
     t: float
-    """Distance in units of the ray's direction; infinite for a miss."""
+    """Distance of the hit in units of the length of the ray's direction; infinite for a miss."""
     mesh: int
     """Index of the mesh; LUXFER_NONE for a miss."""
     triangle: int
     """Index of the triangle in its mesh; LUXFER_NONE for a miss."""
     u: float
-    """Barycentric coordinate of the triangle's second corner."""
+    """Barycentric coordinate of the hit for the triangle's second corner; 0 for a miss."""
     v: float
-    """Barycentric coordinate of the triangle's third corner."""
+    """Barycentric coordinate of the hit for the triangle's third corner; 0 for a miss."""
 
 
 @dataclass(frozen=True)
@@ -1174,9 +1207,9 @@ class Requirements:
     textures: int
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """Number of bounces that matter: light that is scattered more often is at most a share of all light that
-    surfaces scatter; the argument error gives this share. 0 if the albedos give no bound. For information only:
-    no rendering ends paths at this number."""
+    """Number of bounces that matter. Light with more bounces than this makes up at most the share error of all
+    light that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give
+    no such bound. For information only: no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1188,7 +1221,7 @@ class Requirements:
 
 @dataclass(frozen=True)
 class MeshInfo:
-    """A mesh of a scene."""
+    """Sizes and attributes of a mesh."""
 
     material: int
     """Index of the mesh's material."""
@@ -1206,35 +1239,39 @@ class MeshInfo:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An object or a material of a scene."""
+    """A candidate for the ceiling: an object or a material of a scene."""
 
     kind: CandidateKind
     """CandidateKind."""
     index: int
-    """Index of the object's first mesh, or of the material."""
+    """Index of the object's first mesh in the scene, or index of the material."""
     triangles: int
     """Number of triangles whose area is not 0."""
     area: float
-    """Area in m²."""
+    """Area of all triangles in m²."""
     level_area: float
-    """Area in m² of the triangles that are inclined by less than 15 degrees, on either side."""
+    """Area in m² of the level triangles. A triangle is level if it faces up or down and is inclined by at most
+    15 degrees to the horizontal."""
     height: float
-    """Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0."""
+    """Mean height (y coordinate) in metres, weighted by area, of the level triangles, or of all triangles if no
+    triangle is level."""
     low: float
-    """Lowest point, in metres."""
+    """Height (y coordinate) of the lowest point, in metres."""
     high: float
-    """Highest point, in metres."""
+    """Height (y coordinate) of the highest point, in metres."""
     normal: tuple[float, float, float]
-    """Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a
-    box."""
+    """Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals
+    cancel, as for a closed box."""
     score: float
-    """Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the
-    floor area of the scene's bounding box, and of the square of the height as a share of the scene's height. A
-    name such as "ceiling" raises the score."""
+    """Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area /
+    area; level_area / floor area of the scene's bounding box; and the square of the height above the scene's
+    lowest point / height of the scene. A name such as "ceiling" raises the score."""
     name: str
-    """Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates."""
+    """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
+    luxfer_candidates."""
     reason: str
-    """The reason for the score, in English and with its figures."""
+    """The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string
+    lives as long as the luxfer_candidates."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1245,10 +1282,11 @@ class RenderParams(TypedDict, total=False):
     height: int
     """Height of the image in pixels, in [1, 65536]; default 720."""
     samples: int
-    """Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image."""
+    """Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the
+    mean number of paths per pixel reaches this value."""
     target_error: float
-    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
-    reduce the error most. Default 0: no target."""
+    """Stop when the field error of RenderReport falls to this value, >= 0. With this target, paths go to the
+    pixels where they reduce the error most. Default 0: no target."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
@@ -1261,11 +1299,11 @@ class RenderParams(TypedDict, total=False):
     misses the target. Default 0: no target."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    Default 0: no preview, as for final images. It does not change the other images."""
+    Default 0: no preview, as for final images. The preview does not change the other images."""
     relative_error: float
-    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
-    they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default
-    0: no target. With several targets, rendering stops when all are reached."""
+    """Stop when the field relative_error of RenderReport falls to this value, >= 0. With this target, paths go
+    to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
+    as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached."""
 
 
 @dataclass(frozen=True)
@@ -1275,7 +1313,7 @@ class RenderReport:
     samples: int
     """Mean number of paths per pixel so far."""
     error: float
-    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
+    """Root mean square of the standard errors of all pixels, divided by the image's mean; infinite while a
     pixel has fewer than two paths."""
     discarded: int
     """Number of paths that were discarded because their radiance was not finite."""
@@ -1283,37 +1321,37 @@ class RenderReport:
     """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
     square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
     relative_error: float
-    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
-    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
-    With few paths it overestimates: with 8 by about a quarter."""
+    """Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the
+    mean of the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer
+    than two paths. With few paths this estimate is too high: with 8 paths by about a quarter."""
 
 
 class RectifyParams(TypedDict, total=False):
     """Settings of a rectification."""
 
     detector: Lines | str | int
-    """Lines; default Lines.REGIONS."""
+    """Detector of lines: Lines; default Lines.REGIONS."""
     search: Search | str | int
-    """Search; default Search.MANHATTAN."""
+    """Search for vanishing points: Search; default Search.MANHATTAN."""
     metric: Metric | str | int
-    """Metric; default Metric.SEGMENT."""
+    """Distance of a vanishing point from a line: Metric; default Metric.SEGMENT."""
     hough_band: float
-    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2],
-    for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
+    """Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for
+    lines, in [1e-4, pi/2], for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
     focal: float
-    """Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if
-    it has any."""
+    """Focal length in pixels, in [1e-3, 1e9]; 0, the default: estimated from the lines, and from the photo's
+    metadata if it has any."""
     principal: Sequence[float]
-    """Principal point in pixels; NaN, the default: the image's centre."""
+    """Principal point in pixels, x and y in [-1e9, 1e9]; NaN, the default: the image's centre."""
     plane_axes: Sequence[int]
     """The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the
     plane."""
     max_side: int
-    """Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
-    resolution of the photo does not support this size."""
+    """Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The
+    image is smaller if the resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they
-    would be magnified more are cut off."""
+    """Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane
+    with a larger magnification, which lie far from the camera, are cut off."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -1330,9 +1368,9 @@ class RectifyReport:
     vanishing_errors: tuple[float, float, float]
     """Standard deviations of the directions of the vanishing points in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
-    """Number of segments that agree with each vanishing point; 0: derived from the other two."""
+    """Number of segments that agree with each vanishing point; 0: the point is derived from the other two."""
     focal_source: FocalSource
-    """FocalSource."""
+    """Source of the focal length: FocalSource."""
     focal: float
     """Focal length in pixels."""
     principal: tuple[float, float]
@@ -1342,25 +1380,26 @@ class RectifyReport:
     is_unwarped: int
     """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
-    """Homography from unwarped pixels to photo pixels, row by row."""
+    """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
-    """Corners of the unwarped rectangle in the photo, x and y in pixels."""
+    """Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise."""
     corner_errors: tuple[float, float, float, float]
     """Expected error of each corner, in unwarped pixels."""
     pixel_size: float
-    """Size of an unwarped pixel, divided by the camera's distance from the plane."""
+    """Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane."""
     aspect_confidence: float
     """Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed."""
     distortion: float
     """Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its
-    centre; below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of
+    centre; below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of
     straight edges, and not corrected. NaN if the photo has too few lines."""
     distortion_error: float
     """Standard deviation of distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
     """For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
     estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point
-    show here; axes is orthogonal in any case. NaN if one of the two axes has no lines."""
+    make it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other
+    axes has no lines."""
     squareness_errors: tuple[float, float, float]
     """Standard deviations of squareness; NaN where squareness is NaN."""
 
@@ -1369,12 +1408,14 @@ class FeaturesParams(TypedDict, total=False):
     """Settings of the features."""
 
     near_plane: float
-    """Near plane of the paper's Eq. 1, in its own units, in [1e-3, 1e3]; default 1."""
+    """Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1.
+    Its unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane."""
     far_plane: float
-    """Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10."""
+    """Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6]
+    times near_plane; default 10."""
     normal_radius: int
-    """Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the
-    photo's size."""
+    """Normals come from planes fitted in a square window; this is half the width of the window in pixels, in
+    [0, 64]; default 0: chosen by the photo's size."""
 
 
 @dataclass(frozen=True)
@@ -1382,7 +1423,7 @@ class FeaturesReport:
     """Quality of the features."""
 
     depth_source: DepthSource
-    """DepthSource."""
+    """Source of the depth: DepthSource."""
     depth_confidence: float
     """Mean confidence of the depth, in [0, 1]."""
     replaced_pixels: int
@@ -1396,24 +1437,25 @@ class SegmentParams(TypedDict, total=False):
     samples_per_class: int
     """Samples drawn from the strokes of each class, in [1, 1000000]; default 1000."""
     channels: int
-    """Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of
-    luxfer_features, the best of colour, colour and position, colour and normal, or all, as measured on held-out
-    strokes; for another number of channels, all of them. For lights use 7, colour only, since lights and plane
-    have one geometry."""
+    """Channels of the features to use, bit i for channel i; default 0. With the ten channels of
+    luxfer_features, 0 tries four sets (colour; colour and position; colour and normal; all channels) and uses
+    the set with the smallest error on held-out strokes. With another number of channels, 0 uses all channels.
+    For lights use 7, colour only, since lights and plane have one geometry."""
     refine_radius: int
-    """Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask
-    follow the edges of the photo: a guided filter with the first three channels of the features as guide. 0,
-    the default: no refinement."""
+    """Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no
+    refinement. The refinement makes the mask follow the edges of the photo: it is a guided filter with the
+    first three channels of the features as guide."""
     ridge: float
-    """Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
+    """Strength of the prior that keeps the weights of the classifier small (ridge regression), in [1e-9, 1e3];
+    default 1e-3."""
     seed: int
-    """Seed of the samples; default 1."""
+    """Seed of the samples that are drawn; default 1."""
     refine_tolerance: float
-    """Difference of the first three channels, in their units (CIELAB units for colour), below which the
-    refinement treats neighbours as one surface, in [1e-3, 1e6]; default 8."""
+    """The refinement treats neighbouring pixels as one surface if their first three channels differ by less
+    than this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
-    """The subject of the positive strokes: Subject; default Subject.AUTO. For lamps the settings above have no
-    effect."""
+    """What the positive strokes lie on: Subject; default Subject.AUTO. If the subject is lamps, the settings
+    above have no effect."""
 
 
 @dataclass(frozen=True)
@@ -1421,7 +1463,7 @@ class SegmentReport:
     """Quality of a segmentation."""
 
     channels: int
-    """Channels of the features that were used, bit i for channel i."""
+    """Channels of the features that the segmentation has used, bit i for channel i."""
     error: float
     """Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training."""
     negative_samples: int
@@ -1433,69 +1475,77 @@ class SegmentReport:
 
 
 class EmissionParams(TypedDict, total=False):
-    """Settings of the emission."""
+    """Settings of an emissive texture."""
 
     width: int
     """Width of the texture in texels, in [1, 65536]; default 1024."""
     height: int
     """Height of the texture in texels, in [1, 65536]; default 1024."""
     block: int
-    """Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights."""
+    """Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its
+    reduction to working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights."""
     scale: float
     """Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
     working_side: int
-    """Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256."""
+    """Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048];
+    default 256."""
     metadata_weight: float
-    """Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting."""
+    """Weight of the guide channels (EmissionImage.EXEMPLAR_METADATA) relative to colour when patches are
+    compared, in [0, 1e3]; default 1; 0 is plain image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
     min_regularity: float
-    """Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition
-    is continued exactly; at 1 no repetition is, and patches may lie anywhere."""
+    """The lights count as regular if their autocorrelation after a shift by a period is at least this value, in
+    [0, 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches
+    may lie anywhere."""
     whole_lamps: int
-    """1, the default: every lamp stays in one piece; 0: seams may cut lamps."""
+    """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
     """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
-    1e6]; default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is
-    tileable, where it shifts the lamps."""
+    1e6]; default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must
+    be 0 for other textures."""
     clip_level: float
-    """Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the
-    colour of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped."""
+    """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
+    clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels
+    allow. 0: no lamp counts as clipped."""
     even_lamps: int
-    """1: every lamp has its mean colour everywhere; 0, the default: as in the photo."""
+    """1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo."""
     tileable: int
     """1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite
     side, and a lattice is stretched to fit, by less than half a period over the whole texture. Needs
     whole_lamps. Default 0."""
     centred: int
-    """1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle
-    between two lamps, so that the border cuts as few lamps as possible. Default 0."""
+    """1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle
+    between two lamps, then lies at the centre of the texture, so that the border cuts as few lamps as
+    possible."""
     candidates: int
-    """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
-    default 192."""
+    """Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
+    lattice, in [1, 65536]; default 192."""
     law: EmissionLaw | str | int
-    """The law by which the texture continues the lights: EmissionLaw other than EmissionLaw.COPY; default
-    EmissionLaw.BEST."""
+    """The law, which is the rule by which the texture continues the lights: EmissionLaw other than
+    EmissionLaw.COPY; default EmissionLaw.BEST."""
     clean_lamps: int
-    """1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie
-    exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its
-    outline in the mask."""
+    """1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is
+    exact at any resolution, and lie exactly at the sites of their lattice; this needs the photo and
+    whole_lamps. 0: each lamp has the outline of the mask."""
     max_magnification: float
-    """Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which
-    the photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts
-    beyond it count as not shown. Default 0: all parts are used."""
+    """Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out,
+    as if the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the
+    factor in length by which unwarping has magnified the photo there, relative to the least magnified pixel of
+    the exemplar."""
 
 
 @dataclass(frozen=True)
 class EmissionReport:
-    """Quality of the texture."""
+    """Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no
+    texels are set."""
 
     luminaires: int
-    """Number of luminaires; see luxfer_emission_get_luminaire."""
+    """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
     error: float
     """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
-    area of whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as
-    exemplar_lamps allows. NaN for a plan, which has no texture yet."""
+    area of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the
+    less reliable is this error. NaN for a plan, which has no texels yet."""
     regularity: float
     """Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a
     lattice."""
@@ -1504,26 +1554,26 @@ class EmissionReport:
     cuts a large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border
     cuts."""
     sampling_error: float
-    """Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined
-    for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
-    twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
-    for blended exemplars, and for a plan."""
+    """Estimated sampling error of the statistics that error compares: their root mean square difference between
+    the whole texture and parts of it that are as large as the exemplar. If error is at most twice this value,
+    it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
+    exemplars, and for a plan."""
     law: EmissionLaw
     """The law by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
-    """The best of the other laws: EmissionLaw."""
+    """The law with the best score among all laws but the field law: EmissionLaw."""
     law_score: float
-    """How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in
-    proportion to their pixels in the photo. NaN if laws were not compared, for example because too few of the
-    lights are whole lamps."""
+    """Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps.
+    Lamps weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example
+    because too few of the lights are whole lamps."""
     margin: float
-    """law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
+    """law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly
     better."""
 
 
 @dataclass(frozen=True)
 class Luminaire:
-    """A lamp of the texture."""
+    """A luminaire: one lamp of the texture."""
 
     corners: int
     """Number of corners of the outline."""
@@ -1534,26 +1584,26 @@ class Luminaire:
     orientation: float
     """Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in texels; texels at the edge count with the share that the lamp covers."""
+    """Area in square texels; texels at the edge count with the share that the lamp covers."""
     flux_share: float
     """Share of the luminous flux of all lamps of the texture, in [0, 1]."""
     colour: tuple[float, float, float]
-    """Mean linear colour, relative to the photo's white."""
+    """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
-    """Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are
-    sorted by the number of their lamps, the largest first. 0 if the border cuts the lamp."""
+    """Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the
+    most lamps. 0 if the border of the texture cuts the lamp."""
 
 
 class RelightParams(TypedDict, total=False):
     """Settings of a relighting."""
 
     quantity: Quantity | str | int
-    """Quantity; default Quantity.OUTGOING."""
+    """Quantity to match: Quantity; default Quantity.OUTGOING."""
     paths: int
     """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in
-    [0, 1]; default 0.01; 0: no target."""
+    """Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the
+    scale, in [0, 1]; default 0.01; 0: do not stop for this reason."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     fit: Fit | str | int
@@ -1564,7 +1614,7 @@ class RelightParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class RelightReport:
-    """The solution and its confidence."""
+    """The solution of a relighting and its confidence."""
 
     paths: int
     """Number of traced paths."""
@@ -1573,29 +1623,32 @@ class RelightReport:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of scale."""
     response: tuple[float, float, float]
-    """Mean radiance of the target from the emission at scale 1, in cd/m²."""
+    """Mean radiance of the target from the emission at scale 1, in cd/m² per channel."""
     background: tuple[float, float, float]
-    """Mean radiance of the target from all other light, in cd/m²."""
+    """Mean radiance of the target from all other light, in cd/m² per channel."""
     outcome: tuple[Outcome, Outcome, Outcome]
     """Outcome of each channel."""
     error: float
-    """The largest relative half-width among the channels that meet their target."""
+    """The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without
+    such channels."""
     delta_e: float
-    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this
-    value, at the exposure that shows the target as middle grey."""
+    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the
+    colour that the target has and the colour that it should have is below this value, at the exposure that
+    shows the target as middle grey."""
 
 
 class PatternParams(TypedDict, total=False):
-    """Layout of the pattern on the surface. Surface has the corner and the axes u and v of the surface."""
+    """Layout of the light pattern on a surface; Surface gives the corner and the axes u and v of the
+    surface."""
 
     scale: PatternScale | str | int
-    """PatternScale; default PatternScale.DISTANCE."""
+    """The length that sets the size of the pattern: PatternScale; default PatternScale.DISTANCE."""
     length: float
-    """Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only PatternScale.LAMP and
-    PatternScale.SPACING use it."""
+    """Length of a lamp for PatternScale.LAMP, or spacing of the lamps for PatternScale.SPACING, in metres, in
+    [1e-6, 1e6]; default 1. Other values of scale do not use it."""
     texel_size: float
-    """Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as
-    max_texels of TransferParams allows."""
+    """Side of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, but not so fine
+    that the texture exceeds max_texels of TransferParams."""
     rotation: float
     """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
@@ -1604,41 +1657,42 @@ class PatternParams(TypedDict, total=False):
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
     luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
-    the default -1, lamps at the edge of the surface stay, cut by the edge."""
+    the default -1, lamps at the edge of the surface are kept, and the edge cuts them."""
 
 
 class TransferParams(TypedDict, total=False):
-    """Settings of a transfer. The structs behind the pointers are read during the call."""
+    """Settings of a transfer. Its pointers are used during the call only."""
 
     max_texels: int
-    """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
+    """Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048."""
     plane_distance: float
-    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the
+    """Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]; it sets the
     scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
-    ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
+    ceiling tiles. TransferReport states the distance and its error."""
     white_luminance: float
-    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux.
-    The strength of the lamps is proportional to it. A photo alone does not determine this luminance: see
-    proposed_white of TransferReport."""
+    """Luminance in cd/m² of the photo's white, in [1e-6, 1e9]; default 100, the luminance of matt white paper
+    in 314 lux. The strength of the lamps is proportional to it. A photo alone does not determine this
+    luminance: see proposed_white of TransferReport."""
     target: Target | str | int
-    """Target; default Target.SURFACE."""
+    """Part of the photo whose mean colour is matched: Target; default Target.SURFACE."""
     rectify: RectifyParams
-    """Settings of the stages VIEW and UNWARP; None, the default: their defaults."""
+    """Settings of the stages VIEW and UNWARP; None, the default: the defaults of RectifyParams."""
     features: FeaturesParams
-    """Settings of the stage FEATURES; None, the default: their defaults."""
+    """Settings of the stage FEATURES; None, the default: the defaults of FeaturesParams."""
     plane: SegmentParams
-    """Settings of the stage PLANE; None, the default: their defaults."""
+    """Settings of the stage PLANE; None, the default: the defaults of SegmentParams."""
     lights: SegmentParams
-    """Settings of the stage LIGHTS; None, the default: the defaults with channels = 7, colour only."""
+    """Settings of the stage LIGHTS; None, the default: the defaults of SegmentParams, but channels = 7, colour
+    only."""
     emission: EmissionParams
-    """Settings of the stage EMISSION; None, the default: their defaults. The transfer sets width, height, scale
-    and offset itself."""
+    """Settings of the stage EMISSION; None, the default: the defaults of EmissionParams. The transfer sets
+    width, height, scale and offset itself."""
     relight: RelightParams
-    """Settings of the stage RELIGHT; None, the default: their defaults."""
+    """Settings of the stage RELIGHT; None, the default: the defaults of RelightParams."""
     render: RenderParams
-    """Settings of the stage RENDER; None, the default: their defaults."""
+    """Settings of the stage RENDER; None, the default: the defaults of RenderParams."""
     pattern: PatternParams
-    """Layout of the lights on the surface; None, the default: the defaults."""
+    """Layout of the lights on the surface; None, the default: the defaults of PatternParams."""
 
 
 @dataclass(frozen=True)
@@ -1649,32 +1703,32 @@ class TransferReport:
     """Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT
     has ended."""
     seconds: tuple[float, ...]
-    """Duration of each stage's last run in seconds, by Stage."""
+    """Duration of each stage's last run in seconds; the index is the Stage."""
     view_error: float
-    """Largest standard deviation of a vanishing point's direction, in radians."""
+    """Largest standard deviation of the directions of the vanishing points, in radians."""
     depth_confidence: float
-    """Mean confidence of the features' depth, in [0, 1]."""
+    """Mean confidence of the depth in the features, in [0, 1]."""
     plane_error: float
-    """Expected share of wrong pixels in the mask of the plane."""
+    """Expected share of wrong pixels in the mask of the plane, in [0, 1]."""
     lights_error: float
-    """Expected share of wrong pixels in the mask of the lights."""
+    """Expected share of wrong pixels in the mask of the lights, in [0, 1]."""
     unwarp_error: float
     """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
     emission_error: float
-    """As the field error of EmissionReport: largest relative difference between texture and photo in three
-    statistics of their lamps."""
+    """Field error of EmissionReport: largest relative difference between texture and photo in three statistics
+    of their lamps."""
     relight_error: float
-    """Largest relative half-width of the solution's 95 % confidence intervals."""
+    """Field error of RelightReport: largest relative half-width of the solution's 95 % confidence intervals."""
     render_error: float
-    """As the field error of RenderReport: root mean square of the rendering's standard errors, divided by its
-    mean."""
+    """Field error of RenderReport: root mean square of the rendering's standard errors, divided by its mean."""
     texel_size: float
-    """Size of a texel of the emission in metres."""
+    """Length of a texel's side on the surface, in metres."""
     target: tuple[float, float, float]
-    """Mean colour that the surface should have, relative to the photo's white."""
+    """Mean colour that the surface should have: linear RGB, where 1 is the photo's white."""
     plane_distance: float
-    """Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on
-    the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture."""
+    """Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has
+    the size that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the
+    texture."""
     plane_distance_error: float
     """Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25
     for lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the
@@ -1695,72 +1749,74 @@ class Fixture:
     """One lamp of the lit scene."""
 
     position: tuple[float, float, float]
-    """Centre in metres."""
+    """Centre of the lamp in metres."""
     normal: tuple[float, float, float]
     """Unit vector of the direction in which the lamp shines."""
     axis: tuple[float, float, float]
-    """Unit vector of the long axis."""
+    """Unit vector along the lamp's long axis."""
     radiance: tuple[float, float, float]
-    """Mean luminance per channel in cd/m²."""
+    """Mean luminance of the lamp per channel in cd/m²."""
     kind: int
     """Number of the lamp's kind, as in Luminaire."""
     size: tuple[float, float]
-    """Length along the long axis and across it, in metres."""
+    """Lengths of the lamp along its long axis and across it, in metres."""
     area: float
     """Area in m²."""
     flux: float
     """Luminous flux in lumens."""
     cct: float
-    """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
+    """Correlated colour temperature of the light in kelvin; 0 for a lamp that is off."""
     duv: float
-    """Distance from the blackbody locus in the CIE 1960 diagram."""
+    """Distance of the light from the blackbody locus in the CIE 1960 diagram, positive for greenish light."""
 
 
 @dataclass(frozen=True)
 class Warning:
-    """A reason to doubt a result."""
+    """A warning: a reason to doubt a result."""
 
     code: WarningCode
-    """WarningCode."""
+    """Kind of the warning: WarningCode."""
     stage: Stage
-    """The stage whose result is in doubt, Stage. For a luxfer_segment it is LIGHTS if luxfer_segment_set_region
-    gave a mask, else PLANE; for a luxfer_scene it is SCENE."""
+    """The stage whose result is in doubt: Stage. For a luxfer_segment it is Stage.LIGHTS if
+    luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene it is Stage.SCENE."""
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float
-    """The figure that caused the warning; its meaning depends on the code."""
+    """The figure that caused the warning; the comment of each WarningCode says what it measures."""
     limit: float
-    """The limit that the figure has passed."""
+    """The limit that the figure has passed: an upper limit, unless the comment of the WarningCode says that the
+    figure is below the limit."""
     place: tuple[float, float]
-    """The place in the photo, x and y in pixels; 0 without one."""
+    """The place in the photo, x and y in pixels; 0 if the warning has no place."""
     message: str
-    """The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
-    luxfer_warnings."""
+    """The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as
+    the luxfer_warnings."""
     advice: str
-    """The remedy."""
+    """The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the
+    luxfer_warnings."""
 
 
 class IlluminanceGrid(TypedDict, total=False):
-    """A calculation grid."""
+    """A calculation grid: a parallelogram of columns x rows cells, with a point at the centre of each cell. The
+    default is a square metre at the origin that faces up."""
 
     origin: Sequence[float]
     """Corner of the grid, in metres; default (0, 0, 0)."""
     across: Sequence[float]
-    """Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the
-    centres of the cells."""
+    """Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0)."""
     down: Sequence[float]
-    """Edge of the grid along which the rows are counted, in metres; default (0, 0, 1)."""
+    """Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1)."""
     normal: Sequence[float]
     """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
 
 
 class IlluminanceParams(TypedDict, total=False):
-    """Settings of the calculation."""
+    """Settings of an illuminance calculation."""
 
     columns: int
-    """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
+    """Number of points along the first edge of a grid, or along u of a mesh, in [1, 65536]; default 32."""
     rows: int
-    """Points along the second edge or texture coordinate, in [1, 65536]; default 32."""
+    """Number of points along the second edge of a grid, or along v of a mesh, in [1, 65536]; default 32."""
     samples: int
     """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
     seed: int
@@ -1774,7 +1830,7 @@ class IlluminanceReport:
     points: int
     """Number of points; on a mesh, the texels that the surface covers."""
     minimum: float
-    """Smallest illuminance; minimum / mean is the uniformity U0."""
+    """Smallest illuminance. The uniformity U0 is minimum / mean."""
     mean: float
     """Mean illuminance."""
     maximum: float
@@ -1784,38 +1840,39 @@ class IlluminanceReport:
 
 
 class LampsParams(TypedDict, total=False):
-    """Settings of the calculation."""
+    """Settings of the solver for lamps."""
 
     group: Group | str | int
-    """Group; default Group.EACH."""
+    """Lamps that share one power: Group; default Group.EACH."""
     row_tolerance: float
-    """Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a
-    new row; default 0.01."""
+    """Largest gap between neighbouring lamps in one row, for Group.BY_X, _Y and _Z: the difference of their
+    coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row."""
     free_colour: int
-    """1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default:
-    solve for the power only."""
+    """1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
+    luxfer_lamps_add_mesh does; 0, the default: solve for the power only."""
     max_scale: float
     """Largest factor for the emission of a group, >= 0; default infinity."""
     regularisation: float
-    """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
-    the powers equal; default 1e-6."""
+    """Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals
+    are met, with large values the powers are nearly equal."""
     tolerance: float
-    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its
-    noise; default 0.01."""
+    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The
+    noise of the goal's light is added to this tolerance."""
     paths: int
     """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop tracing a goal when the relative error of its response to all lamps together is below this value, in
-    [0, 1]; default 0.01; 0: no target."""
+    """Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is
+    known to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0:
+    do not stop for this reason."""
     time_budget_ms: int
-    """Stop after this number of milliseconds; default 0: no limit."""
+    """Stop tracing after this number of milliseconds; default 0: no limit."""
     seed: int
     """Seed of the paths; default 1."""
 
 
 @dataclass(frozen=True)
 class LampsReport:
-    """Summary of the result."""
+    """Summary of the solution for lamps."""
 
     lamps: int
     """Number of lamps."""
@@ -1831,68 +1888,71 @@ class LampsReport:
 
 @dataclass(frozen=True)
 class Lamp:
-    """One lamp."""
+    """The solution for one lamp."""
 
     group: int
     """Index of the group that the lamp belongs to."""
     centre: tuple[float, float, float]
-    """Centre: texture coordinates and 0, or, without a texture, the position in metres."""
+    """Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
+    metres."""
     scale: tuple[float, float, float]
-    """Factor for its emission, per channel, >= 0."""
+    """Factor for the lamp's emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of scale."""
 
 
 @dataclass(frozen=True)
 class LampsGoal:
-    """The light that a goal receives."""
+    """The light that the surface or grid of one goal receives with the powers found."""
 
     outcome: tuple[Outcome, Outcome, Outcome]
     """Outcome of each channel."""
     target: tuple[float, float, float]
-    """Mean radiance of the goal, in cd/m²; illuminance / pi for a grid."""
+    """Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid,
+    illuminance / pi."""
     achieved: tuple[float, float, float]
-    """Mean radiance with the powers found, in cd/m²."""
+    """Mean radiance of the goal's surface with the powers found, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of achieved."""
     background: tuple[float, float, float]
-    """Mean radiance from all other light, in cd/m²."""
+    """Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel."""
     target_lux: float
-    """Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
-    Quantity.INCIDENT. This field and the fields below are 0 for other goals."""
+    """Target in lux: pi times the luminance of target. This field and the three fields below are set only for
+    goals of illuminance: grids, and meshes with Quantity.INCIDENT. They are 0 for other goals."""
     achieved_lux: float
     """Illuminance with the powers found, in lux."""
     half_width_lux: float
-    """Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had
-    one sign."""
+    """Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the
+    errors of all channels had one sign."""
     background_lux: float
-    """Illuminance from all other light, in lux."""
+    """Illuminance from all light but the lamps, in lux."""
 
 
 @dataclass(frozen=True)
 class LampsResponse:
-    """The light that one goal receives from one lamp."""
+    """The light that the surface or grid of one goal receives from one lamp."""
 
     mean: tuple[float, float, float]
-    """Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel."""
+    """Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of mean."""
 
 
 class ImportanceParams(TypedDict, total=False):
-    """Settings of the map."""
+    """Settings of an importance map."""
 
     width: int
-    """Cells along u of the surface, in [1, 512]; default 64."""
+    """Number of cells of the map along the texture coordinate u of the surface, in [1, 512]; default 64."""
     height: int
-    """Cells along v, in [1, 512]; default 64."""
+    """Number of cells of the map along the texture coordinate v of the surface, in [1, 512]; default 64."""
     quantity: Quantity | str | int
-    """Quantity; default Quantity.OUTGOING."""
+    """Quantity of the target that the map predicts: Quantity; default Quantity.OUTGOING."""
     paths: int
     """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the relative error of the response to a uniform emission is below this value, in [0, 1];
-    default 0.01; 0: no target."""
+    """Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
+    relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this
+    reason."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
@@ -1901,38 +1961,39 @@ class ImportanceParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class ImportanceReport:
-    """The light that the target receives from a texture."""
+    """The light that the target receives from a texture: the result of luxfer_importance_respond."""
 
     paths: int
-    """Number of paths of the map."""
+    """Number of paths that were traced for the map."""
     response: tuple[float, float, float]
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """Change of response, noise included, if the cells of the map were twice as wide and high. The error due to
-    the size of the cells is about a third of this change."""
+    """Measure of the error that comes from the size of the map's cells: the change of response, noise included,
+    if the cells had twice the width and height. The error is about a third of this change."""
 
 
 class PlacementParams(TypedDict, total=False):
-    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
-    about their centre (0.5, 0.5), and then shifted."""
+    """Objective and bounds of a placement. A placement scales the texture coordinates of the surface about
+    their centre (0.5, 0.5), then rotates them about this centre, and then shifts them."""
 
     aim: Aim | str | int
-    """Aim; default Aim.MAX_LUMINANCE."""
+    """Objective: Aim; default Aim.MAX_LUMINANCE."""
     radiance: Sequence[float]
-    """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
+    """Wanted mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default
+    0."""
     starts: int
     """Number of placements at which the search starts, in [1, 4096]; default 64."""
     min_offset: Sequence[float]
-    """Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5."""
+    """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
-    """Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value
-    is fixed."""
+    """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value
+    are equal, here and in the fields below, the value is fixed."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
-    """Largest number of repetitions, in [1/64, 64]; default 1."""
+    """Largest number of repetitions along u and v, in [1/64, 64]; default 1."""
     min_rotation: float
     """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
     max_rotation: float
@@ -1946,25 +2007,26 @@ class Placement:
     """The best placement, and the light that the target then receives."""
 
     placement: tuple[float, ...]
-    """The placement of the texture on the surface, as for luxfer_importance_respond."""
+    """The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond
+    takes it."""
     offset: tuple[float, float]
-    """Offset along u and v."""
+    """Offset of the placement along u and v of the texture, in periods."""
     scale: tuple[float, float]
-    """Scale along u and v."""
+    """Number of repetitions of the texture along u and v of the surface."""
     rotation: float
-    """Rotation in radians."""
+    """Rotation of the placement in radians."""
     response: tuple[float, float, float]
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """Change of response, noise included, if the cells of the map were twice as wide and high. The error due to
-    the size of the cells is about a third of this change."""
+    """Measure of the error that comes from the size of the map's cells: the change of response, noise included,
+    if the cells had twice the width and height. The error is about a third of this change."""
 
 
 @dataclass(frozen=True)
 class GlareReport:
-    """The glare of a view."""
+    """The glare of a view: the result of luxfer_image_get_glare."""
 
     sources: int
     """Number of glare sources."""
@@ -1974,19 +2036,19 @@ class GlareReport:
     background: float
     """Luminance of the background in cd/m²."""
     threshold: float
-    """Luminance in cd/m² above which a pixel counted as a glare source."""
+    """The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources."""
     solid_angle: float
     """Solid angle of all sources in steradians."""
     unseen_lights: int
-    """Number of lights of the rendered scene that shine from points: the image does not show them, and ugr
-    leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
-    luxfer_render_get_layer; 0 for other images. The scene of such an image has WarningCode.NOT_IN_PICTURE if it
-    has luminaires."""
+    """Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the
+    image, and ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of
+    luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires,
+    the scene has WarningCode.NOT_IN_PICTURE."""
 
 
 @dataclass(frozen=True)
 class Observer:
-    """An eye that looks in a direction. An element of arrays, so this struct never changes."""
+    """An observer: an eye that looks in a direction. An element of arrays, so this struct never changes."""
 
     position: tuple[float, float, float]
     """Position of the eye, in metres."""
@@ -1996,25 +2058,25 @@ class Observer:
 
 @dataclass(frozen=True)
 class ObserverGlare:
-    """The glare of an observer. An element of arrays, so this struct never changes."""
+    """The glare that an observer experiences. An element of arrays, so this struct never changes."""
 
     ugr: float
-    """Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a
-    luminaire in view, infinity if the background is black."""
+    """Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire
+    is in view; infinity if a luminaire is in view and the background is black."""
     background: float
     """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
     background_error: float
-    """Standard error of background."""
+    """Standard error of background, in cd/m²."""
     unrated_lux: float
-    """Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no
-    dimensions, or that are seen edge-on, points, spots, directional lights, emissive surfaces and the
+    """Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-
+    on or whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the
     environment."""
     solid_angle: float
     """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
     sources: int
     """Number of rated luminaires in view."""
     outside_range: int
-    """Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is
+    """Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is
     valid."""
 
 
@@ -2024,26 +2086,26 @@ class FalseColourParams(TypedDict, total=False):
     scale: Scale | str | int
     """Scale; default Scale.LINEAR."""
     unit: Unit | str | int
-    """Unit, written above the bar; default Unit.LUMINANCE."""
+    """Quantity of the values, whose unit is written above the bar: Unit; default Unit.LUMINANCE."""
     bar: int
     """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
     minimum: float
-    """Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the
-    lightest colour; default 0."""
+    """Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of
+    the value that gets the lightest colour."""
     maximum: float
-    """Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the
+    """Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the
     image."""
 
 
 @dataclass(frozen=True)
 class Mixture:
-    """A colour mixed from primaries."""
+    """A colour mixed from LED primaries: the result of luxfer_mix_primaries."""
 
     in_gamut: int
     """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     mixture."""
     colour: tuple[float, float, float]
-    """Linear colour of the mixture."""
+    """Linear RGB colour of the mixture."""
     delta_e: float
     """CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle
     grey."""
@@ -2051,32 +2113,33 @@ class Mixture:
 
 @dataclass(frozen=True)
 class TemperatureFit:
-    """The blackbody light that fits a target best."""
+    """The blackbody light that fits a target best: the result of luxfer_fit_temperature."""
 
     kelvin: float
     """Correlated colour temperature, in [1000, 20000] kelvin."""
     luminance: float
-    """Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m²."""
+    """Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
+    cd/m²."""
     achieved: tuple[float, float, float]
     """Mean radiance of the target from this light and all other light, in cd/m²."""
     delta_e: float
-    """CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle
-    grey."""
+    """CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted
+    radiance as middle grey."""
 
 
 @dataclass(frozen=True)
 class Preset:
-    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
+    """Requirements of EN 12464-1 for one kind of room, as manufacturers of luminaires quote them. Only the
     standard itself is binding."""
 
     edition: int
     """Year of the edition of the standard."""
     illuminance: float
-    """Minimum mean illuminance of the task area, in lux."""
+    """Minimum mean illuminance of the task area (maintained illuminance), in lux."""
     glare: float
     """Maximum unified glare rating."""
     uniformity: float
-    """Minimum uniformity U0 of the task area."""
+    """Minimum uniformity U0 (minimum / mean illuminance) of the task area."""
     rendering: float
     """Minimum colour rendering index."""
     walls: float
@@ -2086,7 +2149,7 @@ class Preset:
 
 
 class GuidesParams(TypedDict, total=False):
-    """Settings of guides."""
+    """Settings of the guides."""
 
     width: int
     """Width of the images in pixels, in [1, 32768]; default 800."""
@@ -2095,7 +2158,7 @@ class GuidesParams(TypedDict, total=False):
     samples: int
     """Paths per pixel, in [1, 1048576]; default 64."""
     camera: int
-    """Index of the scene's camera; default 0."""
+    """Index of the camera in the scene; default 0."""
     smooth: int
     """1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep
     the noise."""
@@ -2107,13 +2170,14 @@ class StylizeParams(TypedDict, total=False):
     """Settings of a stylisation. The defaults stated here belong to StylizePreset.FULL."""
 
     mode: StylizeMode | str | int
-    """StylizeMode; default StylizeMode.BUDGET."""
+    """Assignment of patches: StylizeMode; default StylizeMode.BUDGET."""
     search: StylizeSearch | str | int
-    """StylizeSearch; default StylizeSearch.PATCHMATCH."""
+    """Search for nearest patches: StylizeSearch; default StylizeSearch.PATCHMATCH."""
     patch: int
     """Width of a patch in pixels, odd, in [1, 33]; default 5."""
     guide_weight: float
-    """Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2."""
+    """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
+    [0, 1e6]; default 2."""
     levels: int
     """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6."""
     iterations: int
@@ -2121,24 +2185,24 @@ class StylizeParams(TypedDict, total=False):
     finest_iterations: int
     """Rounds of matching and painting on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Additional rounds on the finest level without the error budget, in which each target patch takes its
-    nearest match, in [0, 100]; default 3; the paper has 0. In other modes than StylizeMode.BUDGET these are
-    additional rounds of that mode."""
+    """Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In StylizeMode.BUDGET
+    each target patch takes its nearest match in these rounds, without the error budget. In other modes these
+    are additional rounds of that mode."""
     sweeps: int
-    """PatchMatch sweeps of a search, in [1, 100]; default 1."""
+    """Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
     """Share of the target that is matched under the error budget before the rest is matched without it, in [0,
     1]; default 0.9."""
     passes: int
-    """Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6."""
+    """Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6."""
     settle: int
-    """Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100];
-    default 2; the paper has 0."""
+    """Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target
+    patch may continue the match of its neighbour, which leaves fewer seams."""
     seam: float
     """Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0,
     100]; default 0.2."""
     vote: StylizeVote | str | int
-    """StylizeVote; default StylizeVote.WEIGHTED."""
+    """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
     """StylizeVote for the final picture; default StylizeVote.MOST."""
     preview: int
@@ -2152,20 +2216,20 @@ class StylizeParams(TypedDict, total=False):
     changes from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It
     needs luxfer_stylize_set_motion; without it, it has no effect."""
     match_appearance: float
-    """How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in
-    [0, 1]; default 0."""
+    """Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
+    guides of light, in [0, 1]; 0, the default: not at all."""
     seed: int
     """Seed of the search; default 1."""
     coarse_guides: float
-    """Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger
-    factor follows the guides more closely, with smaller connected pieces of the artwork."""
+    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
+    larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
     coarse_iterations: int
     """Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6."""
     occurrence: float
     """Weight lambda of the usage of a patch in StylizeMode.OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
-    al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of
-    average usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a
-    patch. 0 is StylizeMode.NEAREST."""
+    al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
+    distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0
+    is StylizeMode.NEAREST."""
 
 
 @dataclass(frozen=True)
@@ -2173,19 +2237,19 @@ class StylizeReport:
     """Quality of a stylisation."""
 
     is_complete: int
-    """1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are
-    0."""
+    """1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and
+    energy are 0."""
     levels: int
     """Number of finished levels; see luxfer_stylize_get_level."""
     halvings: int
-    """Number of times that the sides of the target were halved to get the size of the picture."""
+    """Number of times that the target's sides were halved to get the size of the picture."""
     patch: int
     """Width of the patches, in pixels."""
     max_uses: int
-    """Largest number of uses of an exemplar patch."""
+    """Number of uses of the exemplar patch that was used most often."""
     energy: float
-    """Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
-    channels of the artwork have the weight 1 together, the guides guide_weight."""
+    """Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All
+    channels of the artwork together have the weight 1, all guides together have the weight guide_weight."""
     used: float
     """Share of the exemplar patches that were used, in [0, 1]."""
     entropy: float
@@ -2200,21 +2264,21 @@ class StylizeReport:
 
 @dataclass(frozen=True)
 class StylizeRound:
-    """One round of matching and painting."""
+    """One round of matching and painting on a level."""
 
     passes: int
     """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
     energy: float
-    """Energy after this round, as StylizeReport.energy."""
+    """Energy after this round, defined as for StylizeReport.energy."""
 
 
 @dataclass(frozen=True)
 class StylizePass:
-    """One matching pass under the error budget."""
+    """One matching pass under the error budget, in StylizeMode.BUDGET."""
 
     knee: float
     """Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the
-    knee of the error curve."""
+    knee of the sorted matching errors, where they begin to rise steeply."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
     new_matches: int
@@ -2225,8 +2289,8 @@ class SheetParams(TypedDict, total=False):
     """Settings of a print sheet."""
 
     even_light: int
-    """1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1;
-    0: no correction."""
+    """1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the
+    value 1; 0: no correction."""
     paper_width: float
     """Width of the paper in millimetres, in [60, 2000]; default 297."""
     paper_height: float
@@ -2241,13 +2305,14 @@ class SheetParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class SheetReport:
-    """Quality of the alignment of a photo."""
+    """Quality of the alignment of a photo with its picture."""
 
     marks: int
     """Number of marks found, of 10; at least 6 are needed."""
     residual: float
-    """Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives
-    them. More than one or two pixels mean that the paper is not flat or that the lens distorts."""
+    """Root mean square distance, in pixels of the photo, between the found marks and the positions that
+    to_photo predicts for them. If it is more than one or two pixels, the paper is not flat or the lens
+    distorts."""
     error: float
     """Expected alignment error in pixels of the picture."""
     to_photo: tuple[float, ...]
@@ -2258,10 +2323,9 @@ class PlanParams(TypedDict, total=False):
     """Goal of a plan: set exactly one of time_budget_ms and target_error."""
 
     time_budget_ms: int
-    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
+    """Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error."""
     target_error: float
-    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
-    goal is time_budget_ms."""
+    """Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms."""
 
 
 @dataclass(frozen=True)
@@ -2269,18 +2333,20 @@ class PlanReport:
     """Times and errors that a plan predicts."""
 
     relights: int
-    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
+    """1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
+    stylisation."""
     seconds: float
-    """Seconds for all planned work."""
+    """Predicted seconds for all planned work."""
     error: float
-    """Error of the picture."""
+    """Predicted error of the picture or of the stylisation."""
     relight_seconds: float
-    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
+    """Predicted seconds for relighting, including the preparation of the scene; 0 unless the plan is of a
+    transfer."""
     relight_error: float
     """Predicted value of RelightReport.error; 0 unless the plan is of a transfer."""
     render_seconds: float
-    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
-    stylisation."""
+    """Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in
+    a plan of a stylisation."""
     render_error: float
     """Predicted value of RenderReport.error; 0 in a plan of a stylisation."""
 
@@ -2297,19 +2363,19 @@ class RenderPart(TypedDict, total=False):
     height: int
     """Height in pixels; default 0: up to the bottom edge of the image."""
     first_sample: int
-    """Index of the first path of each pixel; default 0."""
+    """Index of the first path of each pixel, from 0; default 0."""
     samples: int
     """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
 
 
 class DemoPhotoParams(TypedDict, total=False):
-    """Settings of the photo."""
+    """Settings of the demonstration photo."""
 
     width: int
     """Width in pixels, in [16, 8192]; default 600."""
     height: int
     """Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2."""
     samples: int
-    """Paths per pixel, in [2, 1048576]; default 12, which leaves some noise."""
+    """Paths per pixel, in [2, 1048576]; default 12, which leaves visible noise."""
     seed: int
-    """Seed of the paths and the noise; default 1."""
+    """Seed of the paths and of the sensor noise; default 1."""
