@@ -87,9 +87,10 @@ struct PerGoal {
     background: Vec<DVec3>,
 }
 
-/// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are
-/// those of [`super::run`], applied to the response of each goal to all lamps together; the responses to single lamps
-/// have larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
+/// Computes by path tracing how much light each lamp contributes to each goal. The lamps are the lights of the
+/// emissive texture of material `emitter`, at its current strength, or punctual lights; for these, `emitter` is
+/// ignored. Tracing stops under the conditions of [`super::run`], applied to the light that all lamps together
+/// contribute to each goal; the contributions of single lamps have larger errors. `params.quantity` is ignored.
 ///
 /// # Errors
 /// Parameters out of range; goals whose surface does not exist or has no area; cancelled.

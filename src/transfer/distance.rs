@@ -28,8 +28,8 @@ const SIZES: [[f64; 3]; 8] = [
 ];
 /// Probability of a lamp of any other size.
 const OTHER: f64 = 0.5;
-/// Range of the sides of lamps of other sizes, in metres. The logarithm of each side is uniformly distributed.
-/// [convention]
+/// Shortest and longest side, in metres, of a lamp that has none of the usual sizes. The logarithm of each of its
+/// sides is uniformly distributed in this range. [convention]
 const SIDES: [f64; 2] = [0.05, 3.0];
 /// Luminous share of a lamp's side; the rest is its frame. [convention]
 const SHINES: f64 = 0.96;
@@ -53,8 +53,9 @@ impl Distance {
         Self { metres, error: 0.0 }
     }
 
-    /// Estimates the distance from the sides of the median lamp, the longer side first. The sides are given as
-    /// multiples of the distance; sides of 0 mean that there is no rectangular lamp.
+    /// Estimates the distance of the plane of the lamps from the camera. `sides` are the lengths of the two sides of
+    /// the median lamp, the longer one first, as multiples of the distance. Lengths of 0 mean that there is no
+    /// rectangular lamp.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);
         let step = (high - low) / STEPS as f64;

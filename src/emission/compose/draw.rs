@@ -22,7 +22,8 @@ use std::collections::HashMap;
 /// Side of the squares whose lamps share a random number where lamps are dense, as a multiple of the longest lamp's
 /// length.
 const PATCH: f64 = 3.0;
-/// Lamps are dense if more than this share of the later exemplars' lamps overlap several lamps of earlier ones.
+/// Consider the lamps of all exemplars but the first. Lamps are dense if more than this share of them each overlap
+/// several lamps of exemplars that come earlier in the list than their own.
 const DENSE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.

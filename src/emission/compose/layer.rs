@@ -130,12 +130,12 @@ impl Layer {
         !self.designs.kinds.is_empty()
     }
 
-    /// Whether a component is rendered patch by patch rather than copied as a whole.
+    /// Whether a component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn is_by_pixel(&self, component: usize) -> bool {
         !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
-    /// Whether any component is rendered patch by patch rather than copied as a whole.
+    /// Whether any component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn has_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }

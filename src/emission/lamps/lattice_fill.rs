@@ -30,8 +30,8 @@ const SHARP: f64 = 0.4;
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
-/// `offset`. `shown` holds the lamps that the patches show. They are dropped at sites that get a lamp in every cell,
-/// moved to the exact position at other sites, and kept unmoved away from all sites.
+/// `offset`. `shown` holds the lamps that the copied patches contain. Lamps at sites that get a lamp in every cell are
+/// dropped from it, lamps near other sites move to the exact site, and lamps far from every site stay unmoved.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -62,7 +62,8 @@ pub fn place(
             }
         }
     }
-    // Add the lamps that patches show: at other sites, moved to the exact site; away from all sites, unmoved.
+    // Add the lamps that the copied patches contain. Skip lamps at sites that get a lamp in every cell, which are
+    // filled by now. Move lamps near any other site exactly onto it. Leave lamps far from every site where they are.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);

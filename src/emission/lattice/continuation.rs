@@ -14,7 +14,8 @@ pub enum Continuation {
     Copy,
     /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
-    /// The lights form a row: its period, then the extent of the exemplar as the second period.
+    /// The lights form a row. The first vector is the period of the row; the second is the extent of the exemplar
+    /// across the row, which serves as the second period.
     Row([DVec2; 2]),
     /// Too few lights for a period: the exemplar repeats as a whole, with its extent as both periods.
     Tile([DVec2; 2]),

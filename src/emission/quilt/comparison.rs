@@ -130,9 +130,9 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// Scores how well shifts agree with the known pixels. Only shifts are scored that fill at least `least` empty
-    /// pixels or, without `least`, nearly as many as the best shift. A shift whose error is clearly above the least
-    /// error so far, or above `limit`, gets an infinite error.
+    /// Scores how well shifts agree with the known pixels. A shift is scored only if it fills at least `least` empty
+    /// pixels; if `least` is `None`, only if it fills nearly as many as the shift that fills most. A shift whose error
+    /// is clearly above `limit`, or above the lowest error so far, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,

@@ -43,8 +43,8 @@ pub struct Rendered {
 /// Renders a part of an image. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parameters out of range, or error targets and time budgets; a part outside the image; a degenerate camera; no
-/// memory; cancelled.
+/// Parameters out of range; parameters that set an error target or a time budget; a part outside the image; a
+/// degenerate camera; no memory; cancelled.
 pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Rendered> {
     check(camera, params)?;
     part.check(params)?;
