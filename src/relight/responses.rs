@@ -82,8 +82,9 @@ pub struct Responses {
 
 #[derive(Clone, Debug)]
 struct PerGoal {
-    /// For each batch, the mean radiance under each lamp.
+    /// For each batch, the mean radiance of the goal's surface or grid under each lamp alone.
     batches: Vec<Vec<DVec3>>,
+    /// For each batch, the mean radiance under all light except the lamps.
     background: Vec<DVec3>,
 }
 

@@ -18,7 +18,8 @@ use crate::job::Job;
 
 /// Maximum number of folds. If there are more strokes, a fold holds several strokes.
 const FOLDS: usize = 8;
-/// Approximate number of samples per class to which cross-validation fits models: enough to compare two models.
+/// Cross-validation fits models to about this number of samples per class at most, which is enough to compare two
+/// models.
 const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
@@ -84,7 +85,9 @@ struct Trial<'a> {
     /// All features of all samples, standardised.
     x: Table,
     positive: Vec<bool>,
+    /// Fold of each sample, if parts of strokes are held out.
     by_part: Vec<usize>,
+    /// Fold of each sample, if whole strokes are held out.
     by_stroke: Vec<usize>,
     /// Indices of the samples to which models are fitted for comparison.
     few: Vec<usize>,

@@ -100,7 +100,8 @@ pub(super) fn retrieve(
 }
 
 /// Assigns target patches to exemplar patches in order of rising error until the sum of their errors reaches the
-/// budget. Returns the knee of the curve of sorted errors, as a share of their number, and the number of assignments.
+/// budget. Returns the share of the exemplar patches whose error lies left of the knee of the sorted errors, and the
+/// number of assignments.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);

@@ -13,9 +13,9 @@ const STEPS: usize = 400;
 /// [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
-/// Usual lamps: longer and shorter side in metres, and the probability of this size. They are panels and troffers that
-/// replace ceiling tiles of 0.6 m (EN 13964; 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC 60081).
-/// [convention]
+/// Usual sizes of lamps: longer and shorter side in metres, and the probability of this size. The lamps are panels and
+/// troffers that replace ceiling tiles of 0.6 m (EN 13964; 2 ft in America), and battens for tubes of 1.2 and 1.5 m
+/// (IEC 60081). [convention]
 const SIZES: [[f64; 3]; 8] = [
     [0.6, 0.6, 0.18],
     [1.2, 0.6, 0.12],
@@ -31,7 +31,7 @@ const OTHER: f64 = 0.5;
 /// Shortest and longest side, in metres, of a lamp that has none of the usual sizes. The logarithm of each of its
 /// sides is uniformly distributed in this range. [convention]
 const SIDES: [f64; 2] = [0.05, 3.0];
-/// Luminous share of a lamp's side; the rest is its frame. [convention]
+/// Share of the length of a lamp's side that is luminous; the frame takes up the rest. [convention]
 const SHINES: f64 = 0.96;
 /// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view.
 /// [bench photos:real]

@@ -15,7 +15,8 @@ const CRACK: f64 = 1e-3;
 const FULL: f32 = 0.9999;
 
 /// Computes the placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if
-/// light is allowed at all texels. `untouched` is the surface before rotation; the zones are given along its axes.
+/// light is allowed at all texels. `untouched` is the surface before the pattern was rotated; the zones are given
+/// along the axes of `untouched`.
 pub(super) fn of(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),

@@ -61,8 +61,8 @@ pub struct Layer {
 /// The settings by which an exemplar's pattern is placed on the texture.
 struct Setting<'a> {
     params: &'a Params,
-    /// The continuation found in the exemplar, and the one that the texture uses. They differ if the texture is
-    /// tileable, because its lattice is stretched.
+    /// The continuation found in the exemplar (`found`), and the continuation that the texture uses (`continuation`).
+    /// They differ if the texture is tileable, because its lattice is stretched.
     found: Continuation,
     continuation: Continuation,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
@@ -157,8 +157,8 @@ impl Layer {
     }
 }
 
-/// A texture that fits inside the exemplar is a copy of the photo, with its ragged outlines. Lamps with clean outlines
-/// replace the copy only if they lie on a lattice with at least this score. [bench photos:tune]
+/// A texture that fits inside the exemplar is a copy of a part of the photo, ragged outlines included. Lamps with
+/// clean outlines replace the copy only if the lamps lie on a lattice with at least this score. [bench photos:tune]
 const SURE: f64 = 0.6;
 
 /// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.

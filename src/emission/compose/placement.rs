@@ -19,8 +19,8 @@ pub enum Placement {
 }
 
 impl Emission {
-    /// Removes light where `ground`, with one entry per texel, does not allow it. The statistics are not updated: they
-    /// describe the whole pattern.
+    /// Removes light where `ground` does not allow it; `ground` has one entry per texel. The statistics of the
+    /// emission are not updated: they describe the pattern before this removal.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {

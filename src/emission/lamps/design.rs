@@ -149,7 +149,7 @@ struct Member {
     angle: f64,
     weight: f64,
     blur: DVec2,
-    /// Unwarped pixels per photo pixel, near the lamp.
+    /// The matrix that converts steps in photo pixels to steps in unwarped pixels, near the lamp.
     inverse_map: DMat2,
     is_clear: bool,
 }

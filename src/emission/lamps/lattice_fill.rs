@@ -85,7 +85,8 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites, in descending order of the photo pixels of their lamps, without sites that overlap an earlier one.
+/// Returns the sites in descending order of the number of photo pixels of their lamps. Leaves out each site that
+/// overlaps an earlier one in this order.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));
@@ -102,7 +103,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// The whole lamps of a site that are sharp in the photo.
+/// Returns the components of the whole lamps of a site that are sharp in the photo; if there are none, the component
+/// of the site's first lamp.
 fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
     let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);
