@@ -14,9 +14,9 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum factors by which the distance of a wall may grow, to enclose lamps beyond the wall. `MAX_GROWTH_UNCERTAIN`
-/// applies to uncertain room layouts: the plane was proposed automatically because the user painted no strokes, or the
-/// lines of the photo do not determine the camera.
+/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. If a larger factor is necessary,
+/// the room is not enlarged. `MAX_GROWTH_UNCERTAIN` applies to uncertain room layouts: the plane was proposed
+/// automatically because the user painted no strokes, or the lines of the photo do not determine the camera.
 /// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;

@@ -18,8 +18,8 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches are compared by their error only if they fill at least this share of the number of pixels that the patch
-/// with the best coverage fills.
+/// Patches are compared by their error only if they fill enough pixels of a block: at least this share of the largest
+/// number of pixels that any candidate patch fills. The other patches are discarded.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If a block has more than this many candidate patches, a first comparison uses only every `ROW_STEP`-th row of the

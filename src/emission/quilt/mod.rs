@@ -204,8 +204,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The candidate shifts for a block: the shifts of its neighbours, which continue the patches already placed, and
-    /// new shifts: lattice vectors or, without a lattice, random ones.
+    /// Returns the candidate shifts for a block. Some are the shifts of the pixels around the block, which continue
+    /// the patches already placed. The others are new: lattice vectors or, without a lattice, random shifts.
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;

@@ -31,8 +31,8 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 use survey::{Progress, Survey, UNCOUNTED};
 
-/// The lights of a scene. A clone is cheap, because it shares the data. Only `split`, `survey` and `progress` can
-/// differ between clones later: they hold what one render learns about which lights reach the surfaces in view.
+/// The lights of a scene. A clone is cheap, because it shares the data. Each render uses a clone of its own, and
+/// stores in it what it learns about which lights reach the surfaces in view: `split`, `survey` and `progress`.
 #[derive(Clone)]
 pub struct Lights {
     pub emitters: Arc<Emitters>,
@@ -44,8 +44,8 @@ pub struct Lights {
     /// The selectors for likely and for unlikely lights, which replace `all`; `None` until a render has learned which
     /// lights are likely to reach the surfaces in view.
     split: Option<Arc<Split>>,
-    /// Counts the samples of each light, and those that are not occluded; `None` if the render does not learn, or no
-    /// longer.
+    /// Counts the samples of each light, and those that are not occluded; `None` if the render does not learn, or has
+    /// stopped learning.
     survey: Option<Arc<Survey>>,
     progress: Progress,
     /// Whether renders may learn which lights reach the surfaces in view.

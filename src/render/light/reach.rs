@@ -9,9 +9,9 @@
 //! Likely and unlikely lights have a selector each. The unlikely lights together get a small share of the light
 //! samples ([`unlikely_share`]), the likely lights get the rest. Every light keeps a positive probability (a defensive
 //! mixture; Hesterberg 1995, "Weighted average importance sampling and defensive mixture distributions"), so the
-//! estimate remains unbiased. If a sample of an unlikely light arrives after all, its contribution is larger than
-//! without the division, roughly by the reciprocal of the share at most, and the next decision
-//! ([`super::learning`]) makes the light likely.
+//! estimate remains unbiased. If a sample of an unlikely light arrives after all, its contribution is larger than it
+//! would be with one selector for all lights, at most by a factor of about the reciprocal of the share. The next
+//! decision ([`super::learning`]) then makes the light likely.
 //!
 //! Before a light has samples of its own, its probability follows from its neighbours in the light tree: if many of
 //! them are hidden, it is probably hidden too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright
@@ -31,7 +31,7 @@ use crate::image::try_vec;
 /// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
 /// Share of the light samples that the unlikely lights get: `UNLIKELY_ROOT` divided by the square root of the number
-/// of samples that they had in vain, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
+/// of samples drawn from them in vain, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
 /// A neighbour in the light tree with more samples than this counts as having this many, with the same share that
