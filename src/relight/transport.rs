@@ -143,13 +143,13 @@ impl<'a> Batches<'a> {
         Ok(())
     }
 
-    /// Mean light of each bin per path of a batch.
+    /// For each bin, the mean light per path, over the paths of one batch.
     pub fn mean_of_bins(&self, batch: usize) -> impl Iterator<Item = DVec3> {
         let batch = &self.batches[batch];
         batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
     }
 
-    /// Mean light of the bins and of other lights per path, for each batch.
+    /// For each batch, the mean light per path: of each bin, and of the light that belongs to no bin.
     pub fn means(&self) -> Vec<Means> {
         self.batches.iter().cloned().map(Batch::into_means).collect()
     }

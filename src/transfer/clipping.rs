@@ -62,7 +62,7 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..9).map(|i| (i % 3, i / 3)).filter(|(x, y)| x != y)
 }
 
-/// Sums over the pixels that are unclipped in two channels x and y.
+/// Sums over the pixels in which neither of two channels, x and y, is clipped.
 #[derive(Clone, Copy, Default)]
 struct Moments {
     n: f64,

@@ -38,8 +38,8 @@ pub(super) fn of(
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Mark the places where no lamp may be: zones and, with a margin, places off the surface. Then dilate them by the
-    // margin.
+    // Mark the places where no lamp may be: zones and, if lamps must keep a margin, places off the surface. Then
+    // dilate the marked places by the margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);

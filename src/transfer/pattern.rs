@@ -40,8 +40,8 @@ const MIN_SHOWN_TEXELS: f64 = 4.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel, or the minimum size that `max_texels`
-    /// allows.
+    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel or, if that is larger, the
+    /// minimum size that `max_texels` allows.
     pub texel_size: f64,
     /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,

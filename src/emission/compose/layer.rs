@@ -81,7 +81,7 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let setting = Setting::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata of the exemplar, the guide channels of the synthesis: confidence, and signed x and y
+        // Compute the metadata of the exemplar, by which patches are compared: the confidence, and the signed x and y
         // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
@@ -334,8 +334,8 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Shifts the lamps by the offset in a pattern without a lattice. Such a pattern has no origin, so an offset is
-/// allowed only in a tileable texture.
+/// Shifts the lamps of a pattern without a lattice by `params.offset`. Such a pattern has no origin. Therefore an
+/// offset other than 0 is an error, unless the texture is tileable and no light is copied patch by patch.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);

@@ -122,8 +122,9 @@ struct Span {
 struct Light {
     /// Number of texels.
     texels: f64,
-    /// Sums over the lit parts of texels: area, first moments and second moments, relative to `origin`, the centre of
-    /// the first texel. `colours` is a sum over whole texels.
+    /// `area`, `centres` and `squares` are sums over the lit parts of texels: area, first moments and second moments.
+    /// Positions are relative to `origin`, the centre of the first texel. `colours` is the sum of the colours of all
+    /// texels.
     area: f64,
     origin: DVec2,
     centres: DVec2,

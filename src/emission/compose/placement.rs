@@ -24,8 +24,8 @@ impl Emission {
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
-        // Mark the lamps to remove as a whole before hidden light is removed, because hidden parts of a lamp count
-        // too.
+        // First mark the lamps that will be removed as a whole, then remove hidden light: the hidden parts of a lamp
+        // count too when it is marked.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {

@@ -18,8 +18,8 @@ use glam::{DMat2, DVec2};
 /// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine in at least this share of its
 /// visible copies, weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
-/// the lamps at the dark copies. [judged on 20 photos]
+/// If at most `FEW_DARK` copies of a site have no shining lamp, a smaller share of copies with shining lamps suffices,
+/// `MOSTLY` instead of `ALWAYS`: something may hide the missing lamps. [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.

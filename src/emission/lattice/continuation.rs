@@ -24,7 +24,7 @@ pub enum Continuation {
 }
 
 impl Continuation {
-    /// The lattice by which patches must be shifted, if there is one.
+    /// The two periods of the lattice; patches may be shifted only by lattice vectors. `None` if there is no lattice.
     pub fn lattice(&self) -> Option<[DVec2; 2]> {
         match *self {
             Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
@@ -58,8 +58,8 @@ impl Continuation {
         })
     }
 
-    /// The periods along x and along y in unwarped pixels; `None` if the lattice has no period along that axis. Both
-    /// periods of a copy are infinite.
+    /// The periods along x and along y in unwarped pixels; `None` for an axis along which the lattice has no period.
+    /// For `Copy`, both periods are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

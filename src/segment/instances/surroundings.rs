@@ -20,9 +20,9 @@ pub struct Surroundings {
     pub colour: [f64; 3],
 }
 
-/// Compares a node of the component tree with the ring of pixels around it. The ring leaves out `taken` pixels, and
-/// pixels as bright as the node itself, which belong to other regions such as neighbouring panes. `None` if the ring
-/// has no pixel left.
+/// Compares a node of the component tree with the ring of pixels around it. The ring leaves out the pixels that are
+/// set in `taken`, and pixels as bright as the node itself, which belong to other regions such as neighbouring panes.
+/// `None` if the ring has no pixel left.
 pub fn around(
     node: u32,
     tree: &Tree,
