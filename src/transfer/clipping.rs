@@ -1,11 +1,11 @@
 //! Estimates the values that the clipped pixels of a photo would have without clipping.
 //!
 //! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of the plane's
-//! pixels therefore lie roughly on a line. The pixels without clipping determine this line. In the other pixels, a
-//! clipped channel follows from an unclipped one. Because this is extrapolation, the estimate is limited to a range.
-//! It is at least white, and at most the unclipped channel times the ratio of the means of both channels. These means
-//! are taken over the pixels in which neither of the two channels is clipped. If all channels of a pixel are clipped,
-//! only a lower bound of their values is known: white.
+//! pixels therefore lie roughly on a line. For each pair of channels, this line is fitted to the pixels in which
+//! neither of the two channels is clipped. In the other pixels, a clipped channel follows from an unclipped one.
+//! Because this is extrapolation, the estimate is limited to a range. It is at least white, and at most the unclipped
+//! channel times the ratio of the means of the two channels in the fitted pixels. If all channels of a pixel are
+//! clipped, only a lower bound of their values is known: white.
 
 use glam::{BVec3, DVec3, Vec3};
 
