@@ -10,7 +10,7 @@ use crate::job::Job;
 
 /// The estimated surface at each pixel. Stores inverse depth, which is affine on planes: `1/z = (n · ray) / c`.
 pub struct Surface {
-    /// Inverse depth `1/z` in the units of the frustum, > 0.
+    /// Inverse depth `1/z`, positive. The depth `z` has the same unit of length as [`Frustum::near`].
     pub inverse_depth: Image,
     /// Unit normals in camera space, towards the camera.
     pub normals: Image,

@@ -158,7 +158,8 @@ pub struct Pair {
     pub name: &'static str,
     pub source: Image,
     pub target: Image,
-    /// True if the guide is light, in `[0, 1]`; false if it is data such as normals.
+    /// True if the guide is an image of light, with values in `[0, 1]`; false if it holds other data, such as
+    /// normals.
     pub is_light: bool,
     /// Whether the guide was requested in [`Extras`].
     pub is_extra: bool,

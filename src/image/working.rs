@@ -21,7 +21,8 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
         Format::Raster(format) => raster::working_bytes(bytes, format)?,
     };
     let profile = file_colour::profile(bytes, format)?;
-    // If a profile converts the inks, their amounts are first read as an image of four channels of four bytes.
+    // If a profile converts the inks, their amounts are first read into an image with four channels, each of four
+    // bytes.
     let inks = match &profile {
         Some(_) if file_colour::has_inks(bytes, format) => {
             let (width, height, _) = probe(bytes)?;

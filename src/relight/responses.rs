@@ -82,14 +82,17 @@ pub struct Responses {
 
 #[derive(Clone, Debug)]
 struct PerGoal {
-    /// For each batch, the mean radiance under each lamp.
+    /// For each batch, the mean radiance of the goal's surface or grid under each lamp alone.
     batches: Vec<Vec<DVec3>>,
+    /// For each batch, the mean radiance under all light except the lamps.
     background: Vec<DVec3>,
 }
 
-/// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are
-/// those of [`super::run`], applied to the response of each goal to all lamps together; the responses to single lamps
-/// have larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
+/// Computes by path tracing how much light each lamp contributes to each goal. The lamps are either parts of the
+/// emissive texture of the material with index `emitter`, at its current strength, or punctual lights; for punctual
+/// lights, `emitter` is ignored. Tracing stops under the conditions of [`super::run`], applied to the light that all
+/// lamps together contribute to each goal; the contributions of single lamps have larger errors. `params.quantity` is
+/// ignored.
 ///
 /// # Errors
 /// Parameters out of range; goals whose surface does not exist or has no area; cancelled.

@@ -27,7 +27,7 @@ pub(super) struct Stop {
     clock: Instant,
     /// Time budget in seconds; may be infinite.
     budget: f64,
-    /// Relative half-width at which tracing stops; 0 for no target.
+    /// Relative half-width of the confidence interval at which tracing stops; 0 if there is no target.
     target_error: f64,
     pub max_paths: u32,
 }
@@ -39,8 +39,9 @@ impl Stop {
         Self { clock: Instant::now(), budget, target_error: f64::from(params.target_error), max_paths: params.paths }
     }
 
-    /// Returns the growth factor for the number of paths, given the current relative half-width `error`; `None` if no
-    /// more paths are needed.
+    /// Returns the factor by which the number of paths should grow in the next round. `error` is the current relative
+    /// half-width of the confidence interval, `paths` the current number of paths. Returns `None` if tracing must
+    /// stop.
     pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
         let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
         if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
@@ -60,9 +61,9 @@ const CHUNK: u32 = 256;
 struct Batch {
     /// Sum of the light of each bin.
     bins: Vec<DVec3>,
-    /// Sum of all other light.
+    /// Sum of the light that belongs to no bin.
     others: DVec3,
-    /// Sums of products of two paths from the same point.
+    /// Sums of the products of the light of two paths from the same point.
     pairs: Pairs,
     /// Number of paths summed; target points on lamps start no path.
     count: u32,
@@ -72,9 +73,9 @@ struct Batch {
 /// whereas squares of single paths include their noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// The response squared.
+    /// The square of the response (the light of the bin).
     pub own: DVec3,
-    /// The product of response and background.
+    /// The product of the response and the background (all other light).
     pub cross: DVec3,
 }
 
@@ -117,8 +118,9 @@ impl<'a> Batches<'a> {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces more paths: `growth` times the current number, with `growth` clamped to [`GROWTH`], and at most `limit`
-    /// in total.
+    /// Traces paths until each batch has `growth` times its current number of paths, with `growth` clamped to
+    /// [`GROWTH`], and at least [`FIRST_ROUND`] paths. A batch never gets more than `limit` divided by the number of
+    /// batches, rounded up.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
         let max_per_batch = limit.div_ceil(BATCHES as u32);
         let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
@@ -141,13 +143,13 @@ impl<'a> Batches<'a> {
         Ok(())
     }
 
-    /// Mean light of each bin per path of a batch.
+    /// For each bin, the mean light per path, over the paths of one batch.
     pub fn mean_of_bins(&self, batch: usize) -> impl Iterator<Item = DVec3> {
         let batch = &self.batches[batch];
         batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
     }
 
-    /// Mean light of the bins and of other lights per path, for each batch.
+    /// For each batch, the mean light per path: of each bin, and of the light that belongs to no bin.
     pub fn means(&self) -> Vec<Means> {
         self.batches.iter().cloned().map(Batch::into_means).collect()
     }

@@ -18,7 +18,8 @@ use crate::job::Job;
 
 /// Maximum number of folds. If there are more strokes, a fold holds several strokes.
 const FOLDS: usize = 8;
-/// Approximate number of samples per class to which cross-validation fits models: enough to compare two models.
+/// Cross-validation fits models to about this number of samples per class at most, which is enough to compare two
+/// models.
 const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
@@ -84,17 +85,19 @@ struct Trial<'a> {
     /// All features of all samples, standardised.
     x: Table,
     positive: Vec<bool>,
+    /// Fold of each sample, if parts of strokes are held out.
     by_part: Vec<usize>,
+    /// Fold of each sample, if whole strokes are held out.
     by_stroke: Vec<usize>,
     /// Indices of the samples to which models are fitted for comparison.
     few: Vec<usize>,
     ridge: f64,
 }
 
-/// Chooses the model and the features with the least expected loss over the whole image. The expected loss is the log
-/// loss on held-out parts of strokes for the share of pixels like the painted ones, and the log loss on held-out whole
-/// strokes for the other pixels. Each term of a model adds a price of one over the number of samples (Akaike's
-/// criterion), so that the simpler of two equally good models wins.
+/// Chooses the model and the features with the lowest expected loss over the whole image. Pixels like the painted ones
+/// count with the log loss on held-out parts of strokes, all other pixels with the log loss on held-out whole strokes.
+/// Each term of a model adds a price of one over the number of samples (Akaike's criterion), so that the simpler of
+/// two equally good models wins.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);
@@ -130,7 +133,7 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
 }
 
-/// Finds the candidate with the least expected loss over the image, including the price of its terms. `unseen` holds
+/// Finds the candidate with the smallest sum of expected loss over the image and price of its terms. `unseen` holds
 /// for each subset the share of the image that is unlike the painted pixels.
 fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> Result<Candidate> {
     let mut order: Vec<(usize, Model, usize)> = (0..subsets.len())
@@ -140,8 +143,8 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
     let price = |terms: usize| terms as f64 / trial.positive.len() as f64;
     let mut best: Option<(f64, Candidate)> = None;
     let mut rest = order.as_slice();
-    // Losses are not negative. Once the price of the next candidate alone reaches the least expected loss, that
-    // candidate and all larger ones cannot win.
+    // Candidates are ranked by their loss plus their price, and losses are not negative. Once the price of the next
+    // candidate reaches the best sum so far, neither that candidate nor a larger one can win.
     while let Some((terms, ..)) =
         rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
     {
@@ -177,7 +180,8 @@ impl Candidate {
 }
 
 impl Trial<'_> {
-    /// Fits a model to the samples in `few` for which `used` holds. `terms` holds the terms of the samples in `few`.
+    /// Fits a model to the samples in `Trial::few` for which `used` returns true. `terms` holds the terms of all
+    /// samples in `Trial::few`; `start` holds the initial weights.
     fn fit_few(&self, terms: &Table, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
         let positive: Vec<bool> = self.few.iter().map(|&i| self.positive[i]).collect();
         let weights = balanced(&positive, |k| used(self.few[k]));
@@ -186,7 +190,7 @@ impl Trial<'_> {
     }
 }
 
-/// Every `stride`-th sample of a class belongs to `Trial::few`.
+/// The step between the samples of a class that belong to `Trial::few`: every sample whose index it divides.
 fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }
@@ -211,9 +215,9 @@ fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
 }
 
-/// Cross-validates a model. For each fold, fits the model to the samples in `few` outside the fold, and applies it to
-/// all samples in the fold. The fits start at `start`, the weights fitted without holding out a fold. `all` and `few`
-/// hold the terms of all samples, and of the samples in `Trial::few`.
+/// Cross-validates a model. `all` holds the terms of all samples, `few` the terms of the samples in the subset
+/// `Trial::few`. For each fold, fits the model to the samples of the subset that lie outside the fold, and applies it
+/// to all samples in the fold. Each fit begins with the weights `start`, which were fitted to the whole subset.
 fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
     let Trial { samples, positive, .. } = trial;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);

@@ -1,9 +1,11 @@
-//! Estimates the values of a photo's clipped pixels before clipping.
+//! Estimates the values that the clipped pixels of a photo would have without clipping.
 //!
-//! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of its pixels
-//! therefore lie roughly on a line. The unclipped pixels determine this line, and a clipped channel follows from an
-//! unclipped one. Because this is extrapolation, the estimate is limited to the range from white to the value that the
-//! mean ratio of the channels gives. If all channels are clipped, only a lower bound of them is known: white.
+//! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of the plane's
+//! pixels therefore lie roughly on a line. For each pair of channels, this line is fitted to the pixels in which
+//! neither of the two channels is clipped. In the other pixels, a clipped channel follows from an unclipped one.
+//! Because this is extrapolation, the estimate is limited to a range. It is at least white, and at most the unclipped
+//! channel times the ratio of the means of the two channels in the fitted pixels. If all channels of a pixel are
+//! clipped, only a lower bound of their values is known: white.
 
 use glam::{BVec3, DVec3, Vec3};
 
@@ -60,7 +62,7 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..9).map(|i| (i % 3, i / 3)).filter(|(x, y)| x != y)
 }
 
-/// Sums over the pixels that are unclipped in two channels x and y.
+/// Sums over the pixels in which neither of two channels, x and y, is clipped.
 #[derive(Clone, Copy, Default)]
 struct Moments {
     n: f64,

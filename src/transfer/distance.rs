@@ -13,9 +13,9 @@ const STEPS: usize = 400;
 /// [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
-/// Usual lamps: longer and shorter side in metres, and the probability of this size. They are panels and troffers that
-/// replace ceiling tiles of 0.6 m (EN 13964; 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC 60081).
-/// [convention]
+/// Usual sizes of lamps: longer and shorter side in metres, and the probability of this size. The lamps are panels and
+/// troffers that replace ceiling tiles of 0.6 m (EN 13964; 2 ft in America), and battens for tubes of 1.2 and 1.5 m
+/// (IEC 60081). [convention]
 const SIZES: [[f64; 3]; 8] = [
     [0.6, 0.6, 0.18],
     [1.2, 0.6, 0.12],
@@ -28,10 +28,10 @@ const SIZES: [[f64; 3]; 8] = [
 ];
 /// Probability of a lamp of any other size.
 const OTHER: f64 = 0.5;
-/// Range of the sides of lamps of other sizes, in metres. The logarithm of each side is uniformly distributed.
-/// [convention]
+/// Shortest and longest side, in metres, of a lamp that has none of the usual sizes. The logarithm of each of its
+/// sides is uniformly distributed in this range. [convention]
 const SIDES: [f64; 2] = [0.05, 3.0];
-/// Luminous share of a lamp's side; the rest is its frame. [convention]
+/// Share of the length of a lamp's side that is luminous; the frame takes up the rest. [convention]
 const SHINES: f64 = 0.96;
 /// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view.
 /// [bench photos:real]
@@ -53,8 +53,9 @@ impl Distance {
         Self { metres, error: 0.0 }
     }
 
-    /// Estimates the distance from the sides of the median lamp, the longer side first. The sides are given as
-    /// multiples of the distance; sides of 0 mean that there is no rectangular lamp.
+    /// Estimates the distance of the plane of the lamps from the camera. `sides` are the lengths of the two sides of
+    /// the median lamp, the longer one first, as multiples of the distance. Lengths of 0 mean that there is no
+    /// rectangular lamp.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);
         let step = (high - low) / STEPS as f64;

@@ -15,7 +15,8 @@ const CRACK: f64 = 1e-3;
 const FULL: f32 = 0.9999;
 
 /// Computes the placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if
-/// light is allowed at all texels. `untouched` is the surface before rotation; the zones are given along its axes.
+/// light is allowed at all texels. `untouched` is the surface before the pattern was rotated; the zones are given
+/// along the axes of `untouched`.
 pub(super) fn of(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),
@@ -37,8 +38,8 @@ pub(super) fn of(
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Mark the places where no lamp may be: zones and, with a margin, places off the surface. Then dilate them by the
-    // margin.
+    // Mark the places where no lamp may be: zones and, if lamps must keep a margin, places off the surface. Then
+    // dilate the marked places by the margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);

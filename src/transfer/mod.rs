@@ -171,8 +171,8 @@ pub struct Results {
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
     pub emission: Option<Arc<Emission>>,
-    /// The distance of the photo's camera from its plane that corresponds to the size of the pattern; absent if the
-    /// caller supplies the texture.
+    /// The distance of the photo's camera from the lit plane at which the pattern has its size on the surface; absent
+    /// if the caller supplies the texture.
     pub distance: Option<Distance>,
     /// The scene with the texture on its surface before relighting: the emission is `white_luminance` times the
     /// texture's values.

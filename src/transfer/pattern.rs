@@ -14,7 +14,7 @@ pub enum Scale {
     /// The distance of the photo's camera from the lit plane: [`super::Params::plane_distance`] or, if that is 0, an
     /// estimate from the lamps.
     Distance,
-    /// The length of a lamp's longer side, the median over the photo's lamps.
+    /// The length of the longer side of a lamp (the median over the photo's lamps).
     Lamp(f64),
     /// The shorter period of the lamps' lattice; without a lattice, the median distance from a lamp to its nearest
     /// neighbour.
@@ -40,8 +40,8 @@ const MIN_SHOWN_TEXELS: f64 = 4.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel, or the minimum size that `max_texels`
-    /// allows.
+    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel or, if that is larger, the
+    /// minimum size that `max_texels` allows.
     pub texel_size: f64,
     /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,
@@ -62,7 +62,7 @@ impl Default for Pattern {
 pub(super) struct Sizing {
     /// Metres per unwarped pixel.
     pub pixel: f64,
-    /// The distance of the photo's camera from its plane that gives the pattern this size.
+    /// The distance of the photo's camera from the lit plane at which the pattern has this size.
     pub distance: Distance,
     /// The measurements of the exemplar, if the size depends on them.
     pub measured: Option<Measure>,
@@ -92,9 +92,9 @@ impl Pattern {
         Ok(())
     }
 
-    /// Computes the size of an unwarped pixel on the surface. `pixel` is its size if the photo's camera is at distance
-    /// 1 from its plane. `plane_distance` is the actual distance in metres; 0 means that it is estimated from the
-    /// lamps.
+    /// Computes the size of an unwarped pixel on the surface. `pixel` is the size that the pixel has if the photo's
+    /// camera is at distance 1 from the lit plane. `plane_distance` is the actual distance in metres; 0 means that the
+    /// distance is estimated from the lamps.
     pub(super) fn sizing(
         &self,
         (pixel, plane_distance): (f64, f64),

@@ -14,8 +14,9 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. `MAX_GROWTH_UNCERTAIN` is for
-/// uncertain layouts: the plane was proposed because strokes were missing, or lines do not determine the camera.
+/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. If a larger factor is necessary,
+/// the room is not enlarged. `MAX_GROWTH_UNCERTAIN` applies to uncertain room layouts: the plane was proposed
+/// automatically because the user painted no strokes, or the lines of the photo do not determine the camera.
 /// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
@@ -35,7 +36,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Computes the features. A given `layout` is used instead of a new estimate of the room's layout.
+    /// Computes the features. If `layout` is given, it is used as the layout of the room; otherwise the layout is
+    /// estimated.
     pub(super) fn compute_features(&mut self, layout: Option<features::Layout>, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });

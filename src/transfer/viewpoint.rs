@@ -61,7 +61,7 @@ fn openness(world: &World, camera: &Camera, cap: f32) -> f32 {
         let y = ((i / RAYS[0]) as f32 + 0.5) / RAYS[1] as f32;
         let direction: Vec3 = camera.direction(x, y, 16.0 / 9.0).normalize();
         let hit = world.accel().closest(&world.ray(camera.position, direction), |_| true);
-        // A ray that leaves the scene counts half the maximum.
+        // A ray that leaves the scene counts as half the maximum length.
         sum += hit.map_or(cap / 2.0, |h| h.t.min(cap));
     }
     sum

@@ -36,7 +36,7 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Plans the texture that [`crate::emission::blend`] makes. Errors: as for that function.
+    /// Plans the texture that [`crate::emission::blend`] makes. Its errors are the errors of `blend`.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         Self::of(None, input, styles, params, job)
     }
@@ -88,14 +88,14 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period), and
-    /// the score.
+    /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period). Also
+    /// returns the score of this continuation and its best alternative.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
     }
 
-    /// The number of lamps that the exemplars show whole.
+    /// The number of lamps that the photos of the exemplars show completely, in all exemplars together.
     pub fn exemplar_lamps(&self) -> usize {
         self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
     }

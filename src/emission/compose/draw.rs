@@ -22,7 +22,8 @@ use std::collections::HashMap;
 /// Side of the squares whose lamps share a random number where lamps are dense, as a multiple of the longest lamp's
 /// length.
 const PATCH: f64 = 3.0;
-/// Lamps are dense if more than this share of the later exemplars' lamps overlap several lamps of earlier ones.
+/// Consider the lamps of all exemplars but the first. Lamps are dense if more than this share of them each overlap
+/// several lamps of exemplars that come earlier in the list than their own.
 const DENSE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.
@@ -46,7 +47,8 @@ impl Lamp {
     }
 }
 
-/// Chooses the lamps of each layer at random by its weights, and removes the others.
+/// Keeps a random selection of the lamps of each layer, with probabilities equal to the layer's weights, and removes
+/// the other lamps.
 pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     if layers.len() < 2 {
         return;
@@ -65,8 +67,8 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let several = below.iter().flatten().filter(|b| b.len() > 1).count();
     let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
-    // A lamp takes the random number of the earlier lamp that it overlaps most. Without one, it takes the number of
-    // the square of the texture that holds its centre if lamps are dense, else a number of its own.
+    // A lamp takes the random number of the lamp of an earlier layer that it overlaps most. If it overlaps none, it
+    // gets a number of its own or, if lamps are dense, the number of the square of the texture that holds its centre.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
             let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();

@@ -61,8 +61,8 @@ pub struct Layer {
 /// The settings by which an exemplar's pattern is placed on the texture.
 struct Setting<'a> {
     params: &'a Params,
-    /// The continuation found in the exemplar, and the one that the texture uses. They differ if the texture is
-    /// tileable, because its lattice is stretched.
+    /// The continuation found in the exemplar (`found`), and the continuation that the texture uses (`continuation`).
+    /// They differ if the texture is tileable, because its lattice is stretched.
     found: Continuation,
     continuation: Continuation,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
@@ -81,7 +81,7 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let setting = Setting::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata of the exemplar, the guide channels of the synthesis: confidence, and signed x and y
+        // Compute the metadata of the exemplar, by which patches are compared: the confidence, and the signed x and y
         // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
@@ -130,12 +130,12 @@ impl Layer {
         !self.designs.kinds.is_empty()
     }
 
-    /// Whether a component is rendered patch by patch rather than copied as a whole.
+    /// Whether a component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn is_by_pixel(&self, component: usize) -> bool {
         !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
-    /// Whether any component is rendered patch by patch rather than copied as a whole.
+    /// Whether any component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn has_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }
@@ -157,8 +157,8 @@ impl Layer {
     }
 }
 
-/// A texture that fits inside the exemplar is a copy of the photo, with its ragged outlines. Lamps with clean outlines
-/// replace the copy only if they lie on a lattice with at least this score. [bench photos:tune]
+/// A texture that fits inside the exemplar is a copy of a part of the photo, ragged outlines included. Lamps with
+/// clean outlines replace the copy only if the lamps lie on a lattice with at least this score. [bench photos:tune]
 const SURE: f64 = 0.6;
 
 /// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.
@@ -334,8 +334,8 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Shifts the lamps by the offset in a pattern without a lattice. Such a pattern has no origin, so an offset is
-/// allowed only in a tileable texture.
+/// Shifts the lamps of a pattern without a lattice by `params.offset`. Such a pattern has no origin. Therefore an
+/// offset other than 0 is an error, unless the texture is tileable and no light is copied patch by patch.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);

@@ -20,8 +20,8 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Number of rows of texels in a band, and number of further rows rendered above and below it. The further rows are
-/// needed to compute which part of each texel is light.
+/// Number of rows of texels in a band (`BAND`), and number of further rows that are rendered above and below the band
+/// (`BESIDE`). The further rows are needed to compute which part of each texel is light.
 const BAND: usize = 64;
 const BESIDE: usize = 2;
 /// Index of the light at a texel without light.
@@ -122,8 +122,9 @@ struct Span {
 struct Light {
     /// Number of texels.
     texels: f64,
-    /// Sums over the lit parts of texels: area, first moments and second moments, relative to `origin`, the centre of
-    /// the first texel. `colours` is a sum over whole texels.
+    /// `area`, `centres` and `squares` are sums over the lit parts of texels: area, first moments and second moments.
+    /// Positions are relative to `origin`, the centre of the first texel. `colours` is the sum of the colours of all
+    /// texels.
     area: f64,
     origin: DVec2,
     centres: DVec2,

@@ -19,13 +19,13 @@ pub enum Placement {
 }
 
 impl Emission {
-    /// Removes light where `ground`, with one entry per texel, does not allow it. The statistics are not updated: they
-    /// describe the whole pattern.
+    /// Removes light where `ground` does not allow it; `ground` has one entry per texel. The statistics of the
+    /// emission are not updated: they describe the pattern before this removal.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
-        // Mark the lamps to remove as a whole before hidden light is removed, because hidden parts of a lamp count
-        // too.
+        // First mark the lamps that will be removed as a whole, then remove hidden light: the hidden parts of a lamp
+        // count too when it is marked.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {

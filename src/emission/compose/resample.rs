@@ -100,7 +100,7 @@ mod tests {
         let found = mean(&photo, &wide, DVec2::new(0.0, 5.5), 1.0).unwrap();
         assert!((found.x - (3.0 + 165.0)).abs() < 0.2, "{found}");
         assert_eq!(mean(&photo, &wide, DVec2::new(-1.0, 5.5), 1.0), None);
-        // Texels at the horizon must end quickly: the number of points is limited.
+        // The mean of a texel at the horizon must not take long, because the number of sample points is limited.
         let horizon = Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);

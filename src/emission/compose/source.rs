@@ -37,7 +37,7 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
-/// The colour and coverage of a texel, for some of the lights.
+/// The colour and coverage of a texel, computed from a part of the lights.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,

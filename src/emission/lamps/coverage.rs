@@ -55,10 +55,10 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// Calls `add` for each lit area that a texel contributes to its lamp: first the step from the texel to the texel
-    /// that holds the area, then the area. A texel deep in the lamp contributes itself as a whole. A texel at the edge
-    /// contributes its own lit part, and its share of the light in adjacent texels that light covers by less than
-    /// half.
+    /// Calls `add` for each lit area that a texel contributes to its lamp. The arguments of `add` are the step from
+    /// the texel to the texel that holds the area, and the area in texels. A texel deep in the lamp contributes itself
+    /// as a whole. A texel at the edge contributes its own lit part, and its share of the light in adjacent texels
+    /// that light covers by less than half.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];

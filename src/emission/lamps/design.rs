@@ -42,13 +42,13 @@ const MIDDLE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
-/// Standard deviation of a measured side, and prior standard deviation of the bloom at each edge, both in photo
-/// pixels. [judged on 20 photos]
+/// Standard deviation of a measured side (`SIDE_NOISE`), and prior standard deviation of the bloom at each edge
+/// (`BLOOM`), both in photo pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// Prior standard deviation of the bloom, in photo pixels, if the lamps show bloom. They do if bloom explains at least
-/// the share `EXPLAINED` of the variation of their sides, and there are at least `MIN_JUDGES` lamps. Lamps of several
-/// lengths, or partly hidden ones, do not show it: their sides do not grow with magnification.
+/// Prior standard deviation of the bloom, in photo pixels, if the lamps show bloom. At least `MIN_JUDGES` lamps show
+/// bloom if it explains at least the share `EXPLAINED` of the variation of their sides. Lamps of several lengths, and
+/// partly hidden lamps, do not show it: their sides do not grow with magnification.
 /// [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
@@ -149,7 +149,7 @@ struct Member {
     angle: f64,
     weight: f64,
     blur: DVec2,
-    /// Unwarped pixels per photo pixel, near the lamp.
+    /// The matrix that converts steps in photo pixels to steps in unwarped pixels, near the lamp.
     inverse_map: DMat2,
     is_clear: bool,
 }

@@ -93,7 +93,8 @@ impl Canvas<'_> {
     }
 
     /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free (on a
-    /// lattice, all but the share [`LATTICE_SLACK`]). Lamps without a lattice keep a gap of one pixel between them.
+    /// lattice, at most the share [`LATTICE_SLACK`] of them may be taken). Lamps without a lattice keep a gap of one
+    /// pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;

@@ -12,9 +12,11 @@ use std::collections::BTreeMap;
 
 /// Maximum relative difference in area, and in each side, between two lamps of one kind.
 const LIKE: f64 = 0.25;
-/// Maximum difference between two lamps of one kind in the share of their enclosing rectangle that they fill.
+/// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
+/// most this value.
 const FILL: f64 = 0.1;
-/// Difference in each side between equal lamps, in texels, that rounding and simplification of both ends may cause.
+/// Maximum difference, in texels, between the sides of two equal lamps, caused by rounding and by the simplification
+/// of the outlines.
 const ROUNDING: f64 = 2.0;
 /// Number of bins per factor of e. Before comparison, lamps are binned by the logarithms of area and sides.
 const STEPS: f64 = 20.0;

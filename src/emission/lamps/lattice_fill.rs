@@ -18,8 +18,8 @@ use glam::{DMat2, DVec2};
 /// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine in at least this share of its
 /// visible copies, weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
-/// the lamps at the dark copies. [judged on 20 photos]
+/// If at most `FEW_DARK` copies of a site have no shining lamp, a smaller share of copies with shining lamps suffices,
+/// `MOSTLY` instead of `ALWAYS`: something may hide the missing lamps. [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
@@ -30,8 +30,8 @@ const SHARP: f64 = 0.4;
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
-/// `offset`. `shown` holds the lamps that the patches show. They are dropped at sites that get a lamp in every cell,
-/// moved to the exact position at other sites, and kept unmoved away from all sites.
+/// `offset`. `shown` holds the lamps that the copied patches contain. Lamps at sites that get a lamp in every cell are
+/// dropped from it, lamps near other sites move to the exact site, and lamps far from every site stay unmoved.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -62,7 +62,8 @@ pub fn place(
             }
         }
     }
-    // Add the lamps that patches show: at other sites, moved to the exact site; away from all sites, unmoved.
+    // Add the lamps that the copied patches contain. Skip lamps at sites that get a lamp in every cell, which are
+    // filled by now. Move lamps near any other site exactly onto it. Leave lamps far from every site where they are.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
@@ -84,7 +85,8 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites, in descending order of the photo pixels of their lamps, without sites that overlap an earlier one.
+/// Returns the sites in descending order of the number of photo pixels of their lamps. Leaves out each site that
+/// overlaps an earlier one in this order.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));
@@ -101,7 +103,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// The whole lamps of a site that are sharp in the photo.
+/// Returns the components of the whole lamps of a site that are sharp in the photo; if there are none, the component
+/// of the site's first lamp.
 fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
     let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);

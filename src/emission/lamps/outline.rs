@@ -1,4 +1,5 @@
-//! The outline of a lamp at sub-texel precision: it runs where light would cover half of a texel centred there.
+//! The outline of a lamp at sub-texel precision: light would cover half of a texel that is centred on a point of the
+//! outline.
 //!
 //! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
 //! a lit texel and an adjacent unlit one. If two texels of the lamp touch at a corner only, the outline keeps them

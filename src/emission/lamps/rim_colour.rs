@@ -120,8 +120,8 @@ mod tests {
         for (component, truth, x) in [(0, warm, 40), (1, cool, 110)] {
             assert_eq!(image.rgb(x, 30), Vec3::ONE);
             let light = rim_colours.undo(component, Vec3::ONE);
-            // The ratio of any two channels must be restored from the clipped value 1. The dark surroundings add up to
-            // a tenth to the rim.
+            // The ratio of any two channels must be restored from the clipped value 1. The dark surroundings
+            // contribute up to a tenth of the light in the rim.
             for (a, b) in [(0, 1), (1, 2), (0, 2)] {
                 let (stated, true_ratio) = (light[a] / light[b], truth[a] / truth[b]);
                 assert!((stated / true_ratio - 1.0).abs() < 0.12, "{light} for {truth}");

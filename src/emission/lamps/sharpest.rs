@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 /// Maximum relative difference between similar lamps in area, in each side, and in the ratio of their sides.
 const LIKE: f64 = 0.25;
 
-/// Number of photo pixels by which the sides of similar lamps may differ in addition to `LIKE`: blur and bloom
-/// lengthen a lamp with few photo pixels. `MIN_LIKE` is the upper limit of both tolerances together, as a relative
-/// difference.
+/// Number of photo pixels (`BLUR`) by which the sides of similar lamps may differ in addition to `LIKE`: blur and
+/// bloom lengthen a lamp with few photo pixels. `MIN_LIKE` is the upper limit of the sum of both tolerances, as a
+/// relative difference.
 const BLUR: f64 = 2.0;
 
 const MIN_LIKE: f64 = 0.5;

@@ -52,7 +52,7 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
 }
 
 /// The boxes that a lattice repeats: the lamps of one cell, beginning with the lamp nearest to the exemplar's centre.
-/// If the exemplar's extent serves as a period, all lamps along that axis share one box.
+/// Along an axis whose period is the exemplar's whole extent, all lamps share one box.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {

@@ -14,7 +14,8 @@ pub enum Continuation {
     Copy,
     /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
-    /// The lights form a row: its period, then the extent of the exemplar as the second period.
+    /// The lights form a row. The first vector is the period of the row; the second is the extent of the exemplar
+    /// across the row, which serves as the second period.
     Row([DVec2; 2]),
     /// Too few lights for a period: the exemplar repeats as a whole, with its extent as both periods.
     Tile([DVec2; 2]),
@@ -23,7 +24,7 @@ pub enum Continuation {
 }
 
 impl Continuation {
-    /// The lattice by which patches must be shifted, if there is one.
+    /// The two periods of the lattice; patches may be shifted only by lattice vectors. `None` if there is no lattice.
     pub fn lattice(&self) -> Option<[DVec2; 2]> {
         match *self {
             Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
@@ -57,8 +58,8 @@ impl Continuation {
         })
     }
 
-    /// The periods along x and along y in unwarped pixels; `None` if the lattice has no period along that axis. Both
-    /// periods of a copy are infinite.
+    /// The periods along x and along y in unwarped pixels; `None` for an axis along which the lattice has no period.
+    /// For `Copy`, both periods are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

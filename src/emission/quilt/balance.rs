@@ -1,4 +1,4 @@
-//! Keeps the amount of light in a texture at its target share.
+//! Balances the light in a texture, so that the lit share of the texture stays close to a target.
 //!
 //! Without balance, the parts of the exemplar that match most often would determine how much light the texture has
 //! and, in a pattern with missing lamps, how many lamps are missing. So each block passes its excess or lack of light
@@ -17,7 +17,8 @@ const ANYWHERE: f64 = 0.3;
 
 /// The excess light of the blocks of a texture, in pixels. Blocks are filled row by row.
 pub struct Balance {
-    /// Excess light passed on by earlier blocks, for each block of the current row and of the next row.
+    /// For each block of the current row (`row`) and of the next row (`below`), the excess light that earlier blocks
+    /// have passed on to it.
     row: Vec<f64>,
     below: Vec<f64>,
     /// The column of the current block.

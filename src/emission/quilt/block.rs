@@ -11,8 +11,8 @@ pub struct Rect {
     pub h: usize,
 }
 
-/// A run of adjacent pixels in a row of a block. `source` is the exemplar pixel that the first of them shows; the
-/// others show the exemplar pixels that follow it.
+/// A run of adjacent pixels in a row of a block. `source` is the index of the exemplar pixel that the first pixel of
+/// the run shows; the further pixels show the exemplar pixels that follow. If the pixels are empty, it is [`NONE`].
 #[derive(Clone, Copy)]
 pub struct Run {
     pub x: usize,

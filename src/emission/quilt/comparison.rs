@@ -18,12 +18,12 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches are compared by their error only if they fill at least this share of the number of pixels that the patch
-/// with the best coverage fills.
+/// Patches are compared by their error only if they fill enough pixels of a block: at least this share of the largest
+/// number of pixels that any candidate patch fills. The other patches are discarded.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
-/// If there are more patches than this, a first comparison uses every `ROW_STEP`-th row only, and the `FINALISTS` best
-/// patches are then compared in all rows.
+/// If a block has more than this many candidate patches, a first comparison uses only every `ROW_STEP`-th row of the
+/// block, and only the `FINALISTS` best patches are then compared in all rows.
 const FINALISTS: usize = 16;
 
 const ROW_STEP: usize = 4;
@@ -31,9 +31,9 @@ const ROW_STEP: usize = 4;
 /// Minimum number of pixels that a parallel task compares.
 const TASK: usize = 1 << 16;
 
-/// A shift with its score. `fills`: number of empty pixels of a block that it fills. `excess`: light in these pixels
-/// above the target share, as a number of lit pixels. `error`: mean squared difference from the known pixels, plus the
-/// penalty for the excess.
+/// A shift with its score for a block. `fills`: number of empty pixels of the block that the shift fills. `excess`:
+/// how much the light in these pixels exceeds its target, as a number of lit pixels. `error`: mean squared difference
+/// from the known pixels, plus the penalty for the excess.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -62,8 +62,8 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels. The rounding alone changes both distances by √(1/6) of a pixel
-        // (root mean square).
+        // Lattice shifts are rounded to whole pixels. The rounding alone changes the x and the y distance in the
+        // metadata by √(1/6) of a pixel each (root mean square).
         let slack = match is_lattice {
             true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -91,8 +91,8 @@ impl<'a> Comparison<'a> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// For each shift, the number of empty pixels of a block that it fills, or 0 if the best shift fills far more; and
-    /// whether the shift would show usable pixels in the whole block.
+    /// For each shift, returns the number of empty pixels of a block that it fills, or 0 if another shift fills far
+    /// more. Also returns whether the shift would show usable pixels in the whole block.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -130,9 +130,9 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// Scores how well shifts agree with the known pixels. Only shifts are scored that fill at least `least` empty
-    /// pixels or, without `least`, nearly as many as the best shift. A shift whose error is clearly above the least
-    /// error so far, or above `limit`, gets an infinite error.
+    /// Scores how well shifts agree with the known pixels. A shift is scored only if it fills at least `least` empty
+    /// pixels; if `least` is `None`, only if it fills nearly as many as the shift that fills most. A shift whose error
+    /// is clearly above `limit`, or above the lowest error so far, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,

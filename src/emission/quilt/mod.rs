@@ -40,10 +40,11 @@ struct Quilt<'a> {
     comparison: Comparison<'a>,
     /// The finished rows, which no further block changes, and all shifts used so far.
     patch_map: PatchMap,
-    /// Index of the first unfinished row, and the labels of the unfinished rows.
+    /// Index of the first unfinished row (`first`), and for each pixel of the unfinished rows the label of its shift
+    /// (`open`).
     first: usize,
     open: Vec<u32>,
-    /// The label of each shift.
+    /// For each shift used so far, its label: its index in the patch map's list of shifts.
     labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
     continuation: Continuation,
     /// Position of the lattice's origin, in unwarped pixels.
@@ -203,8 +204,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The candidate shifts for a block: the shifts of its neighbours, which continue the patches already placed, and
-    /// new shifts: lattice vectors or, without a lattice, random ones.
+    /// Returns the candidate shifts for a block. Some are the shifts of the pixels around the block, which continue
+    /// the patches already placed. The others are new: lattice vectors or, without a lattice, random shifts.
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;
@@ -275,7 +276,8 @@ impl Quilt<'_> {
         equal.get(rng.below(equal.len().max(1))).map(|s| **s)
     }
 
-    /// Moves a patch without a lattice to the best position in its neighbourhood, by steps of decreasing length.
+    /// Moves a patch to the best position in its neighbourhood, by steps of decreasing length; only for patterns
+    /// without a lattice.
     fn improve(&self, block: &Block, start: Scored, job: Job) -> Result<Scored> {
         let mut best = start;
         for step in [4, 2, 1] {

@@ -19,8 +19,8 @@ pub struct Shift {
     pub exact: DVec2,
 }
 
-/// For each pixel of the texture at the reduced size of the synthesis (working pixel), the shift that leads to the
-/// pixel of the exemplar that it shows. Patches are wide, so a row is stored as runs of equal labels.
+/// For each working pixel of the texture (a pixel at the reduced size of the synthesis), the shift of the patch that
+/// covers it. A label stands for a shift. Patches are wide, so a row is stored as runs of equal labels.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,
@@ -128,8 +128,8 @@ impl PatchMap {
         self.shifts.get(row.get(run)?.1 as usize)
     }
 
-    /// The exemplar's working pixel that the texture shows at a pixel with the given label; `None` outside the
-    /// exemplar.
+    /// The index of the exemplar's working pixel that the texture shows at `(x, y)`, if the patch there has the given
+    /// label; `None` outside the exemplar.
     pub fn source(&self, x: usize, y: usize, label: u32, working: &Working) -> Option<usize> {
         let [dx, dy] = self.shifts.get(label as usize)?.working;
         working.index(x as i32 - dx, y as i32 - dy)

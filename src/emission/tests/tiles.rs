@@ -65,7 +65,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         (lattice(), Params { tileable: true, ..whole_pixels.clone() }),
         (lattice(), Params { scale: 0.37, ..whole_pixels.clone() }),
         (round, Params { scale: 0.7, even_lamps: true, ..whole_pixels.clone() }),
-        // A copied part of the exemplar.
+        // Here the texture is smaller than the exemplar, so it is a copied part of it.
         (lattice(), Params { width: 110, height: 90, scale: 1.1, ..whole_pixels }),
     ] {
         let job = Monitor::default();

@@ -27,7 +27,7 @@ fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
     Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, constraint: EXACTLY, weight: 1.0 }
 }
 
-/// A horizontal square of side 1 m below the point (x, z) of the ceiling.
+/// A horizontal square with sides of 1 m, at desk height, centred under the point (x, z) of the ceiling.
 fn desk(x: f32, z: f32) -> Place<'static> {
     let origin = Vec3::new(x - 0.5, 0.8, z - 0.5);
     Place::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }

@@ -1,19 +1,22 @@
-//! Counts lamps, as a person would: a connected luminous surface is one lamp, whatever its number of triangles.
+//! Counts the lamps of a scene as a person would: a connected luminous surface is one lamp, however many triangles it
+//! has.
 
 use super::selector::Inventory;
 use crate::error::Result;
 use crate::image::{try_collect, try_vec, try_with_capacity};
 use crate::render::emissive::Emitters;
 
-/// The lamps of a scene that are surfaces.
+/// The lamps of a scene that are emissive surfaces.
 pub struct Lamps {
-    /// The lamp of each piece.
+    /// For each piece of an emissive surface, the index of its lamp.
     of_pieces: Vec<u32>,
+    /// Number of lamps.
     count: usize,
 }
 
 impl Lamps {
-    /// Joins the emitters that share a corner.
+    /// Finds the lamps: emissive triangles that share a corner belong to one lamp. `pieces` is the number of pieces
+    /// into which the triangles are divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
         let count = emitters.emitters.len();
         let mut corners = try_with_capacity(3 * count)?;
@@ -26,7 +29,7 @@ impl Lamps {
             let (a, b) = (root(&mut parents, pair[0].1), root(&mut parents, pair[1].1));
             parents[a.max(b) as usize] = a.min(b);
         }
-        // Number the lamps that have pieces.
+        // Number only lamps that have pieces.
         let (mut of_roots, mut lamps) = (try_vec(count, u32::MAX)?, 0);
         let of_pieces = try_collect((0..pieces).map(|piece| {
             let lamp = &mut of_roots[root(&mut parents, emitters.emitter_of(piece) as u32) as usize];
@@ -38,8 +41,9 @@ impl Lamps {
         Ok(Self { of_pieces, count: lamps as usize })
     }
 
-    /// The number of all lamps of a scene, and of those of which all parts are hidden. `is_hidden` takes the number of
-    /// a light.
+    /// Returns the number of all lamps of the scene, and the number of lamps of which every light is hidden. The
+    /// lights of a surface are its pieces; every punctual light and the environment is a lamp of its own. `is_hidden`
+    /// takes the number of a light in the [`Inventory`].
     pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
         let mut surfaces = try_vec(self.count, true)?;
         self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));
@@ -55,7 +59,7 @@ impl Lamps {
     }
 }
 
-/// The representative of an emitter; shortens the way to it.
+/// Returns the representative of the lamp that holds an emitter, and halves the path to it (union-find).
 fn root(parents: &mut [u32], mut emitter: u32) -> u32 {
     while parents[emitter as usize] != emitter {
         let parent = parents[parents[emitter as usize] as usize];

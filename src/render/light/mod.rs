@@ -31,7 +31,8 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 use survey::{Progress, Survey, UNCOUNTED};
 
-/// The lights of a scene. Copies share everything but what a render has learned about the reach of the lights.
+/// The lights of a scene. A clone is cheap, because it shares the data. Each render uses a clone of its own, and
+/// stores in it what it learns about which lights reach the surfaces in view: `split`, `survey` and `progress`.
 #[derive(Clone)]
 pub struct Lights {
     pub emitters: Arc<Emitters>,
@@ -40,25 +41,28 @@ pub struct Lights {
     inventory: Arc<Inventory>,
     /// Selects among all lights.
     all: Arc<Selector>,
-    /// Selects among likely and unlikely lights apart, once a render has learned which are which.
+    /// The selectors for likely and for unlikely lights, which replace `all`; `None` until a render has learned which
+    /// lights are likely to reach the surfaces in view.
     split: Option<Arc<Split>>,
-    /// Counts the light samples that arrive, while a render learns.
+    /// Counts the samples of each light, and those that are not occluded; `None` if the render does not learn, or has
+    /// stopped learning.
     survey: Option<Arc<Survey>>,
     progress: Progress,
-    /// Whether renders may learn.
+    /// Whether renders may learn which lights reach the surfaces in view.
     pub learns: bool,
-    /// The lamps, counted when a render reports its reach.
+    /// The surfaces of the scene grouped into lamps; computed when a render first reports its [`Reach`].
     lamps: Arc<OnceLock<Lamps>>,
 }
 
 /// A sample of the light that reaches a receiver.
 pub struct LightSample {
     pub source: LightSource,
-    /// The number of the light in the survey, for [`Lights::count_arrived`].
+    /// The light's number in the [`Inventory`], by which [`Lights::count_arrived`] counts the sample; [`UNCOUNTED`] if
+    /// the sample is not to be counted.
     surveyed: u32,
     /// Unit direction from the receiver to the light.
     pub direction: Vec3,
-    /// The sampled position; `None` if it is infinitely far away.
+    /// The sampled point on the light; `None` if the light is infinitely far away.
     pub end: Option<LightEnd>,
     /// Radiance in cd/m² of a surface or the environment, intensity in cd of a punctual light at a finite distance, or
     /// illuminance in lux of a directional light.
@@ -78,8 +82,8 @@ pub enum LightEnd {
 }
 
 impl Lights {
-    /// Builds the distribution over all lights. `pieces` are the bounds of the emitters' pieces. Positions are
-    /// relative to `centre`; `radius` is the radius of the scene in metres.
+    /// Builds the distribution over all lights. `pieces` are the bounds of the pieces into which the emissive surfaces
+    /// are divided. Positions are relative to `centre`; `radius` is the radius of the scene in metres.
     pub fn build(scene: &Scene, emitters: Emitters, pieces: Vec<Bounds>, centre: DVec3, radius: f32) -> Result<Self> {
         let count = pieces.len();
         let mut bounds = pieces;
@@ -139,7 +143,8 @@ impl Lights {
         }
     }
 
-    /// Samples a light of a selector, which is chosen with probability `chosen`.
+    /// Samples a light with a selector that was itself chosen with probability `chosen`. If `counts` is true, counts
+    /// the sample in the survey.
     #[inline]
     fn sample_from(
         &self,
@@ -185,7 +190,8 @@ impl Lights {
         }
     }
 
-    /// Counts a sample of a light in the survey, if there is one; returns the number that its arrival is counted by.
+    /// Counts a sample of the light with number `light`, if there is a survey and `counts` is true. Returns the value
+    /// for [`LightSample::surveyed`].
     #[inline]
     fn count_drawn(&self, counts: bool, light: usize) -> u32 {
         match &self.survey {
@@ -197,7 +203,7 @@ impl Lights {
         }
     }
 
-    /// Counts a light sample that was not occluded.
+    /// Counts in the survey that a light sample was not occluded.
     #[inline]
     pub fn count_arrived(&self, light: &LightSample) {
         if light.surveyed != UNCOUNTED

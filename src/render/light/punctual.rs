@@ -38,7 +38,8 @@ pub struct Measured {
     luminaire: Arc<Luminaire>,
 }
 
-/// The spot cone of glTF: the intensity is multiplied by the square of `(cosine - outer) * scale`, clamped to [0, 1].
+/// The spot cone of glTF. The intensity is multiplied by the square of a factor: `(cosine - outer) * scale`, clamped
+/// to [0, 1]. Here `cosine` is the cosine of the angle to the axis.
 pub struct Cone {
     axis: Vec3,
     outer: f32,

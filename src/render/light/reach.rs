@@ -1,20 +1,24 @@
 //! Learns during a render which lights reach the surfaces in view, and samples the others rarely.
 //!
-//! In a building most lamps are behind walls. Light samples of them bring nothing, and a single room in a building of
-//! 225 rooms takes 30 times the paths of that room alone. The first passes of a render therefore count, for each
-//! light, its samples and those that arrive ([`super::survey`]). A light is *unlikely* if the posterior probability that its
-//! next sample arrives is below [`MIN_ARRIVAL`], else *likely*. Two selectors share the samples: the unlikely lights
-//! together get a small share ([`unlikely_share`]), the likely lights the rest. Every light keeps a positive
-//! probability (a defensive mixture; Hesterberg 1995, "Weighted average importance sampling and defensive mixture
-//! distributions"), so the estimate remains unbiased, and the contribution of an unlikely light grows at most by the
-//! reciprocal of the share. An unlikely light whose sample arrives after all becomes likely with the next pass.
+//! In a building, walls hide most lamps from the surfaces in view, and light samples of hidden lamps are wasted: to
+//! render one room of a building of 225 rooms takes 30 times as many paths as to render that room alone. The first
+//! passes of a render therefore count, for each light, its samples and how many of them arrive, which means that
+//! nothing occludes them ([`super::survey`]). A light is *likely* if one of its samples has arrived, or if the
+//! estimated probability that its next sample arrives is at least [`MIN_ARRIVAL`]. Otherwise it is *unlikely*.
 //!
-//! The prior of a light comes from its neighbours in the light tree: if many of them are hidden, it is probably hidden
-//! too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright light with many samples says little
-//! about a dim one that has none.
+//! Likely and unlikely lights have a selector each. The unlikely lights together get a small share of the light
+//! samples ([`unlikely_share`]), the likely lights get the rest. Every light keeps a positive probability (a defensive
+//! mixture; Hesterberg 1995, "Weighted average importance sampling and defensive mixture distributions"), so the
+//! estimate remains unbiased. If a sample of an unlikely light arrives after all, its contribution is larger than it
+//! would be with one selector for all lights, at most by a factor of about the reciprocal of the share. The next
+//! decision ([`super::learning`]) then makes the light likely.
 //!
-//! A render that wastes few light samples on hidden lights keeps the selector of all lights, and with it every bit of
-//! its image.
+//! Before a light has samples of its own, its probability follows from its neighbours in the light tree: if many of
+//! them are hidden, it is probably hidden too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright
+//! light with many samples says little about a dim light without samples.
+//!
+//! A render that wastes few light samples on hidden lights keeps the selector of all lights. Its image is then the
+//! same, bit for bit, as without learning.
 
 use super::bounds::Receiver;
 use super::selector::{Inventory, Selector};
@@ -23,33 +27,36 @@ use super::tree::{Child, LightTree};
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// A light is unlikely below this posterior probability that a sample of it arrives. [judged on 3 scenes]
+/// A light of which no sample has arrived is unlikely if the estimated probability that its next sample arrives is
+/// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
-/// Smallest and largest share of the light samples for the unlikely lights, and its product with the root of the number
-/// of their samples without effect. [judged on 3 scenes]
+/// Share of the light samples that the unlikely lights get: `UNLIKELY_ROOT` divided by the square root of the number
+/// of samples drawn from them in vain, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
-/// Largest number of samples as which a neighbour in the tree counts. [judged on 3 scenes]
+/// A neighbour in the light tree with more samples than this counts as having this many, with the same share that
+/// arrived. [judged on 3 scenes]
 const MAX_WITNESS: f64 = 16.0;
-/// The importance of a likely light is multiplied by the root of its probability of arrival, at least by this factor.
-/// [judged on 3 scenes]
+/// The importance of a likely light is multiplied by the square root of the probability that a sample of it arrives,
+/// or by this factor if the root is smaller. [judged on 3 scenes]
 const MIN_WEIGHT: f64 = 0.1;
-/// Marks the place of an unlikely light.
+/// Bit of [`Split::places`] that marks an unlikely light.
 const UNLIKELY: u32 = 1 << 31;
 
-/// Which lights reach the surfaces in view, as far as a render has learned.
+/// What a render has learned about which lamps reach the surfaces in view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reach {
-    /// Number of lamps: connected luminous surfaces, punctual lights, and the environment.
+    /// Number of all lamps of the scene: connected luminous surfaces, punctual lights, and the environment.
     pub lamps: usize,
-    /// Number of lamps from which no light sample arrived at any surface of any path, and hardly any will.
+    /// Number of hidden lamps: no light sample of the lamp has arrived at a vertex of a path so far, and later samples
+    /// are unlikely to arrive.
     pub hidden: usize,
-    /// Number of light samples that showed it.
+    /// Number of light samples on which `hidden` is based.
     pub samples: u64,
 }
 
 impl Reach {
-    /// The result in words, for a person who wonders where the time goes.
+    /// Returns the result as a sentence for the user, which explains how lamps out of reach are treated.
     pub fn sentence(&self) -> String {
         let [hidden, lamps, samples] = [self.hidden, self.lamps, self.samples as usize].map(grouped);
         format!(
@@ -58,27 +65,29 @@ impl Reach {
     }
 }
 
-/// A number with a comma between groups of three digits.
+/// Formats a number with commas between groups of three digits.
 fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let is_start = |i: usize| i > 0 && (digits.len() - i).is_multiple_of(3);
     digits.chars().enumerate().flat_map(|(i, digit)| is_start(i).then_some(',').into_iter().chain([digit])).collect()
 }
 
-/// The likely and the unlikely lights.
+/// The lights of a scene, divided into likely and unlikely lights.
 pub struct Split {
     pub likely: Selector,
     pub unlikely: Selector,
-    /// Shares of the samples of both.
+    /// Share of the light samples for the likely lights, and share for the unlikely lights; their sum is 1.
     pub shares: [f64; 2],
-    /// For each light at a finite distance its index in the tree of its selector, with the flag `UNLIKELY`.
+    /// For each light at a finite distance, its index in the tree of the selector that holds it. The bit [`UNLIKELY`]
+    /// is set if that is the selector `unlikely`.
     places: Vec<u32>,
-    /// The weight of each light; 0 for unlikely lights.
+    /// For each number of the [`Inventory`], the factor on the light's importance; 0 for unlikely lights.
     pub weights: Vec<f32>,
 }
 
 impl Split {
-    /// Splits lights by their weights; `None` if all are likely or all are unlikely.
+    /// Divides the lights: those with a positive weight are likely, those with weight 0 unlikely. Returns `None` if
+    /// all lights are likely or all are unlikely.
     pub fn new(lights: &Inventory, weights: Vec<f32>, unlikely_share: f64) -> Result<Option<Self>> {
         let likely = Selector::of_some(lights, |light| weights[light])?;
         let unlikely = Selector::of_some(lights, |light| if weights[light] > 0.0 { 0.0 } else { 1.0 })?;
@@ -92,7 +101,7 @@ impl Split {
         Ok(Some(Self { likely, unlikely, shares: [1.0 - unlikely_share, unlikely_share], places, weights }))
     }
 
-    /// Probability with which a piece is selected.
+    /// Returns the probability with which a piece of an emissive surface is selected for a receiver.
     pub fn pmf(&self, receiver: &Receiver, piece: usize) -> f32 {
         let place = self.places[piece];
         let (selector, share) = match place & UNLIKELY {
@@ -102,26 +111,29 @@ impl Split {
         selector.tree.pmf(receiver, (place & !UNLIKELY) as usize) * (selector.groups[0] * share) as f32
     }
 
-    /// Probability with which the environment is selected.
+    /// Returns the probability with which the environment is selected.
     pub fn environment(&self) -> f64 {
         self.likely.groups[2] * self.shares[0] + self.unlikely.groups[2] * self.shares[1]
     }
 
-    /// Whether two lists of weights have the same unlikely lights.
+    /// Whether the given weights make the same lights unlikely as the weights of this division.
     pub fn is_same(&self, weights: &[f32]) -> bool {
         self.weights.iter().zip(weights).all(|(&a, &b)| (a > 0.0) == (b > 0.0))
     }
 }
 
-/// Share of the samples for the unlikely lights, after this number of their samples without effect. The variance is
-/// smallest at the root of the probability that a sample arrives, which is about the reciprocal of that number.
+/// Returns the share of the light samples for the unlikely lights, of which `samples` samples were drawn and none
+/// arrived. The share with the smallest variance is proportional to the square root of the probability that a sample
+/// arrives, and that probability is at most about `1 / samples`.
 pub fn unlikely_share(samples: u64) -> f64 {
     let [min, max] = UNLIKELY_SHARES;
     (UNLIKELY_ROOT / (samples.max(1) as f64).sqrt()).clamp(min, max)
 }
 
-/// The weight of each light: the root of the probability that a sample of it arrives, or 0 if it is unlikely. The root
-/// minimises the variance if each sample arrives with that probability, independently of the receiver.
+/// Returns the weight of each light: the square root of the probability that a sample of it arrives, at least
+/// [`MIN_WEIGHT`], or 0 if the light is unlikely. Weights equal to the root minimise the variance if this probability
+/// is the same for all receivers. The probability is estimated from the light's own samples and a prior, which counts
+/// as one further sample.
 pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> Result<Vec<f32>> {
     let mut priors = try_vec(lights.len(), 1.0)?;
     neighbour_priors(tree, evidence, &mut priors)?;
@@ -135,10 +147,12 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
     Ok(weights)
 }
 
-/// Sets the prior of each light of a tree, that a sample of it arrives, from the evidence of the other clusters on its
-/// way from the root.
+/// Sets the prior of each light of a tree: the probability that a sample of the light arrives, as estimated without
+/// the light's own samples. On the way from the root to the light, the prior is updated in each cluster with the
+/// samples of all children of that cluster that do not contain the light.
 fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
-    // Add up the evidence of the clusters: parents come before their children.
+    // Add up the samples of each cluster, beginning with the last: clusters come before the clusters within them. A
+    // child counts as at most `MAX_WITNESS` samples.
     let mut witnesses = try_vec(tree.clusters(), [0.0; 2])?;
     let of_child = |witnesses: &[[f64; 2]], child: Child| {
         let [drawn, arrived] = match child {
@@ -156,7 +170,8 @@ fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64])
         }
         witnesses[cluster] = [drawn, arrived];
     }
-    // Hand the priors down.
+    // Compute the prior of each child of a cluster from the prior of the cluster and the samples of the other
+    // children.
     let mut of_clusters = try_vec(tree.clusters(), 1.0)?;
     for cluster in 0..tree.clusters() {
         let ([drawn, arrived], prior) = (witnesses[cluster], of_clusters[cluster]);

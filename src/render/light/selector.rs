@@ -1,4 +1,4 @@
-//! Selects one light out of all lights of a scene, or out of some of them.
+//! Selects one light at random, from all lights of a scene or from a subset of them.
 
 use super::bounds::Bounds;
 use super::tree::LightTree;
@@ -7,42 +7,44 @@ use crate::image::{try_collect, try_with_capacity};
 use crate::render::distribution::Distribution;
 use std::f64::consts::PI;
 
-/// The lights of a scene, as the selectors need them. Lights have numbers: first the lights at a finite distance
-/// (pieces of surfaces, then punctual lights), then all punctual lights again, of which only the directional lights are
-/// meant, and last the environment.
+/// The data of a scene's lights from which selectors are built. It gives each light a number. The numbers begin with
+/// the lights at a finite distance: pieces of emissive surfaces, then punctual lights that are not directional. Then
+/// comes one number for each punctual light of the scene, which only directional lights use. The last number is the
+/// environment's.
 pub struct Inventory {
     /// Bounds of the lights at a finite distance.
     pub bounds: Vec<Bounds>,
+    /// Number of pieces of emissive surfaces.
     pub pieces: usize,
-    /// Flux of all pieces in lumens.
+    /// Flux of all pieces together, in lumens.
     pub piece_flux: f64,
-    /// For each light at a finite distance after the pieces, its index among the punctual lights.
+    /// For each punctual light at a finite distance, its index in the scene's list of punctual lights.
     pub near: Vec<u32>,
-    /// Flux of each punctual light.
+    /// Flux of each punctual light of the scene, in lumens.
     pub flux: Vec<f64>,
-    /// Whether each punctual light is directional.
+    /// For each punctual light of the scene, whether it is directional.
     pub is_far: Vec<bool>,
-    /// Flux of the environment through a sphere around the scene.
+    /// Flux of the environment through a sphere around the scene, in lumens; 0 without an environment.
     pub environment: f64,
 }
 
 impl Inventory {
-    /// The number of a directional light.
+    /// Returns the number of the directional light with the given index in the scene's list of punctual lights.
     pub fn directional(&self, index: usize) -> usize {
         self.bounds.len() + index
     }
 
-    /// The number of the environment.
+    /// Returns the number of the environment.
     pub fn environment(&self) -> usize {
         self.bounds.len() + self.flux.len()
     }
 
-    /// Number of the numbers, some of which no light has.
+    /// Returns one more than the largest number. It exceeds the count of lights, because some numbers are unused.
     pub fn len(&self) -> usize {
         self.environment() + 1
     }
 
-    /// Number of lights that can be selected.
+    /// Returns how many lights can be selected; directional lights and environments without flux cannot.
     pub fn count(&self) -> usize {
         let far = self.is_far.iter().zip(&self.flux).filter(|&(&is_far, &flux)| is_far && flux > 0.0).count();
         self.bounds.len() + far + usize::from(self.environment > 0.0)
@@ -56,21 +58,23 @@ impl Inventory {
     }
 }
 
-/// Selects a light for a receiver: first a group, then a light of the group. Half of the selection probability of a
-/// group is proportional to its power, and half is uniform.
+/// Selects a light for a receiver: first one of three groups, then a light of the group. Half of the selection
+/// probability is divided among the groups in proportion to their power, and half is divided equally.
 pub struct Selector {
     /// Selects among the lights at a finite distance.
     pub tree: LightTree,
-    /// For each light of the tree its number; empty if the tree has all lights at a finite distance, in order.
+    /// For each light of the tree, its number in the [`Inventory`]. The list is empty if the tree holds all lights at
+    /// a finite distance, because the index in the tree is then the number.
     members: Vec<u32>,
-    /// Selects among the directional lights; all other punctual lights have zero weight.
+    /// Selects among the directional lights. It has an entry for each punctual light of the scene; the entries of
+    /// lights that are not directional have zero weight.
     pub directional: Distribution,
     /// Selection probabilities of the groups: lights at a finite distance, directional lights, environment.
     pub groups: [f64; 3],
 }
 
 impl Selector {
-    /// A selector of all lights.
+    /// Builds the selector that selects among all lights.
     pub fn of_all(lights: &Inventory) -> Result<Self> {
         let near_power = lights.near.iter().fold(lights.piece_flux, |sum, &i| sum + lights.flux[i as usize]);
         let directional = Distribution::new(lights.flux.iter().zip(&lights.is_far).map(far_flux))?;
@@ -78,7 +82,8 @@ impl Selector {
         Ok(Self { tree: LightTree::build(&lights.bounds)?, members: Vec::new(), directional, groups })
     }
 
-    /// A selector of the lights with a positive weight. The weight of a light multiplies its importance.
+    /// Builds a selector that selects only among the lights with a positive weight. The function `weight` takes the
+    /// number of a light; the importance of the light is multiplied by its weight.
     pub fn of_some(lights: &Inventory, weight: impl Fn(usize) -> f32) -> Result<Self> {
         let members = try_collect((0..lights.bounds.len()).filter(|&i| weight(i) > 0.0).map(|i| i as u32))?;
         let (mut bounds, mut near_power) = (try_with_capacity(members.len())?, 0.0);
@@ -96,13 +101,13 @@ impl Selector {
         Ok(Self { tree: LightTree::build(&bounds)?, members, directional, groups })
     }
 
-    /// The number of a light of the tree.
+    /// Returns the number in the [`Inventory`] of the light with index `light` in the tree.
     #[inline]
     pub fn number(&self, light: usize) -> usize {
         self.members.get(light).map_or(light, |&number| number as usize)
     }
 
-    /// The numbers of the lights of the tree; empty if the tree has all.
+    /// Returns the numbers of the tree's lights; empty if the tree holds all lights at a finite distance.
     pub fn members(&self) -> &[u32] {
         &self.members
     }
@@ -112,7 +117,7 @@ fn far_flux((&flux, &is_far): (&f64, &bool)) -> f64 {
     if is_far { flux } else { 0.0 }
 }
 
-/// Selection probabilities of groups of these powers.
+/// Returns the selection probabilities of groups with the given powers; 0 for a group without power.
 fn probabilities(powers: [f64; 3]) -> [f64; 3] {
     let present = powers.iter().filter(|&&p| p > 0.0).count().max(1) as f64;
     let total = powers.iter().sum::<f64>().max(f64::MIN_POSITIVE);

@@ -1,27 +1,30 @@
-//! Counts how many light samples of each light arrived at their receivers.
+//! Counts for each light how many light samples were drawn, and how many arrived at their receivers without occlusion.
 //!
-//! The counts are sums of integers, which do not depend on the order of the threads.
+//! The counts are integers, so they do not depend on the order in which threads add to them.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Marks a light sample that is not counted.
+/// Stands for the number of the light if a light sample is not counted.
 pub const UNCOUNTED: u32 = u32::MAX;
 
-/// After this number of samples, the samples of likely lights are no longer counted. [convention]
+/// Once this number of samples is counted, only samples of unlikely lights are counted; if no light is treated as
+/// unlikely, none. [convention]
 pub const ENOUGH: u64 = 1 << 17;
 
-/// The samples of each light, counted by all threads of a render.
+/// The counts of light samples, to which all threads of a render add.
 pub struct Survey {
-    /// For each light the number of its samples, and the number of those that were not occluded.
+    /// For each light, the number of its samples, and the number of its samples that were not occluded.
     counts: Vec<[AtomicU32; 2]>,
 }
 
 /// The counts of a light or of a cluster of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Evidence {
+    /// Number of light samples.
     pub drawn: u64,
+    /// Number of light samples that were not occluded.
     pub arrived: u64,
 }
 
@@ -39,13 +42,13 @@ impl Survey {
         Ok(Self { counts })
     }
 
-    /// Counts a sample of a light.
+    /// Counts a sample of the light with number `light`.
     #[inline]
     pub fn count_drawn(&self, light: usize) {
         self.counts[light][0].fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Counts a sample of a light that was not occluded.
+    /// Counts that a sample of the light with number `light` was not occluded.
     #[inline]
     pub fn count_arrived(&self, light: u32) {
         if let Some(counts) = self.counts.get(light as usize) {
@@ -53,7 +56,7 @@ impl Survey {
         }
     }
 
-    /// The counts of all lights so far.
+    /// Returns the counts of all lights so far.
     pub fn evidence(&self) -> Result<Vec<Evidence>> {
         let count = |n: &AtomicU32| u64::from(n.load(Ordering::Relaxed));
         try_collect(
@@ -62,16 +65,17 @@ impl Survey {
     }
 }
 
-/// How far a render has learned.
+/// How far a render has come in learning which lights reach the surfaces in view.
 #[derive(Clone, Copy, Default)]
 pub struct Progress {
-    /// Samples counted so far, and at the next decision.
+    /// Number of samples that were counted by the last decision; 0 before the first.
     pub counted: u64,
+    /// Number of counted samples from which on the next decision is due.
     pub next: u64,
 }
 
 impl Progress {
-    /// Whether samples of likely lights are still counted.
+    /// Whether samples of likely lights are still counted, not only samples of unlikely lights.
     #[inline]
     pub fn counts_likely(&self) -> bool {
         self.counted < ENOUGH

@@ -91,8 +91,8 @@ impl<'a> Trail<'a> {
         self.absorbing = origins.iter().all(|&state| self.automaton.is_absorbing(state));
     }
 
-    /// Continues along a recorded subpath: adds its light, multiplied by `importance`, for the states of all
-    /// components.
+    /// Continues along a recorded subpath: for each component (a state of the automaton with its share of the light),
+    /// adds the subpath's light, multiplied by `importance` and the share.
     pub fn follow(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
         for component in &self.components {
             replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);

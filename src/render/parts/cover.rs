@@ -45,8 +45,8 @@ fn overlap(a: &Part, b: &Part) -> bool {
         && meet(paths(a).0, paths(a).1, paths(b).0, paths(b).1)
 }
 
-/// Returns an error if a path belongs to no part. As parts do not overlap, a pixel that is covered by too few paths
-/// has a hole.
+/// Returns an error if a path of a pixel belongs to no part. As the parts do not overlap, it is enough to count the
+/// paths that the parts hold for each pixel: a path is missing if they are fewer than requested.
 fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     let (width, height) = (params.width, params.height);
     let mut counts = try_vec(width * height, 0u32)?;

@@ -4,11 +4,12 @@
 //! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in one
 //! part, for any partition and order, up to the rounding of f64 sums (`film::sums`).
 //!
-//! The pixels of a block share secondary vertices. If the border of a part cuts a block, rendering the part therefore
-//! also traces the pixels of the block outside the part. Borders at multiples of 8 pixels avoid this cost. A part does
-//! not depend on the results of other parts. All parts therefore have a fixed number of paths, without error targets
-//! or a time budget, and their roulette weights come from a prepass (`film::prepass`) instead of the previous passes
-//! of [`super::run`]. Both kinds of weights give unbiased images, but these images differ within their errors.
+//! The pixels of a block of 8 × 8 pixels share secondary vertices. If the border of a part cuts a block, rendering the
+//! part therefore also traces the pixels of the block outside the part. Borders at multiples of 8 pixels avoid this
+//! cost. A part does not depend on the results of other parts. All parts therefore have a fixed number of paths,
+//! without error targets or a time budget. Their weights for Russian roulette come from a prepass (`film::prepass`),
+//! whereas [`super::run`] takes these weights from its previous passes. Both ways give unbiased images, but these
+//! images differ by their noise.
 //!
 //! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 
@@ -43,8 +44,8 @@ pub struct Rendered {
 /// Renders a part of an image. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parameters out of range, or error targets and time budgets; a part outside the image; a degenerate camera; no
-/// memory; cancelled.
+/// Parameters out of range; parameters that set an error target or a time budget; a part outside the image; a
+/// degenerate camera; no memory; cancelled.
 pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Rendered> {
     check(camera, params)?;
     part.check(params)?;

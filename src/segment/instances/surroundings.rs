@@ -20,9 +20,9 @@ pub struct Surroundings {
     pub colour: [f64; 3],
 }
 
-/// Compares a node of the component tree with the ring of pixels around it. The ring leaves out `taken` pixels, and
-/// pixels as bright as the node itself, which belong to other regions such as neighbouring panes. `None` if the ring
-/// has no pixel left.
+/// Compares a node of the component tree with the ring of pixels around it. The ring leaves out the pixels that are
+/// set in `taken`, and pixels as bright as the node itself, which belong to other regions such as neighbouring panes.
+/// `None` if the ring has no pixel left.
 pub fn around(
     node: u32,
     tree: &Tree,
@@ -93,12 +93,12 @@ impl Bounds {
         [self.x1 - self.x0, self.y1 - self.y0]
     }
 
-    /// The index within the rectangle that belongs to a pixel index of the image; `width` is the image's width.
+    /// Converts a pixel index of the image to an index within the rectangle; `width` is the image's width.
     pub fn index(&self, pixel: u32, width: usize) -> usize {
         (pixel as usize / width - self.y0) * (self.x1 - self.x0) + pixel as usize % width - self.x0
     }
 
-    /// The pixel index in the image that belongs to the rectangle's index `k`; `width` is the image's width.
+    /// Converts the index `k` within the rectangle to a pixel index of the image; `width` is the image's width.
     pub fn pixel(&self, k: usize, width: usize) -> usize {
         let across = self.x1 - self.x0;
         (self.y0 + k / across) * width + self.x0 + k % across
