@@ -326,6 +326,16 @@ class Checks(Case):
                 )
 
 
+    def test_a_design_without_a_task_is_refused(self):
+        lit = project(samples=16)
+        walls = replace(lit, areas=(areas.walls(lit.room),))
+        with self.assertRaisesRegex(ValueError, "no area is a task"):
+            walls.for_place(design.place("34.2"))
+        nothing = lit.check()
+        self.assertFalse(nothing.passes)
+        self.assertEqual(nothing.verdict(), "nothing was checked: the design has no requirements")
+
+
 class Solver(Case):
     def test_the_nearest_point_of_a_disc(self):
         disc = convex.Limits(np.array([[2.0, 2.0]]), np.zeros((1, 2)), np.array([-1.0]))
@@ -536,8 +546,10 @@ class Reports(Case):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(wrong):
             self.assertIn(design.main(words), (0, 1))
             self.assertEqual(design.main(words[:-2] + ["--task-on", "Desk"]), 2)
+            self.assertEqual(design.main([w for w in words if w not in ("--task", "1200,1000,2800,2000,0")]), 2)
         self.assertIn("mean of task 1 at least 100 lx", out.getvalue())
         self.assertIn("no object called 'Desk'", wrong.getvalue())
+        self.assertIn("--task or --task-on is missing", wrong.getvalue())
         self.assertTrue((self.folder / "r.json").exists())
 
 

@@ -114,8 +114,8 @@ class Checked:
 
     @property
     def passes(self) -> bool:
-        """Whether all requirements pass."""
-        return all(f.outcome == "passes" for f in self.findings)
+        """Whether there are requirements, and all pass."""
+        return bool(self.findings) and all(f.outcome == "passes" for f in self.findings)
 
     @property
     def binding(self) -> Finding | None:
@@ -125,6 +125,8 @@ class Checked:
 
     def verdict(self) -> str:
         """One sentence for all."""
+        if not self.findings:
+            return "nothing was checked: the design has no requirements"
         failed = [f for f in self.findings if f.outcome == "fails"]
         open_ = [f for f in self.findings if f.outcome in ("undecided", "unknown")]
         if failed:

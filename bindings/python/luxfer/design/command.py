@@ -56,6 +56,11 @@ def _run(options: argparse.Namespace) -> int:
     for name in ("scene", "place", "product", "maintenance"):
         if getattr(options, name) is None:
             raise ValueError(f"{'the scene' if name == 'scene' else '--' + name} is missing; see --help")
+    if not options.task and not options.task_on:
+        raise ValueError(
+            "--task or --task-on is missing: the place requires the illuminance of a task area; where the task may be "
+            "anywhere, it is the whole floor (--task 0,0,LENGTH,WIDTH,HEIGHT)"
+        )
     context = Context()
     demo = options.scene == "demo"
     scene = (
