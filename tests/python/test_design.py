@@ -308,22 +308,33 @@ class Checks(Case):
         )
         self.assertTrue(all("Table 34" in r.reference for r in found))
         self.assertEqual(design.requirements(row, {"desk": "task"}, modified=True)[0].limit, 1000)
-        # The rows of the library's own list of the same edition agree.
+
+    def test_rows_are_complete(self):
+        """Each row against its source, as the fields are read there: nothing may be silently missing."""
+        rows = {
+            "office: writing, typing, reading, data processing": (500, 0.6, 19, 80, 150, 150, 100, 1000),
+            "school: entrance halls": (200, 0.4, 22, 80, 75, 75, 50, 300),
+            "school: circulation areas, corridors": (100, 0.4, 25, 80, 50, 50, 30, 150),
+            "school: stairs": (150, 0.4, 25, 80, 50, 50, 30, 200),
+            "library: reading areas": (500, 0.6, 19, 80, 100, 100, 50, 750),
+        }
+        fields = ("illuminance", "uniformity", "glare", "rendering", "cylindrical", "walls", "ceiling", "modified")
+        ours = {p.name: tuple(getattr(p, f) for f in fields) for p in standard.PLACES}
+        self.assertEqual(ours, rows)
+        self.assertTrue(all(value > 0 for row in ours.values() for value in row))
+        # Shelves have vertical illuminance, which a horizontal task area would not check.
+        with self.assertRaisesRegex(KeyError, "no place is called 'bookshelves'"):
+            design.place("bookshelves")
+        faces = [r for r in design.requirements(design.place("reading areas"), {"faces": "cylindrical"}) if r.area]
+        self.assertEqual([(r.quantity, r.limit) for r in faces], [("mean", 100), ("uniformity", 0.1)])
+
+    def test_the_librarys_own_list_agrees(self):
         ours = {p.name: p for p in standard.PLACES}
-        for name, preset in luxfer.presets(context()).items():
-            if preset.edition == 2021:
-                p = ours[name]
-                self.assertEqual(
-                    (p.illuminance, p.uniformity, p.glare, p.rendering, p.walls, p.ceiling),
-                    (
-                        preset.illuminance,
-                        preset.uniformity,
-                        preset.glare,
-                        preset.rendering,
-                        preset.walls,
-                        preset.ceiling,
-                    ),
-                )
+        same = {n: p for n, p in luxfer.presets(context()).items() if p.edition == 2021 and n in ours}
+        self.assertEqual(len(same), 4)
+        for name, preset in same.items():
+            for field in ("illuminance", "uniformity", "glare", "rendering", "walls", "ceiling"):
+                self.assertEqual(getattr(ours[name], field), getattr(preset, field), f"{field} of {name}")
 
 
     def test_a_design_without_a_task_is_refused(self):

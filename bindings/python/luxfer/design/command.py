@@ -37,7 +37,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             school: entrance halls
             school: circulation areas, corridors
             school: stairs
-            library: bookshelves
             library: reading areas
     0
     """
