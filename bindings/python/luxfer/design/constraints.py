@@ -80,8 +80,6 @@ class Model:
         return _linear((goal * mean - response.matrix) / scale, (goal * other - response.other) / scale)
 
     def _glare(self, r: Requirement, margin: float) -> Limits:
-        if r.is_minimum:
-            raise ValueError("a glare rating has no lower limit: use at_most")
         response = self.glare[r.area]
         bound = 10 ** ((r.limit - margin) / UGR_FACTOR)
         seen = (response.sources > 0).any(axis=1)

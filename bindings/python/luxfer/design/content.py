@@ -132,7 +132,8 @@ def _summary(project: Project, checked: Checked, solution: Solution | None, made
     said: list[Block] = [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone)]
     if solution is not None and not solution.feasible:
         why = solution.explanation()
-        said.append(Paragraph(why[0].upper() + why[1:] + ". The dimmers below come closest.", "bad"))
+        closest = " The dimmers below come closest." if solution.contradictory else ""
+        said.append(Paragraph(f"{why[0].upper()}{why[1:]}.{closest}", "bad" if solution.contradictory else "open"))
     return [*said, Table(("", ""), tuple(rows), (0.28, 0.72))]
 
 

@@ -38,7 +38,9 @@ class Estimate:
     """Degrees of freedom of the standard error."""
 
     def probability_at_least(self, limit: float) -> float:
-        """Confidence that the true number is at least the limit."""
+        """Confidence that the true number is at least the limit; NaN if the number or its error is not known."""
+        if any(math.isnan(v) for v in (self.value, self.error, limit)):
+            return math.nan
         if not self.error > 0:
             return float(self.value >= limit)
         return student((self.value - limit) / self.error, self.freedom)
@@ -121,7 +123,7 @@ class Uniformity:
     def value(self) -> float:
         """Smallest over mean illuminance, 0 in darkness."""
         mean = self.values.mean()
-        return float(self.values.min() / mean) if mean > 0 else 0.0
+        return 0.0 if mean <= 0 else float(self.values.min() / mean)
 
     def failing(self, limit: float) -> NDArray[np.float64]:
         """For each point, the probability that it lies below limit times the mean."""
@@ -137,14 +139,14 @@ class Uniformity:
 
     def probability_below(self, limit: float) -> float:
         """Confidence that U0 is below the limit."""
-        return max(0.0, 1 - len(self.values) * float((1 - self.failing(limit)).min()))
+        return float(np.maximum(0.0, 1 - len(self.values) * (1 - self.failing(limit)).min()))  # NaN stays NaN
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """The two-sided interval of that confidence."""
         sure = (1 + confidence) / 2
         low = bisect(lambda u: self.probability_at_least(u) < sure, 0.0, 1.0)
         high = bisect(lambda u: self.probability_below(u) >= sure, 0.0, 1.0)
-        return (low, max(low, high)) if self.values.mean() > 0 else (0.0, 0.0)
+        return (0.0, 0.0) if self.values.mean() <= 0 else (low, max(low, high))
 
 
 def _incomplete_beta(a: float, b: float, x: float) -> float:

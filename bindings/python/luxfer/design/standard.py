@@ -61,8 +61,10 @@ class Requirement:
             raise ValueError(f"'{self.quantity}' is no quantity: there are {', '.join(QUANTITIES)}")
         if (self.at_least is None) == (self.at_most is None):
             raise ValueError(f"the requirement of {self.quantity} needs either at_least or at_most")
-        if not 0 <= self.limit < float("inf"):
-            raise ValueError(f"the limit of {self.quantity} is {self.limit}; it must be finite and not negative")
+        if not 0 < self.limit < float("inf"):
+            raise ValueError(f"the limit of {self.quantity} is {self.limit}; it must be finite and above 0")
+        if self.quantity == "glare" and self.is_minimum:
+            raise ValueError("a glare rating has no lower limit: use at_most")
 
     @property
     def limit(self) -> float:
