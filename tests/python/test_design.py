@@ -125,6 +125,42 @@ class Grids(Case):
         gaps = np.stack([inside[:, 0], LENGTH - inside[:, 0], inside[:, 2], WIDTH - inside[:, 2]])
         np.testing.assert_allclose(gaps.min(axis=0), areas.OFFSET, atol=1e-5)
 
+    def test_each_point_counts_by_its_part_of_the_area(self):
+        """Two long walls of 200 lx and two short ones of 100 lx: the mean is that of the areas, not of the points."""
+        walls = areas.walls(design.Room.find(box()))
+        sides = [float(np.linalg.norm(p.across)) for p in walls.patches]
+        points = [int(p.keep.sum()) for p in walls.patches]
+        lux = [200.0 if side > 3.5 else 100.0 for side in sides]
+        values = np.repeat(lux, points)
+        mean = (200 * LENGTH + 100 * WIDTH) / (LENGTH + WIDTH)
+        self.assertGreater(abs(values.mean() - mean), 1, "the walls must differ in their spacing")
+        found = luxfer.design.measure.Field(walls, values, np.ones(len(values)))
+        self.assertAlmostEqual(found.mean.value, mean)
+        self.assertAlmostEqual(found.uniformity.value, 100 / mean)
+        np.testing.assert_allclose(found.uniformity.interval(), 100 / mean, atol=0.05)
+        response = luxfer.design.responses.Response(walls, values[:, None], np.zeros(len(values)))
+        lit = project()
+        model = luxfer.design.constraints.Model(lit.luminaires[:1], {"walls": response}, {}, 1.0, 12.0)
+        for limit, value in ((at_least("mean", 50, "walls"), mean), (at_least("uniformity", 0.1, "walls"), 100 / mean)):
+            self.assertAlmostEqual(model.value(limit, np.ones(1)), value)
+        limits = model.limits(at_least("mean", mean, "walls"))
+        self.assertAlmostEqual(float(limits.values(np.ones(1))[0]), 0)
+
+    def test_a_wall_without_points_is_reported(self):
+        scene = box()
+        whole = design.Room.find(scene)
+        names = ("wall 0", "window", "glass", "frame", "door", "curtain")
+        walls, all_four = areas.walls(whole, without=names), areas.walls(whole)
+        self.assertEqual((len(walls.patches), len(walls.dropped), all_four.notes), (3, 1, ()))
+        self.assertEqual(walls.count + walls.left_out, all_four.count + all_four.left_out)
+        note = "walls: the wall along the upper side of the plan has no point, and is not checked"
+        self.assertEqual(walls.notes, (note,))
+        lit = replace(project(samples=16), areas=(walls,)).requiring(at_least("mean", 1, "walls"))
+        found = lit.check()
+        self.assertEqual(found.notes, walls.notes)
+        page = design.save(lit, self.folder / "report.html", found, images={}).read_text()
+        self.assertIn(note[1:], page)
+
     def test_isolux_lines_of_a_ramp_are_straight(self):
         grid = np.tile(np.arange(5.0), (4, 1))
         found = isolux.lines(grid, 2.5)
@@ -238,7 +274,6 @@ class Confidence(Case):
         nan = math.nan
         self.assertTrue(math.isnan(intervals.Estimate(nan, 1.0).probability_at_least(1)))
         self.assertTrue(math.isnan(intervals.Estimate(1.0, nan).probability_at_least(1)))
-        values = np.array([100.0, nan, 100.0])
         module = importlib.import_module("luxfer.design.check")
         lit = project(samples=16).requiring(
             at_least("mean", 1),
@@ -246,7 +281,9 @@ class Confidence(Case):
             at_least("uniformity", 0.1),
             at_most("uniformity", 0.9, "desk"),
         )
-        field = luxfer.design.measure.Field(lit.areas[0], values, np.ones(3))
+        values = np.full(lit.areas[0].count, 100.0)
+        values[1] = nan
+        field = luxfer.design.measure.Field(lit.areas[0], values, np.ones(len(values)))
         with mock.patch.object(module, "measure", return_value=field):
             found = lit.check()
         self.assertEqual({f.outcome for f in found.findings}, {"unknown"})

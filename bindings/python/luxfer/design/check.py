@@ -113,6 +113,7 @@ class Checked:
     """Glare of each group of observers that a requirement asks for."""
     settings: Settings
     notes: tuple[str, ...] = of(default=())
+    """What was not checked of these areas, such as a wall without points."""
 
     @property
     def passes(self) -> bool:
@@ -174,7 +175,8 @@ def check(
         wanted_groups = [n for n in wanted_groups if n in open_names]
         if not open_names:
             break
-    return Checked(tuple(findings), fields, ratings, settings)
+    notes = tuple(note for name in fields for note in by_name[name].notes)
+    return Checked(tuple(findings), fields, ratings, settings, notes)
 
 
 def _known(requirements: Sequence[Requirement], quantities: Sequence[str], names: Mapping, what: str) -> list[str]:

@@ -84,6 +84,7 @@ def contents(
     made_of = project.record()
     blocks: list[Block] = [Heading(project.name), *_summary(project, checked, solution, made_of)]
     blocks += [Heading("Requirements", 2), _requirements(checked)]
+    blocks += [Paragraph(f"{note[0].upper()}{note[1:]}.", "open") for note in checked.notes]
     blocks.append(Paragraph(_reading(checked), "small"))
     blocks += [
         Heading("Plan", 1, True),
