@@ -204,9 +204,14 @@ class Transfer(Cli):
         self.assertIn("proposed", [w["code"] for w in result["warnings"] if w["stage"] == "lights"])
 
     def test_target_in_lux_and_colour(self):
-        self.transfer("--out", "out", "--lux", "300", "--colour", "3000K", *SMALL)
+        said = self.transfer("--out", "out", "--lux", "300", "--colour", "3000K", *SMALL).stdout
         result = json.loads((self.folder / "out/report.json").read_text())
-        self.assertEqual(result["lux"], 300)
+        # Two measurements of 0.5 % each, one that set the lamps and one that found what they give.
+        self.assertAlmostEqual(result["lux"], 300, delta=4 * 2**0.5 * 0.005 * 300)
+        self.assertNotEqual(result["lux"], 300, "what was reached is measured, not what was asked for")
+        self.assertTrue(0 < result["lux_error"] < 2, result["lux_error"])
+        self.assertEqual(result["lux_target"], 300)
+        self.assertRegex(said, rf"{result['lux']:.1f} ± \d\.\d lux on .*, 300 asked for")
         self.assertAlmostEqual(result["cct_k"], 3000, delta=10)
         lux = self.json("lux", "out/lit.glb")
         self.assertAlmostEqual(lux["mean_lux"], 300, delta=6)
