@@ -270,6 +270,17 @@ class Confidence(Case):
         for count, what in zip(passed, ("mean", "uniformity", "glare")):
             self.assertLessEqual(count, self.SURPRISED, what)
 
+    def test_a_limit_clearly_met_is_mostly_passed(self):
+        """Intervals must also be narrow: a check that never passes would never be wrong."""
+        mean, uniformity, glare = self.truth.mean.value, self.truth.uniformity.value, self.glare.ugr
+        passed = [0, 0, 0]
+        for run, rating in zip(self.runs, self.rated):
+            passed[0] += run.mean.probability_at_least(mean * 0.95) >= 0.975
+            passed[1] += run.uniformity.probability_at_least(uniformity * 0.75) >= 0.975
+            passed[2] += rating.probability_at_most(glare + 1) >= 0.975
+        for count, what in zip(passed, ("mean", "uniformity", "glare")):
+            self.assertGreaterEqual(count, self.COVERED, what)
+
     def test_a_number_that_is_not_known_passes_nothing(self):
         nan = math.nan
         self.assertTrue(math.isnan(intervals.Estimate(nan, 1.0).probability_at_least(1)))
