@@ -109,7 +109,7 @@ class Help(Cli):
             self.assertIn(f"    {name} ", listed)
             text = self.call(name, "--help").stdout
             self.assertIn(f"usage: luxfer {name}", text)
-            if name not in ("design", "studio"):  # these have a command line of their own
+            if name != "studio":  # it has a command line of its own
                 self.assertIn("exit codes: 0 fine", text)
                 self.assertLessEqual(max(map(len, text.splitlines())), 100)
         for part in ("print", "read"):
@@ -204,9 +204,14 @@ class Transfer(Cli):
         self.assertIn("proposed", [w["code"] for w in result["warnings"] if w["stage"] == "lights"])
 
     def test_target_in_lux_and_colour(self):
-        self.transfer("--out", "out", "--lux", "300", "--colour", "3000K", *SMALL)
+        said = self.transfer("--out", "out", "--lux", "300", "--colour", "3000K", *SMALL).stdout
         result = json.loads((self.folder / "out/report.json").read_text())
-        self.assertEqual(result["lux"], 300)
+        # Two measurements of 0.5 % each, one that set the lamps and one that found what they give.
+        self.assertAlmostEqual(result["lux"], 300, delta=4 * 2**0.5 * 0.005 * 300)
+        self.assertNotEqual(result["lux"], 300, "what was reached is measured, not what was asked for")
+        self.assertTrue(0 < result["lux_error"] < 2, result["lux_error"])
+        self.assertEqual(result["lux_target"], 300)
+        self.assertRegex(said, rf"{result['lux']:.1f} ± \d\.\d lux on .*, 300 asked for")
         self.assertAlmostEqual(result["cct_k"], 3000, delta=10)
         lux = self.json("lux", "out/lit.glb")
         self.assertAlmostEqual(lux["mean_lux"], 300, delta=6)
@@ -526,6 +531,69 @@ class InProcess(Cli):
         self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
 
 
+class Design(Cli):
+    """Lighting design from end to end."""
+
+    def words(self, *more, task=("--task-on", "Table"), scene="demo:target-room"):
+        lamp = ("--product", self.path("panel.ies"), "--watts", "10", "--rendering", "80", "--lamps", "3x2")
+        return ("design", scene, "--place", "corridors", *lamp, *task, "--maintenance", "0.8", *more)
+
+    def test_a_dark_room_fails_and_its_reports_are_written(self):
+        outs = ("--out", "a.html", "--out", "a.json")
+        result = self.json(*self.words(*outs, "--dimmer", "0.01"), code=6)
+        self.assertEqual(self.written(), {"a.html", "a.json"})
+        self.assertEqual((result["passes"], result["files"]), (False, ["a.html", "a.json"]))
+        self.assertIn("requirements fail", result["verdict"])
+        mean = next(f for f in result["findings"] if (f["quantity"], f["area"]) == ("mean", "Table"))
+        self.assertEqual((mean["at_least"], mean["outcome"]), (100, "fails"))
+        self.assertTrue(mean["low"] <= mean["value"] <= mean["high"] < 100)
+        self.assertTrue((self.folder / "a.html").read_text().rstrip().endswith("</html>"))
+        self.assertEqual(json.loads((self.folder / "a.json").read_text())["form"], 1)
+
+    def test_it_says_what_it_found(self):
+        done = self.call(*self.words("--dimmer", "0.01"), code=6)
+        self.assertIn("mean of Table at least 100 lx:", done.stdout)
+        self.assertIn("requirements fail", done.stdout.splitlines()[-1])
+        self.assertIn("34.2", self.call("design", "--places").stdout)
+
+    def test_wrong_words_and_files(self):
+        (self.folder / "broken.glb").write_bytes(b"glTF\2\0\0\0")
+        (self.folder / "broken.ies").write_text("no luminaire")
+        for code, words, parts in (
+            (2, self.words(task=()), ("--task", "--task-on")),
+            (2, self.words(task=("--task", "1,2,3")), ("--task", "1,2,3", "HEIGHT")),
+            (2, self.words("--task-on", "Desk"), ("Desk",)),
+            (2, self.words("--lamps", "many"), ("--lamps", "many", "4x3")),
+            (2, self.words("--place", "theatre"), ("theatre", "34.2")),
+            (2, self.words("--maintenance", "2"), ("maintenance", "2")),
+            (2, self.words("--out", "report.txt"), ("--out", "report.txt", ".html")),
+            (2, self.words("--out", "no/report.html"), ("--out", "no")),
+            (2, self.words(scene="demo:nothing"), ("demo:nothing", "demo:target-room")),
+            (2, self.words("--taks", "1"), ("--taks", "--task")),
+            (2, ("design", "demo:target-room"), ("--place", "missing")),
+            (3, self.words(scene="missing.glb"), ("missing.glb",)),
+            (3, self.words(scene="broken.glb"), ("broken.glb",)),
+            (3, self.words("--product", "broken.ies"), ("broken.ies",)),
+            (3, self.words("--product", "missing.ies"), ("missing.ies",)),
+        ):
+            with self.subTest(words):
+                line = self.error(code, *words)
+                for part in parts:
+                    self.assertIn(part, line)
+        result = self.json(*self.words(task=()), code=2)
+        self.assertEqual((result["error"]["exit"], result["files"]), (2, []))
+
+    def test_a_report_that_cannot_be_finished_leaves_the_old_one(self):
+        from luxfer.design import report
+
+        old = self.folder / "report.html"
+        old.write_text("the last one")
+        with mock.patch.object(Path, "replace", side_effect=OSError(28, "No space left on device")):
+            with self.assertRaises(OSError):
+                report._whole(old, b"new")
+        self.assertEqual((old.read_text(), self.written()), ("the last one", {"report.html"}))
+
+
 class Studio(Case):
     def test_words_are_handed_on(self):
         seen = []
@@ -535,6 +603,24 @@ class Studio(Case):
             self.assertEqual(main(["studio", "photo.png", "--port", "0"]), 3)
             self.assertEqual(main(["studio", "--help"]), 3)
         self.assertEqual(seen, [["photo.png", "--port", "0"], ["--help"]])
+
+    def test_its_exit_codes_are_those_of_the_table(self):
+        with mock.patch.dict(sys.modules, {"uvicorn": None}), contextlib.redirect_stderr(io.StringIO()) as said:
+            sys.modules.pop("luxfer.studio.app", None)
+            self.assertEqual(main(["studio", "missing.png"]), 5)
+        self.assertIn("pip install 'luxfer[studio]'", said.getvalue())
+        try:
+            from luxfer.studio import app
+        except ImportError:
+            self.skipTest("the packages of the studio are not installed")
+        page = self.folder / "page"
+        for code in (5, 3):  # without a page, and with one
+            with mock.patch.object(app, "STATIC", page), contextlib.redirect_stderr(io.StringIO()) as said:
+                words = ["studio", str(self.folder / "missing.png"), "--no-browser", "--state", str(self.folder / "s")]
+                self.assertEqual(main(words), code, said.getvalue())
+            page.mkdir(exist_ok=True)
+            (page / "index.html").write_text("")
+        self.assertIn("missing.png", said.getvalue())
 
 
 class Values(unittest.TestCase):

@@ -20,12 +20,15 @@ class Exit(IntEnum):
     """Cancelled by Ctrl-C or SIGTERM; files of finished stages are kept."""
     FAILED = 5
     """The work failed, or a result could not be written."""
+    UNMET = 6
+    """A design is finished, but a requirement fails or stays open; only of `design`."""
 
 
 #: What `--help` says about them.
 TABLE = (
     "exit codes: 0 fine, 1 finished with warnings that doubt the result (only with --strict), 2 wrong command line, "
-    "3 an input file cannot be read, 4 cancelled (finished files are kept), 5 failed"
+    "3 an input file cannot be read, 4 cancelled (finished files are kept), 5 failed, 6 a requirement of the design is "
+    "not met (only design)"
 )
 
 

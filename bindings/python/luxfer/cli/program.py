@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from types import FrameType
 from typing import Any, NoReturn
 
-from . import design, studio
+from . import studio
 from .console import Console
 from .exits import TABLE, Exit, Failure
 
@@ -103,8 +103,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         if words[:1] == ["studio"]:
             return studio.start(words[1:])
-        if words[:1] == ["design"]:
-            return design.start(words[1:])
         args = parse(words)
         console.configure(args)
         return int(args.run(args, console))

@@ -24,6 +24,9 @@ COLUMNS = (
     "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind"
 )
 
+#: Seed of the paths that measure what --lux has reached, independent of those that set it. [convention]
+RECHECK_SEED = 2
+
 
 def luminance(colour: Any) -> float:
     """Luminance of a linear colour."""
@@ -40,6 +43,11 @@ class Lit:
     """The luminance to show as white."""
     lamps: list[Fixture]
     lux: float | None = None
+    """The mean illuminance that the lamps reached, measured in their new light."""
+    lux_error: float = 0.0
+    """Its standard error."""
+    lux_target: float | None = None
+    """The mean illuminance that was asked for."""
     lux_words: str = ""
     is_changed: bool = False
 
@@ -106,7 +114,9 @@ class Lit:
         factor = (lux - other) / (whole - other)
         self.multiply((factor,) * 3)
         self.white *= lux / whole
-        self.lux, self.lux_words = lux, plane.words
+        reached = measure(self.scene, plane, 0.25, 0.005, console, RECHECK_SEED).report
+        self.lux, self.lux_error = reached.mean, reached.mean_error
+        self.lux_target, self.lux_words = lux, plane.words
 
     def _ceiling(self, surface: str) -> str:
         """The name of what emits, which was split off the surface."""
@@ -141,7 +151,12 @@ class Lit:
 
     def facts(self) -> dict[str, Any]:
         """The lamps as JSON has them."""
-        return {"lamps": len(self.lamps), "flux_lm": self.flux, "cct_k": self.cct, "lux": self.lux}
+        return {"lamps": len(self.lamps), "flux_lm": self.flux, "cct_k": self.cct, **self._lux_facts()}
+
+    def _lux_facts(self) -> dict[str, Any]:
+        if self.lux is None:
+            return {"lux": None}
+        return {"lux": self.lux, "lux_error": self.lux_error, "lux_target": self.lux_target}
 
     @property
     def cct(self) -> float | None:
@@ -156,5 +171,6 @@ class Lit:
         temperature = f", {self.cct:.0f} K" if self.cct else ""
         lines = [f"{len(self.lamps)} lamps, {self.flux:.0f} lm together{temperature}"]
         if self.lux is not None:
-            lines.append(f"{self.lux:g} lux on {self.lux_words}")
+            asked = f"{self.lux_target:g} asked for"
+            lines.append(f"{self.lux:.1f} ± {2 * self.lux_error:.1f} lux on {self.lux_words}, {asked}")
         return lines

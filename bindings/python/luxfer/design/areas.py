@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +44,8 @@ WALL_SHARE = 0.15
 PLANES = 9
 #: Largest relative error of that mean, for one small source in the worst direction: 1.02 %.
 PLANES_ERROR = 1 - math.pi / (2 * PLANES) / math.tan(math.pi / (2 * PLANES))
+#: Where the four walls are in the plan, in the order of `walls`.
+WALLS = ("along the upper side of the plan", "along its lower side", "along its left side", "along its right side")
 
 
 def spacing(length: float, width: float) -> float:
@@ -116,6 +118,18 @@ class Area:
     """Height above the floor in metres; of walls that of their lower edge."""
     outline: tuple[tuple[float, float, float, float], ...]
     """Rectangles of the plan, a0, b0, a1, b1 in metres, for drawings; empty for walls."""
+    dropped: tuple[Patch, ...] = ()
+    """Rectangles none of whose points belong to the area, so that nothing is computed for them."""
+    notes: tuple[str, ...] = ()
+    """What to know about the area, such as a wall without points."""
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """Share of the area that each point stands for, because rectangles differ in the spacing of their points."""
+        patches = self.patches[:1] if self.kind == "cylindrical" else self.patches
+        cells = [np.linalg.norm(np.cross(p.across, p.down)) / p.keep.size for p in patches]
+        out = np.repeat(cells, [int(p.keep.sum()) for p in patches])
+        return out / out.sum()
 
     @property
     def count(self) -> int:
@@ -127,7 +141,7 @@ class Area:
     def left_out(self) -> int:
         """Number of points of the rectangles that do not belong to the area."""
         planes = PLANES if self.kind == "cylindrical" else 1
-        return sum(p.keep.size for p in self.patches) // planes - self.count
+        return sum(p.keep.size for p in (*self.patches, *self.dropped)) // planes - self.count
 
 
 def task(room: Room, name: str, rectangle: Sequence[float], height: float, unit: str = "m") -> Area:
@@ -211,7 +225,12 @@ def walls(
         (room.world([(room.length, 0)])[0], room.across * room.width, -room.along),
     )
     found = [_wall(room, np.asarray(corner), edge, inwards, without) for corner, edge, inwards in sides]
-    area = Area(name, "walls", tuple(patch for patch, _ in found), 0.0, ())
+    notes = tuple(
+        f"{name}: the wall {where} has no point, and is not checked"
+        for where, (_, keep) in zip(WALLS, found)
+        if not keep.any()
+    )
+    area = Area(name, "walls", tuple(patch for patch, _ in found), 0.0, (), notes=notes)
     return _filled(area, [keep for _, keep in found])
 
 
@@ -307,9 +326,8 @@ def _filled(area: Area, keeps: Sequence[NDArray[np.bool_]]) -> Area:
     """The area with other points kept; without any it is refused."""
     if not any(k.any() for k in keeps):
         raise NoPoints(f"the area {area.name!r} has no point that lies free in the room")
-    patches = tuple(
-        Patch(p.origin, p.across, p.down, p.normal, p.columns, p.rows, k)
-        for p, k in zip(area.patches, keeps)
-        if k.any()
-    )
-    return Area(area.name, area.kind, patches, area.height, area.outline)
+    patches = [replace(p, keep=k) for p, k in zip(area.patches, keeps)]
+    filled, empty = [p for p in patches if p.keep.any()], [p for p in patches if not p.keep.any()]
+    said = f"{area.name}: {len(empty)} of its {len(patches)} rectangles have no free point, and are not checked"
+    notes = area.notes or ((said,) if empty else ())
+    return replace(area, patches=tuple(filled), dropped=(*area.dropped, *empty), notes=notes)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from dataclasses import field as of
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .measure import Field, Rating, mean_with_bias, measure, paths_needed, rate, worst
 
 if TYPE_CHECKING:
@@ -88,7 +90,7 @@ class Finding:
         """Distance to the limit as a share of it, negative if it is missed."""
         gap = self.value - self.requirement.limit
         sign = 1 if self.requirement.is_minimum else -1
-        return sign * gap / self.requirement.limit if self.requirement.limit else math.copysign(math.inf, sign * gap)
+        return sign * gap / self.requirement.limit
 
     def __str__(self) -> str:
         r = self.requirement
@@ -111,11 +113,12 @@ class Checked:
     """Glare of each group of observers that a requirement asks for."""
     settings: Settings
     notes: tuple[str, ...] = of(default=())
+    """What was not checked of these areas, such as a wall without points."""
 
     @property
     def passes(self) -> bool:
-        """Whether all requirements pass."""
-        return all(f.outcome == "passes" for f in self.findings)
+        """Whether there are requirements, and all pass."""
+        return bool(self.findings) and all(f.outcome == "passes" for f in self.findings)
 
     @property
     def binding(self) -> Finding | None:
@@ -125,6 +128,8 @@ class Checked:
 
     def verdict(self) -> str:
         """One sentence for all."""
+        if not self.findings:
+            return "nothing was checked: the design has no requirements"
         failed = [f for f in self.findings if f.outcome == "fails"]
         open_ = [f for f in self.findings if f.outcome in ("undecided", "unknown")]
         if failed:
@@ -170,7 +175,8 @@ def check(
         wanted_groups = [n for n in wanted_groups if n in open_names]
         if not open_names:
             break
-    return Checked(tuple(findings), fields, ratings, settings)
+    notes = tuple(note for name in fields for note in by_name[name].notes)
+    return Checked(tuple(findings), fields, ratings, settings, notes)
 
 
 def _known(requirements: Sequence[Requirement], quantities: Sequence[str], names: Mapping, what: str) -> list[str]:
@@ -232,18 +238,16 @@ def _glare(r: Requirement, found: Sequence[Rating], level: float, samples: int) 
     # Each end of the interval is that of the observer where it lies highest.
     low = max(x.interval(1 - 2 * (1 - level) / len(found))[0] for x in found)
     high = max(x.interval(2 * level - 1)[1] for x in found)
-    met = min(x.probability_at_most(r.limit) for x in found)
-    missed = max(0.0, 1 - len(found) * met)
+    met = float(np.min([x.probability_at_most(r.limit) for x in found]))  # unlike min, NaN if any is
+    missed = math.nan if math.isnan(met) else max(0.0, 1 - len(found) * met)
     seen = max(x.background.value for x in found) * math.pi
     if any(x.unrated > UNRATED * max(seen, x.unrated) for x in found):
         note = "light that the rating leaves out reaches an eye: from luminaires without opening, or emissive surfaces"
         outcome = "fails" if missed >= level else "unknown"
         return Finding(r, rating.ugr, low, math.inf, 0, outcome, samples, note)
-    if not r.is_minimum:
-        count = sum(x.outside_range for x in found)
-        note = f"{count} views of luminaires outside the range of solid angles of CIE 117" if count else ""
-        return Finding(r, rating.ugr, low, high, met, _outcome(met, missed, level), samples, note)
-    raise ValueError("a glare rating has no lower limit: use at_most")
+    count = sum(x.outside_range for x in found)
+    note = f"{count} views of luminaires outside the range of solid angles of CIE 117" if count else ""
+    return Finding(r, rating.ugr, low, high, met, _outcome(met, missed, level), samples, note)
 
 
 def _exact(r: Requirement, luminaires: Sequence[Luminaire], floor_area: float) -> Finding:
@@ -269,6 +273,8 @@ def _exact(r: Requirement, luminaires: Sequence[Luminaire], floor_area: float) -
 
 
 def _outcome(met: float, missed: float, level: float) -> str:
+    if math.isnan(met) or math.isnan(missed):
+        return "unknown"
     return "passes" if met >= level else "fails" if missed >= level else "undecided"
 
 

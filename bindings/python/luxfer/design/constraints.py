@@ -39,7 +39,8 @@ class Model:
         """The number that a requirement limits."""
         if r.quantity in ("mean", "uniformity"):
             lux = self.maintenance * self.responses[r.area].values(dimmers)
-            return float(lux.mean() if r.quantity == "mean" else lux.min() / max(lux.mean(), 1e-300))
+            mean = float(self.responses[r.area].area.weights @ lux)
+            return mean if r.quantity == "mean" else float(lux.min()) / max(mean, 1e-300)
         if r.quantity == "glare":
             return float(self.glare[r.area].ugr(dimmers).max())
         if r.quantity == "density":
@@ -56,8 +57,9 @@ class Model:
             response = self.responses[r.area]
             sign = -1.0 if r.is_minimum else 1.0
             goal = r.limit * (1 - sign * margin)
-            row = sign * self.maintenance * response.matrix.mean(axis=0)
-            constant = -sign * goal + sign * self.maintenance * response.other.mean()
+            weights = response.area.weights
+            row = sign * self.maintenance * (weights @ response.matrix)
+            constant = -sign * goal + sign * self.maintenance * (weights @ response.other)
             return _linear(row[None] / r.limit, np.array([constant / r.limit]))
         if r.quantity == "uniformity":
             return self._uniformity(r, margin)
@@ -75,13 +77,11 @@ class Model:
         if not r.is_minimum:
             raise ValueError(f"'{r}' is not a convex limit for dimmers: it can be checked, but not be solved for")
         response, goal = self.responses[r.area], r.limit * (1 + margin)
-        mean, other = response.matrix.mean(axis=0), response.other.mean()
+        mean, other = response.area.weights @ response.matrix, response.area.weights @ response.other
         scale = max(r.limit * (mean.sum() + other), 1e-300)
         return _linear((goal * mean - response.matrix) / scale, (goal * other - response.other) / scale)
 
     def _glare(self, r: Requirement, margin: float) -> Limits:
-        if r.is_minimum:
-            raise ValueError("a glare rating has no lower limit: use at_most")
         response = self.glare[r.area]
         bound = 10 ** ((r.limit - margin) / UGR_FACTOR)
         seen = (response.sources > 0).any(axis=1)

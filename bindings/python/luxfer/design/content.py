@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Union
 
@@ -19,6 +19,7 @@ from .measure import mean_with_bias
 from .units import shown
 
 if TYPE_CHECKING:
+    from .luminaires import Luminaire
     from .measure import Field
     from .project import Project
     from .solve import Solution
@@ -84,6 +85,7 @@ def contents(
     made_of = project.record()
     blocks: list[Block] = [Heading(project.name), *_summary(project, checked, solution, made_of)]
     blocks += [Heading("Requirements", 2), _requirements(checked)]
+    blocks += [Paragraph(f"{note[0].upper()}{note[1:]}.", "open") for note in checked.notes]
     blocks.append(Paragraph(_reading(checked), "small"))
     blocks += [
         Heading("Plan", 1, True),
@@ -132,7 +134,8 @@ def _summary(project: Project, checked: Checked, solution: Solution | None, made
     said: list[Block] = [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone)]
     if solution is not None and not solution.feasible:
         why = solution.explanation()
-        said.append(Paragraph(why[0].upper() + why[1:] + ". The dimmers below come closest.", "bad"))
+        closest = " The dimmers below come closest." if solution.contradictory else ""
+        said.append(Paragraph(f"{why[0].upper()}{why[1:]}.{closest}", "bad" if solution.contradictory else "open"))
     return [*said, Table(("", ""), tuple(rows), (0.28, 0.72))]
 
 
@@ -201,63 +204,13 @@ def _plan_caption(project: Project) -> str:
 
 
 def _luminaires(project: Project) -> list[Block]:
-    unit, room = project.unit, project.room
-    context = room.scene.context
-    products: dict[str, str] = {}
-    rows, kinds = [], []
-    for number, lamp in enumerate(project.luminaires, 1):
-        p = lamp.product
-        key = f"{p.name}\0{p.hash}\0{p.flux}"
-        if key not in products:
-            products[key] = chr(ord("A") + len(products)) if len(products) < 26 else f"P{len(products) + 1}"
-            power = f"{p.watts:.1f} W, {p.flux / p.watts:.0f} lm/W" if p.watts > 0 else "not stated"
-            size = " × ".join(shown(abs(v), unit) for v in p.size) + f" {unit}"
-            kinds.append(
-                (
-                    products[key],
-                    p.name,
-                    f"{p.flux:.0f} lm",
-                    power,
-                    f"{p.rendering:g}" if p.rendering else "not stated",
-                    size,
-                    p.hash,
-                )
-            )
-        a, b = room.plan(lamp.position)[0]
-        height = lamp.position[1] - room.origin[1]
-        place = ", ".join(shown(v, unit) for v in (float(a), float(b), float(height)))
-        kelvin = "–" if lamp.colour == (1, 1, 1) else f"{colour_temperature(context, lamp.colour)[0]:.0f}"
-        rows.append(
-            (
-                str(number),
-                products[key],
-                place,
-                f"{100 * lamp.dimmer:.1f} %",
-                f"{lamp.flux:.0f}",
-                f"{lamp.watts:.1f}" if p.watts > 0 else "–",
-                kelvin,
-            )
-        )
-    total = (
-        "",
-        "all",
-        "",
-        "",
-        f"{sum(lamp.flux for lamp in project.luminaires):.0f}",
-        f"{sum(lamp.watts for lamp in project.luminaires):.1f}",
-        "",
-    )
+    names: dict[str, str] = {}
+    for lamp in project.luminaires:
+        if (key := _key(lamp)) not in names:
+            names[key] = chr(ord("A") + len(names)) if len(names) < 26 else f"P{len(names) + 1}"
     return [
-        Table(
-            ("", "Product", "Flux", "Power", "Ra", "Opening", "Photometry"),
-            tuple(kinds),
-            (0.05, 0.25, 0.1, 0.2, 0.1, 0.18, 0.12),
-        ),
-        Table(
-            ("No.", "Product", f"Position in {unit}", "Dimmer", "lm", "W", "K"),
-            (*rows, total),
-            (0.08, 0.12, 0.34, 0.13, 0.12, 0.11, 0.1),
-        ),
+        _products(project, names),
+        _positions(project, names),
         Paragraph(
             "Positions are along the room, across it, and above the floor, from the corner at the top left of the "
             "plan. Flux and power are as dimmed, power in proportion to flux. K: colour temperature where the design "
@@ -265,6 +218,44 @@ def _luminaires(project: Project) -> list[Block]:
             "small",
         ),
     ]
+
+
+def _key(lamp: Luminaire) -> str:
+    """What luminaires of one product have in common."""
+    return f"{lamp.product.name}\0{lamp.product.hash}\0{lamp.product.flux}"
+
+
+def _products(project: Project, names: Mapping[str, str]) -> Table:
+    """The products, each once, by the names that the positions refer to."""
+    products = {_key(lamp): lamp.product for lamp in reversed(project.luminaires)}
+    rows = []
+    for key, name in names.items():
+        p = products[key]
+        power = f"{p.watts:.1f} W, {p.flux / p.watts:.0f} lm/W" if p.watts > 0 else "not stated"
+        size = " × ".join(shown(abs(v), project.unit) for v in p.size) + f" {project.unit}"
+        rendering = f"{p.rendering:g}" if p.rendering else "not stated"
+        rows.append((name, p.name, f"{p.flux:.0f} lm", power, rendering, size, p.hash))
+    header = ("", "Product", "Flux", "Power", "Ra", "Opening", "Photometry")
+    return Table(header, tuple(rows), (0.05, 0.25, 0.1, 0.2, 0.1, 0.18, 0.12))
+
+
+def _positions(project: Project, names: Mapping[str, str]) -> Table:
+    """The luminaires one by one, with their sums."""
+    unit, room, lamps = project.unit, project.room, project.luminaires
+    rows = []
+    for number, lamp in enumerate(lamps, 1):
+        a, b = room.plan(lamp.position)[0]
+        height = lamp.position[1] - room.origin[1]
+        place = ", ".join(shown(v, unit) for v in (float(a), float(b), float(height)))
+        kelvin = "–" if lamp.colour == (1, 1, 1) else f"{colour_temperature(room.scene.context, lamp.colour)[0]:.0f}"
+        watts = f"{lamp.watts:.1f}" if lamp.product.watts > 0 else "–"
+        rows.append(
+            (str(number), names[_key(lamp)], place, f"{100 * lamp.dimmer:.1f} %", f"{lamp.flux:.0f}", watts, kelvin)
+        )
+    flux, power = sum(lamp.flux for lamp in lamps), sum(lamp.watts for lamp in lamps)
+    rows.append(("", "all", "", "", f"{flux:.0f}", f"{power:.1f}", ""))
+    header = ("No.", "Product", f"Position in {unit}", "Dimmer", "lm", "W", "K")
+    return Table(header, tuple(rows), (0.08, 0.12, 0.34, 0.13, 0.12, 0.11, 0.1))
 
 
 def _areas(project: Project, checked: Checked) -> list[Block]:

@@ -38,7 +38,9 @@ class Estimate:
     """Degrees of freedom of the standard error."""
 
     def probability_at_least(self, limit: float) -> float:
-        """Confidence that the true number is at least the limit."""
+        """Confidence that the true number is at least the limit; NaN if the number or its error is not known."""
+        if any(math.isnan(v) for v in (self.value, self.error, limit)):
+            return math.nan
         if not self.error > 0:
             return float(self.value >= limit)
         return student((self.value - limit) / self.error, self.freedom)
@@ -89,17 +91,25 @@ def bisect(holds: Callable[[float], bool], low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-def mean_of(values: ArrayLike, errors: ArrayLike) -> Estimate:
-    """The mean of independent estimates.
+def mean_of(values: ArrayLike, errors: ArrayLike, weights: ArrayLike | None = None) -> Estimate:
+    """The mean of independent estimates, which count by their weights if there are some.
 
     >>> e = mean_of([100, 102, 98, 104], [2, 2, 2, 2])
     >>> e.value, e.error, e.freedom
     (101.0, 1.0, 60.0)
     """
-    values, variances = np.asarray(values, float), np.asarray(errors, float) ** 2
-    count, total = len(values), variances.sum()
+    values, errors = np.asarray(values, float), np.asarray(errors, float)
+    shares = _shares(len(values), weights)
+    variances = (shares * errors) ** 2
+    total = variances.sum()
     freedom = POINT_FREEDOM if total == 0 else total**2 / (variances**2 / POINT_FREEDOM).sum()
-    return Estimate(float(values.mean()), float(np.sqrt(total) / count), float(freedom))
+    return Estimate(float(shares @ values), float(np.sqrt(total)), float(freedom))
+
+
+def _shares(count: int, weights: ArrayLike | None) -> NDArray[np.float64]:
+    """The weights with the sum 1; equal ones without any."""
+    raw = np.ones(count) if weights is None else np.asarray(weights, float)
+    return raw / raw.sum()
 
 
 @dataclass(frozen=True)
@@ -116,19 +126,26 @@ class Uniformity:
     """Illuminance of the points in lux."""
     errors: NDArray[np.float64]
     """Their standard errors."""
+    weights: NDArray[np.float64] | None = None
+    """How much each point counts in the mean; all alike without weights."""
+
+    @property
+    def mean(self) -> float:
+        """The mean illuminance in lux."""
+        return float(_shares(len(self.values), self.weights) @ self.values)
 
     @property
     def value(self) -> float:
         """Smallest over mean illuminance, 0 in darkness."""
-        mean = self.values.mean()
-        return float(self.values.min() / mean) if mean > 0 else 0.0
+        mean = self.mean
+        return 0.0 if mean <= 0 else float(self.values.min() / mean)
 
     def failing(self, limit: float) -> NDArray[np.float64]:
         """For each point, the probability that it lies below limit times the mean."""
-        count, variances = len(self.values), self.errors**2
-        gap = self.values - limit * self.values.mean()
+        shares, variances = _shares(len(self.values), self.weights), self.errors**2
+        gap = self.values - limit * self.mean
         # The point itself is a part of the mean.
-        spread = np.sqrt(np.maximum(variances * (1 - 2 * limit / count) + limit**2 * variances.sum() / count**2, 0))
+        spread = np.sqrt(np.maximum(variances * (1 - 2 * limit * shares) + limit**2 * (shares**2 @ variances), 0))
         return np.array([1 - Estimate(g, s).probability_at_least(0) for g, s in zip(gap, spread)])
 
     def probability_at_least(self, limit: float) -> float:
@@ -137,14 +154,14 @@ class Uniformity:
 
     def probability_below(self, limit: float) -> float:
         """Confidence that U0 is below the limit."""
-        return max(0.0, 1 - len(self.values) * float((1 - self.failing(limit)).min()))
+        return float(np.maximum(0.0, 1 - len(self.values) * (1 - self.failing(limit)).min()))  # NaN stays NaN
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """The two-sided interval of that confidence."""
         sure = (1 + confidence) / 2
         low = bisect(lambda u: self.probability_at_least(u) < sure, 0.0, 1.0)
         high = bisect(lambda u: self.probability_below(u) >= sure, 0.0, 1.0)
-        return (low, max(low, high)) if self.values.mean() > 0 else (0.0, 0.0)
+        return (0.0, 0.0) if self.mean <= 0 else (low, max(low, high))
 
 
 def _incomplete_beta(a: float, b: float, x: float) -> float:

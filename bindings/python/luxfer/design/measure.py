@@ -38,13 +38,13 @@ class Field:
 
     @property
     def mean(self) -> Estimate:
-        """Mean illuminance."""
-        return mean_of(self.values, self.errors)
+        """Mean illuminance of the area, in which each point counts by the part that it stands for."""
+        return mean_of(self.values, self.errors, self.area.weights)
 
     @property
     def uniformity(self) -> Uniformity:
         """Smallest over mean illuminance."""
-        return Uniformity(self.values, self.errors)
+        return Uniformity(self.values, self.errors, self.area.weights)
 
     def scaled(self, factor: float) -> Field:
         """The field of a multiple of the light, as by a maintenance factor."""

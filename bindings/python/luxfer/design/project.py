@@ -48,7 +48,13 @@ class Project:
         return replace(self, requirements=(*self.requirements, *more))
 
     def for_place(self, row: Place, modified: bool = False) -> Project:
-        """The project with the requirements of a place for all its areas and observers."""
+        """The project with the requirements of a place for all its areas and observers. One of the areas must be a
+        task: without it nothing would ask for the illuminance of the place."""
+        if not any(a.kind == "task" for a in self.areas):
+            raise ValueError(
+                f"no area is a task, so the illuminance of {row.name!r} would not be checked: "
+                "add one by areas.task or areas.task_on; where the task may be anywhere, it is the whole floor"
+            )
         kinds = {a.name: a.kind for a in self.areas} | {o.name: "observers" for o in self.observers}
         return self.requiring(*requirements(row, kinds, modified))
 

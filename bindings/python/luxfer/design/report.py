@@ -34,16 +34,24 @@ def save(
         raise ValueError(f"a report is an .html, a .pdf or a .json file, not {file.name!r}")
     made_of = project.record()
     if kind == ".json":
-        file.write_text(json.dumps(made_of, indent=1, sort_keys=True) + "\n")
-        return file
+        return _whole(file, (json.dumps(made_of, indent=1, sort_keys=True) + "\n").encode())
     if checked is None:
         checked = solution.checked if solution is not None else project.check()
     if images is None:
         images = views(project.room, project.lit(), seed=project.chosen.seed)
     blocks = contents(project, checked, solution, images)
     if kind == ".html":
-        file.write_text(html.page(project.name, blocks), encoding="utf-8")
-    else:
-        footer = f"{project.name}, luxfer {fingerprint.version()}, {fingerprint.digest(made_of)[:16]}"
-        file.write_bytes(pdf.document(project.name, blocks, footer))
+        return _whole(file, html.page(project.name, blocks).encode())
+    footer = f"{project.name}, luxfer {fingerprint.version()}, {fingerprint.digest(made_of)[:16]}"
+    return _whole(file, pdf.document(project.name, blocks, footer))
+
+
+def _whole(file: Path, data: bytes) -> Path:
+    """Writes a file whole or not at all."""
+    part = file.with_name(f".{file.name}.part")
+    try:
+        part.write_bytes(data)
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
     return file

@@ -11,7 +11,7 @@ If no dimmers meet the requirements, explain.py says which bind and what relaxin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,9 +49,10 @@ class Wishes:
     max_dimmer: float = 1
     """Largest dimmer of a luminaire."""
     min_dimmer: float = 0
-    """Smallest dimmer of a luminaire."""
+    """Smallest dimmer of a luminaire, also of the least in a group."""
     levels: tuple[float, ...] = ()
-    """The dimmers that drivers can set; empty for drivers without steps."""
+    """The dimmers that drivers can set; empty for drivers without steps. The luminaires of a group must then have
+    equal dimmers, because others would get shares of a level."""
     paths: int = 1024
     """Paths for each point that measure the responses."""
 
@@ -61,9 +62,10 @@ class Solution:
     """A design, or the explanation why there is none."""
 
     feasible: bool
-    """Whether dimmers were found that meet all requirements that dimmers can meet."""
+    """Whether dimmers were found that are known to meet all requirements that dimmers can meet."""
     luminaires: tuple[Luminaire, ...]
-    """The luminaires with their dimmers; if not feasible, those that come closest to the requirements."""
+    """The luminaires with their dimmers; if not feasible, those whose worst miss, as a share of its limit, is the
+    smallest that was found."""
     look: Distance
     """Distance from the photo's look."""
     checked: Checked
@@ -74,12 +76,21 @@ class Solution:
     """Number of solutions until the check passed."""
     wishes: Wishes = Wishes()
 
+    unknown: tuple[Finding, ...] = ()
+    """If not feasible: what cannot be decided for any dimmers, such as the power of luminaires that state none."""
+    contradictory: bool = False
+    """If not feasible: whether the other requirements cannot be met together; if not, the dimmers meet them."""
+
     def explanation(self) -> str:
         """The result in sentences."""
         if self.feasible:
             return f"{self.checked.verdict()}; {self.look}"
-        lines = ["no dimmers meet all requirements together"]
-        lines += [str(r) for r in self.relaxations] or ["relaxing any single one of them is not enough"]
+        lines = [f"'{f.requirement}' cannot be decided: {f.note or 'its value is not known'}" for f in self.unknown]
+        if self.contradictory:
+            lines.append("no dimmers meet all requirements together")
+            lines += [str(r) for r in self.relaxations] or ["relaxing any single one of them is not enough"]
+        else:
+            lines.append("the dimmers meet all other requirements that dimmers can meet")
         return "; ".join(lines)
 
 
@@ -100,33 +111,51 @@ def solve(
     if model is None:
         model = measured_model(scene, luminaires, requirements, areas, observers, floor_area, settings, wishes)
     groups = _groups(luminaires)
+    if wishes.levels and not (groups.sum(axis=1) == 1).all():
+        raise ValueError("levels need equal dimmers within each group: other luminaires would get shares of a level")
     photo, flux = np.array([lamp.dimmer for lamp in luminaires]), np.array([lamp.product.flux for lamp in luminaires])
     solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
     margins = {
         r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
         for r in solvable
     }
-    best: tuple[NDArray, Checked] | None = None
+    tried: list[tuple[NDArray, Checked]] = []
+    unknown: tuple[Finding, ...] = ()
     for turn in range(1, ROUNDS + 1):
         dimmers = _dimmers(model, solvable, margins, photo, flux, groups, wishes)
         if dimmers is None:
             break
         checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
-        best = dimmers, checked
-        missed = [f for f in checked.findings if f.requirement in margins and f.outcome != "passes"]
+        tried.append((dimmers, checked))
+        found = [f for f in checked.findings if f.requirement in margins and f.outcome != "passes"]
+        unknown = tuple(f for f in found if f.outcome == "unknown")  # no margin makes them known
+        missed = [f for f in found if f.outcome != "unknown"]
         if not missed:
-            final = tuple(dimmed(luminaires, dimmers))
-            return Solution(True, final, distance(photo, dimmers, flux), checked, (), turn, wishes)
+            final, look = tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux)
+            return Solution(not unknown, final, look, checked, (), turn, wishes, unknown)
         for finding in missed:
             margins[finding.requirement] += _more(finding)
+    known = [r for r in solvable if r not in {f.requirement for f in unknown}]
     hard, start = _box(groups, wishes)
-    closest, found = relaxations(model, solvable, groups, hard, start)
-    dimmers, checked = best if best else (np.clip(closest, 0, wishes.max_dimmer), None)
-    if checked is None:
+    closest, eased = relaxations(model, known, groups, hard, start)
+    if not tried:
+        dimmers = np.clip(closest, *(groups @ end for end in _range(groups, wishes)))
+        if wishes.levels:
+            levels = np.array(wishes.levels)
+            dimmers = levels[np.abs(levels[None] - dimmers[:, None]).argmin(axis=1)]
         checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
-    return Solution(
-        False, tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux), checked, tuple(found), turn, wishes
-    )
+        tried.append((dimmers, checked))
+        unknown = tuple(f for f in checked.findings if f.requirement in margins and f.outcome == "unknown")
+    dimmers, checked = min(tried, key=lambda one: _worst_miss(one[1]))
+    final, look = tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux)
+    return Solution(False, final, look, checked, tuple(eased), turn, wishes, unknown, True)
+
+
+def _worst_miss(checked: Checked) -> float:
+    """The largest share of its limit by which the near end of an interval misses it."""
+    ends = [(f, f.low if f.requirement.is_minimum else f.high) for f in checked.findings if f.outcome != "unknown"]
+    misses = [replace(f, value=end).reserve for f, end in ends]
+    return max((-m for m in misses if np.isfinite(m)), default=0.0)
 
 
 def measured_model(
@@ -173,13 +202,28 @@ def _groups(luminaires: Sequence[Luminaire]) -> NDArray[np.float64]:
     return out
 
 
-def _box(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
-    """The range of the dimmers of groups, and a point inside."""
+def _range(groups: NDArray, wishes: Wishes) -> tuple[NDArray, NDArray]:
+    """The smallest and the largest dimmer of each group, so that each of its luminaires is within the wishes."""
     if not 0 <= wishes.min_dimmer < wishes.max_dimmer:
         raise ValueError(f"min_dimmer = {wishes.min_dimmer} is not in [0, max_dimmer = {wishes.max_dimmer})")
-    low = np.full(groups.shape[1], wishes.min_dimmer - INSIDE)
-    high = np.full(groups.shape[1], wishes.max_dimmer + INSIDE)
-    return box(low, high), 0.5 * (low + high)
+    high = np.full(groups.shape[1], float(wishes.max_dimmer))
+    if wishes.min_dimmer == 0:
+        return np.zeros(groups.shape[1]), high
+    if not groups.any(axis=1).all():
+        raise ValueError(f"min_dimmer = {wishes.min_dimmer}, but a luminaire of a group is off, and stays so")
+    least = np.where(groups > 0, groups, np.inf).min(axis=0)
+    if (wishes.min_dimmer >= wishes.max_dimmer * least).any():
+        raise ValueError(
+            f"min_dimmer = {wishes.min_dimmer} is too large for a group whose least luminaire has {least.min():.3g} of "
+            f"the dimmer of its brightest, which is at most {wishes.max_dimmer}"
+        )
+    return wishes.min_dimmer / least, high
+
+
+def _box(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
+    """The range of the dimmers of groups, and a point inside."""
+    low, high = _range(groups, wishes)
+    return box(low - INSIDE, high + INSIDE), 0.5 * (low + high)
 
 
 def _dimmers(
@@ -207,7 +251,7 @@ def _dimmers(
     hessian, gradient = objective(photo, flux)
     extended = limits.relaxed(np.zeros(len(limits.constant)))
     found = minimise(wide.T @ hessian @ wide, wide.T @ gradient, extended, np.append(start, 1.0))
-    dimmers = np.clip(found.x[:-1], wishes.min_dimmer, wishes.max_dimmer)
+    dimmers = np.clip(found.x[:-1], *_range(groups, wishes))
     if wishes.levels:
         stepped = _in_steps(dimmers, limits, hessian, gradient, groups, wishes)
         return None if stepped is None else groups @ stepped

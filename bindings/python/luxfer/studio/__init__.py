@@ -27,6 +27,7 @@ import sys
 
 def main(argv: list[str] | None = None) -> int:
     """Starts the studio and serves it until it is interrupted; returns the exit code."""
+    from ..cli.exits import Exit
     from .command import parser
 
     asked = parser().parse_args(argv)
@@ -36,5 +37,5 @@ def main(argv: list[str] | None = None) -> int:
         if missing.name not in ("starlette", "uvicorn", "websockets", "anyio"):
             raise
         print(f"the studio needs the package {missing.name}: pip install 'luxfer[studio]'", file=sys.stderr)
-        return 1
+        return Exit.FAILED
     return serve(asked)

@@ -26,6 +26,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from ..cli.exits import Exit
 from . import project as projects
 from .files import MAX_UPLOAD, Files, state_folder
 from .security import Allowed, Guard, new_token
@@ -274,13 +275,13 @@ def serve(asked: argparse.Namespace) -> int:
         print(
             f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr
         )
-        return 1
+        return Exit.FAILED
     try:
         files = Files(asked.state or state_folder(), Allowed(asked.folder))
         first, kept = first_project(asked, files)
     except (OSError, projects.Invalid) as error:
         print(f"luxfer studio: {error}", file=sys.stderr)
-        return 1
+        return Exit.UNREADABLE
     studio, listener, token = Studio(files, first, kept), bind(asked.port), new_token()
     port = listener.getsockname()[1]
     address = f"http://127.0.0.1:{port}/{token}/"
