@@ -60,7 +60,7 @@ class Studio:
         with self.lock:
             if name not in self.sessions:
                 self._make_room()
-                saved = self.files.state / f"session-{name[:16]}.json"
+                saved = self.files.state / f"session-{name}.json"
                 if self.project_file is not None and all(
                     s.saved != self.project_file for s in self.sessions.values()
                 ):
@@ -172,7 +172,7 @@ class Studio:
     async def talk(self, socket: WebSocket) -> None:
         """WebSocket ws?session=: edits come in, results go out as a JSON header and bytes."""
         name = socket.query_params.get("session", "")
-        if not (8 <= len(name) <= 64 and name.isalnum()):
+        if not (8 <= len(name) <= 64 and name.isascii() and name.isalnum()):
             await socket.close(1008)
             return
         await socket.accept()

@@ -119,6 +119,8 @@ class Session:
         with self._saving:
             if self.wanted is wanted:
                 projects.save(self.saved, wanted.project)
+                for file in filter(None, (wanted.project["photo"], wanted.project["room"])):
+                    self.files.renew(file["sha256"])
 
     # -- work
 
