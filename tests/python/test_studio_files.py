@@ -1,14 +1,18 @@
 """What the studio keeps, deletes and opens, and what it refuses. Runs where benches/peers/install.sh has installed
 `studio`."""
 
+import asyncio
 import json
 import os
+import re
+import stat
 import time
 import unittest
+from unittest import mock
 
 from support import Case
 
-from luxfer.studio import files, security
+from luxfer.studio import files, opening, security
 
 MONTH = files.KEEP_SECONDS
 
@@ -74,6 +78,98 @@ class State(Case):
         state = files.Files(self.folder / "state", security.Allowed([path]))
         state.find(state.open(path).sha256, "photo.png")
         self.assertGreater(time.time() - path.stat().st_mtime, 900)
+
+
+class Page:
+    """An ASGI application that stands for the page, and a guard around it."""
+
+    def __init__(self):
+        self.guard, self.paths = security.Guard(self, "token", 1), []
+
+    async def __call__(self, scope, receive, send):
+        self.paths.append(scope["path"])
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    def ask(self, path, method="GET", **headers):
+        """Status and text of an answer."""
+        sent = []
+
+        async def send(message):
+            sent.append(message)
+
+        given = {"host": "127.0.0.1:1", **{k.replace("_", "-"): v for k, v in headers.items()}}
+        scope = {
+            "type": "http",
+            "method": method,
+            "path": path,
+            "headers": [(k.encode(), v.encode()) for k, v in given.items()],
+        }
+        asyncio.run(self.guard(scope, None, send))
+        return sent[0]["status"], sent[-1].get("body", b"").decode()
+
+
+class Door(Case):
+    """How the page is opened, and requests that no browser sends."""
+
+    def test_the_browser_is_started_without_the_token(self):
+        page, given = Page(), []
+        address = f"http://127.0.0.1:1/{page.guard.new_code()}"
+        made = opening.Opening(self.folder, address)
+        with mock.patch("webbrowser.open", given.append):
+            made.show()
+        self.assertEqual(given, [made.path.as_uri()])
+        self.assertNotIn(page.guard.code, given[0])
+        self.assertEqual(stat.S_IMODE(made.path.stat().st_mode), 0o600)
+        text = made.path.read_text()
+        self.assertIn(f'content="0; url={address}"', text)
+        self.assertNotIn("token", text)
+        made.close()
+        self.assertFalse(made.path.exists())
+
+    def test_the_server_starts_the_browser_by_that_file(self):
+        from luxfer.studio import app, command
+
+        given = []
+        asked = command.parser().parse_args(["--port", "0", "--state", str(self.folder / "state")])
+
+        def run(server, sockets):
+            time.sleep(1)  # the browser is started half a second after the server
+            given.extend(path.name for path in (self.folder / "state").glob("*.html"))
+            sockets[0].close()
+
+        with (
+            mock.patch("webbrowser.open", lambda address: given.append(address)),
+            mock.patch("uvicorn.Server.run", run),
+            mock.patch("builtins.print") as said,
+            mock.patch.object(app, "STATIC", self.folder),
+        ):
+            (self.folder / "index.html").write_text("page")
+            self.assertEqual(app.serve(asked), 0)
+        token = re.search(r"127.0.0.1:\d+/([^/]+)/", said.call_args.args[0])[1]
+        self.assertTrue(given[0].startswith("file:"), given)
+        self.assertEqual(given[0].rsplit("/", 1)[1], given[1])
+        self.assertNotIn(token, given[0])
+        self.assertEqual(list((self.folder / "state").glob("*.html")), [])
+
+    def test_the_code_is_taken_once(self):
+        page = Page()
+        path = f"/{page.guard.new_code()}"
+        for refused in (
+            page.ask(path + "x"),
+            page.ask("/open/"),
+            page.ask(path, "POST"),
+            page.ask(path, host="evil.example"),
+            page.ask(path, origin="http://evil.example"),
+        ):
+            self.assertEqual(refused[0], 403)
+        status, text = page.ask(path, sec_fetch_site="cross-site")
+        self.assertEqual(status, 200)
+        self.assertIn("url=/token/", text)
+        self.assertEqual(page.ask(path, sec_fetch_site="cross-site")[0], 403)
+        self.assertEqual(page.ask("/open/")[0], 403)
+        self.assertEqual(page.ask("/token/", sec_fetch_site="cross-site")[0], 403)
+        self.assertEqual(page.ask("/token/", sec_fetch_site="same-origin")[0], 200)
+        self.assertEqual(page.paths, ["/"])
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ import struct
 import sys
 import tempfile
 import threading
-import webbrowser
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +27,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from . import project as projects
 from .files import MAX_UPLOAD, Files, state_folder
+from .opening import Opening
 from .security import Allowed, Guard, new_token
 from .session import Session
 
@@ -290,11 +290,16 @@ def serve(asked: argparse.Namespace) -> int:
         guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off"
     )
     print(f"luxfer studio: {address}", flush=True)
+    opening = None
     if not asked.no_browser:
-        threading.Timer(0.5, webbrowser.open, [address]).start()
+        opening = Opening(files.state, f"http://127.0.0.1:{port}/{guarded.new_code()}")
+        threading.Timer(0.5, opening.show).start()
     try:
         uvicorn.Server(config).run(sockets=[listener])
     except KeyboardInterrupt:
         pass
+    finally:
+        if opening is not None:
+            opening.close()
     studio.close()
     return 0

@@ -27,9 +27,10 @@ DEMO_NAME = "generated office.png"
 MAX_UPLOAD = 1 << 30
 #: Files of the studio in its state folder are deleted if they have not been used for this time.
 KEEP_SECONDS = 30 * 24 * 3600.0
-#: The studio's own names in the state folder: projects of sessions, and files by their hash with the name after it, or
-#: with a dot before it while they are written. Whatever has another name belongs to the user.
+#: The studio's own names in the state folder: projects of sessions, pages that open the studio, and files by their hash
+#: with the name after it, or with a dot before it while they are written. Any other name belongs to the user.
 SESSION = re.compile(r"session-[A-Za-z0-9]{8,64}\.json")
+OPENING = re.compile(r"open-studio-[0-9a-f]{16}\.html")
 KEPT = re.compile(r"([0-9a-f]{64})-(.+)", re.DOTALL)
 PARTIAL = re.compile(r"\.[0-9a-f]{64}")
 
@@ -88,9 +89,9 @@ class Files:
     def _forget_old(self) -> None:
         """Deletes the studio's own files that have not been used for a month."""
         sessions = [p for p in self.state.iterdir() if SESSION.fullmatch(p.name) and is_project(p)]
-        names = (KEPT.fullmatch, PARTIAL.fullmatch)
-        kept = [p for p in (self.state / "files").iterdir() if any(matches(p.name) for matches in names)]
-        for path in sessions + kept:
+        openings = [p for p in self.state.iterdir() if OPENING.fullmatch(p.name)]
+        kept = [p for p in (self.state / "files").iterdir() if KEPT.fullmatch(p.name) or PARTIAL.fullmatch(p.name)]
+        for path in sessions + openings + kept:
             if path.is_file() and time.time() - path.stat().st_mtime > KEEP_SECONDS:
                 path.unlink()
 
