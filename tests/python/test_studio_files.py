@@ -171,6 +171,13 @@ class Door(Case):
         self.assertEqual(page.ask("/token/", sec_fetch_site="same-origin")[0], 200)
         self.assertEqual(page.paths, ["/"])
 
+    def test_paths_without_the_token(self):
+        page = Page()
+        for path in ("*", "", "/", "//", "//token/", "/token2/", "token"):
+            self.assertEqual(page.ask(path, "OPTIONS")[0], 403, path)
+        self.assertEqual(page.ask("/token")[0], 200)
+        self.assertEqual(page.paths, [""])
+
 
 if __name__ == "__main__":
     unittest.main()

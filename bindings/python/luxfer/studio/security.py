@@ -90,7 +90,7 @@ class Guard:
             return "a WebSocket states its origin"
         if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return "the request comes from another site"
-        given = scope["path"].split("/", 2)[1]
+        given = scope["path"][1:].partition("/")[0]  # the path of `OPTIONS *` has no slash
         if not hmac.compare_digest(given.encode(), self.token.encode()):
             return "the token of the address is wrong: open the address that the studio printed when it started"
         return ""
