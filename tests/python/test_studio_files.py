@@ -6,13 +6,14 @@ import json
 import os
 import re
 import stat
+import struct
 import time
 import unittest
 from unittest import mock
 
-from support import Case
+from support import PACKAGE, Case, context, luxfer
 
-from luxfer.studio import files, opening, security
+from luxfer.studio import app, command, files, opening, security
 
 MONTH = files.KEEP_SECONDS
 
@@ -80,6 +81,104 @@ class State(Case):
         self.assertGreater(time.time() - path.stat().st_mtime, 900)
 
 
+class Folders(Case):
+    """Files that the page may open."""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("photo.png", "other.png", "deep/below.png"):
+            (self.folder / "here" / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / "here" / name).write_bytes(name.encode())
+        (self.folder / "secret.png").write_bytes(b"secret")
+
+    def start(self, photo, content):
+        """The files of a studio that was started with a project."""
+        named = {"luxfer_studio": 1, "photo": {"name": photo, "sha256": files.digest(content)}}
+        kept = self.folder / "here" / "room.luxfer.json"
+        kept.write_text(json.dumps(named))
+        opened = files.Files(self.folder / "state", security.Allowed())
+        app.first_project(command.parser().parse_args(["--project", str(kept)]), opened)
+        return opened
+
+    def test_a_project_opens_only_the_files_that_it_names(self):
+        opened = self.start("photo.png", b"photo.png")
+        self.assertEqual(opened.find(files.digest(b"photo.png"), "photo.png").read(), b"photo.png")
+        for name in ("other.png", "deep/below.png", "room.luxfer.json", "../secret.png"):
+            with self.assertRaises(PermissionError, msg=name):
+                opened.open(self.folder / "here" / name)
+
+    def test_names_in_a_project_do_not_lead_out_of_its_folder(self):
+        (self.folder / "here" / "link.png").symlink_to(self.folder / "secret.png")
+        for name in ("../secret.png", str(self.folder / "secret.png"), "link.png"):
+            opened = self.start(name, b"secret")
+            self.assertEqual((opened.allowed.files, opened.known), (set(), {}), name)
+
+    def test_a_file_of_the_name_with_another_content_is_not_opened(self):
+        opened = self.start("photo.png", b"another")
+        self.assertEqual(opened.allowed.files, set())
+
+    def test_a_file_that_is_no_photo_is_not_known(self):
+        opened = files.Files(self.folder / "state", security.Allowed([self.folder / "here"]))
+        studio = app.Studio(opened, None, None)
+        with self.assertRaises(luxfer.Error):
+            opened.open(self.folder / "here" / "photo.png", studio.try_known)
+        self.assertEqual(opened.known, {})
+
+    def test_a_room_with_files_beside_it_is_opened_from_a_folder(self):
+        room = self.folder / "here" / "room.gltf"
+        with_buffer_beside(room)
+        opened = files.Files(self.folder / "state", security.Allowed([self.folder / "here"]))
+        studio = app.Studio(opened, None, None)
+        status, answer = route(studio, f"/files?open={room}")
+        self.assertEqual((status, json.loads(answer).get("name")), (200, "room.gltf"), answer)
+        known = opened.find(json.loads(answer)["sha256"], "room.gltf")
+        self.assertEqual(known.path, room.resolve())
+        # Given to the page, it has no folder: what is missing is said.
+        status, answer = route(studio, "/files?name=room.gltf", room.read_bytes())
+        self.assertEqual(status, 400)
+        self.assertIn("beside it", json.loads(answer)["message"])
+
+
+def with_buffer_beside(path):
+    """Writes the generated room as a .gltf with its buffer in a file beside it."""
+    data = luxfer.Scene.demo(context(), "target-room").to_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    whole = json.loads(data[20 : 20 + length])
+    whole["buffers"][0]["uri"] = "room.bin"
+    path.write_text(json.dumps(whole))
+    path.with_name("room.bin").write_bytes(data[28 + length :])
+
+
+def route(studio, path, body=None, **headers):
+    """Status and content of an answer of the application, without a server and its guard. A body of several parts is a
+    list."""
+    parts = body if isinstance(body, list) else [body or b""]
+    sent = []
+
+    async def receive():
+        part = parts.pop(0)
+        return {"type": "http.request", "body": part, "more_body": bool(parts)}
+
+    async def send(message):
+        sent.append(message)
+
+    place, _, query = path.partition("?")
+    scope = {
+        "type": "http",
+        "http_version": "1.1",
+        "method": "GET" if body is None else "POST",
+        "path": place,
+        "root_path": "",
+        "scheme": "http",
+        "server": ("127.0.0.1", 1),
+        "query_string": query.encode(),
+        "headers": [(k.replace("_", "-").encode(), v.encode()) for k, v in headers.items()],
+    }
+    with mock.patch.object(app, "STATIC", PACKAGE):
+        asyncio.run(studio.app()(scope, receive, send))
+    return sent[0]["status"], b"".join(message.get("body", b"") for message in sent[1:])
+
+
 class Page:
     """An ASGI application that stands for the page, and a guard around it."""
 
@@ -127,8 +226,6 @@ class Door(Case):
         self.assertFalse(made.path.exists())
 
     def test_the_server_starts_the_browser_by_that_file(self):
-        from luxfer.studio import app, command
-
         given = []
         asked = command.parser().parse_args(["--port", "0", "--state", str(self.folder / "state")])
 

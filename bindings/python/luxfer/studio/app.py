@@ -26,7 +26,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from . import project as projects
-from .files import MAX_UPLOAD, Files, state_folder
+from .files import MAX_UPLOAD, Files, Known, state_folder
 from .opening import Opening
 from .security import Allowed, Guard, new_token
 from .session import Session
@@ -110,10 +110,14 @@ class Studio:
         known = await run_in_threadpool(self.files.upload, name, bytes(data))
         return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
 
-    def try_file(self, data: bytes, suffix: str) -> None:
+    def try_known(self, known: Known, data: bytes) -> None:
+        """Raises what the library says about a file of a folder, which may name files beside it."""
+        self.try_file(data, known.path.suffix.lower(), known.path.parent)
+
+    def try_file(self, data: bytes, suffix: str, folder: Path | None = None) -> None:
         """Raises what the library says about a file that it cannot read."""
         if suffix in ROOMS:
-            scene = luxfer.Scene.from_bytes(self.context, data)
+            scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
                 raise luxfer.errors.Degenerate("it has no surface that could receive lights")
         else:
@@ -123,8 +127,7 @@ class Studio:
         """GET files: what lies in the folders that the user named; open=PATH opens one of them."""
         if wanted := request.query_params.get("open"):
             try:
-                known = await run_in_threadpool(self.files.open, Path(wanted))
-                await run_in_threadpool(self.try_file, known.read(), known.path.suffix.lower())
+                known = await run_in_threadpool(self.files.open, Path(wanted), self.try_known)
             except (OSError, luxfer.Error) as error:
                 return problem(str(error), 403 if isinstance(error, PermissionError) else 400)
             return JSONResponse(
@@ -241,7 +244,7 @@ def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Pro
             raise FileNotFoundError(f"there is no file {kept}")
     if kept is not None and kept.exists():
         project = projects.load(kept)
-        files.allowed.add(kept.resolve().parent)  # what a project names lies beside it
+        files.open_named(project, kept.resolve().parent)
     for path, entry in ((photo, "photo"), (asked.scene, "room")):
         if path is not None:
             if not path.exists():

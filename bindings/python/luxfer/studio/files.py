@@ -13,11 +13,13 @@ import re
 import sys
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import luxfer
 
+from .project import Project
 from .security import Allowed
 
 #: Size of the photo that the library generates if there is none: a few seconds of work.
@@ -101,12 +103,25 @@ class Files:
         if known is not None and known.path.parent == self.state / "files" and known.path.exists():
             os.utime(known.path)
 
-    def open(self, path: Path) -> Known:
-        """A file by its path, if the user has named it or its folder."""
+    def open(self, path: Path, check: Callable[[Known, bytes], None] | None = None) -> Known:
+        """A file by its path, if the user has named it or its folder. `check` raises what is wrong with its content."""
         real = self.allowed.check(path)
-        known = Known(real.name, digest(real.read_bytes()), real)
+        data = real.read_bytes()
+        known = Known(real.name, digest(data), real)
+        if check is not None:
+            check(known, data)
         self.known[known.sha256] = known
         return known
+
+    def open_named(self, project: Project, folder: Path) -> None:
+        """Opens the files of a project that lie beside it, if they are those that it means by their hash. A project may
+        come from a stranger: its names do not lead out of its folder."""
+        folder = folder.resolve()
+        for file in filter(None, (project["photo"], project["room"])):
+            path = (folder / file["name"]).resolve()
+            if path.parent == folder and path.is_file() and digest(path.read_bytes()) == file["sha256"]:
+                self.allowed.add(path)
+                self.open(path)
 
     def upload(self, name: str, data: bytes) -> Known:
         """A file that the user gave to the page."""
