@@ -13,7 +13,7 @@ from unittest import mock
 
 from support import PACKAGE, Case, context, luxfer
 
-from luxfer.studio import app, command, files, opening, security
+from luxfer.studio import app, command, files, opening, outbox, security
 
 MONTH = files.KEEP_SECONDS
 
@@ -137,6 +137,74 @@ class Folders(Case):
         status, answer = route(studio, "/files?name=room.gltf", room.read_bytes())
         self.assertEqual(status, 400)
         self.assertIn("beside it", json.loads(answer)["message"])
+
+
+class Limits(Case):
+    """How much a page may send, and leave lying."""
+
+    def setUp(self):
+        super().setUp()
+        self.studio = app.Studio(files.Files(self.folder / "state", security.Allowed()), None, None)
+
+    def test_a_project_has_a_largest_size(self):
+        good = json.dumps({"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}}).encode()
+        with mock.patch.object(app, "MAX_PROJECT", len(good)):
+            self.assertEqual(route(self.studio, "/projects", good)[0], 200)
+            parts = [good, b" ", b"never read"]
+            self.assertEqual(route(self.studio, "/projects", parts)[0], 413)
+            self.assertEqual(parts, [b"never read"])
+            parts = [b"never read"]
+            self.assertEqual(route(self.studio, "/projects", parts, content_length=str(len(good) + 1))[0], 413)
+            self.assertEqual(parts, [b"never read"])
+
+    def test_an_upload_has_a_largest_size(self):
+        with mock.patch.object(app, "MAX_UPLOAD", 3):
+            self.assertEqual(route(self.studio, "/files?name=a.png", [b"ab", b"c"])[0], 400)
+            parts = [b"ab", b"cd", b"never read"]
+            self.assertEqual(route(self.studio, "/files?name=a.png", parts)[0], 413)
+            parts = [b"never read"]
+            self.assertEqual(route(self.studio, "/files?name=a.png", parts, content_length="4")[0], 413)
+            self.assertEqual(parts, [b"never read"])
+        self.assertEqual(list((self.folder / "state" / "files").iterdir()), [])
+
+    def test_a_project_nested_too_deeply_is_refused(self):
+        self.assertEqual(route(self.studio, "/projects", b"[" * 200_000)[0], 400)
+
+    def test_a_sleeping_page_gets_the_newest_picture_alone(self):
+        async def work():
+            waiting = outbox.Outbox()
+            for i in range(100):
+                for which in ("before", "after"):
+                    waiting.put({"type": "picture", "which": which, "i": i}, bytes(1000))
+            for kind in ("texture", "failed", "failed"):
+                waiting.put({"type": kind}, b"")
+            count, size = len(waiting), waiting.size
+            return count, size, [await waiting.get() for _ in range(count)], waiting.size
+
+        count, size, messages, after = asyncio.run(work())
+        self.assertEqual(count, 5)
+        self.assertLess(size, 2500)
+        self.assertEqual(after, 0)
+        headers = [json.loads(m[4 : 4 + struct.unpack_from("<I", m)[0]]) for m in messages]
+        self.assertEqual([h["type"] for h in headers], ["picture", "picture", "texture", "failed", "failed"])
+        self.assertEqual([(h["which"], h["i"]) for h in headers[:2]], [("before", 99), ("after", 99)])
+
+    def test_a_page_that_lets_too_much_wait_is_cut_off(self):
+        async def work():
+            waiting = outbox.Outbox(most=2000)
+            for _ in range(3):
+                waiting.put({"type": "texture"}, bytes(900))
+            return await waiting.get(), waiting.size
+
+        self.assertEqual(asyncio.run(work()), (None, 0))
+
+    def test_a_waiting_page_gets_what_comes(self):
+        async def work():
+            waiting = outbox.Outbox()
+            asyncio.get_running_loop().call_later(0.05, waiting.put, {"type": "idle"}, b"bytes")
+            return await asyncio.wait_for(waiting.get(), 5)
+
+        self.assertTrue(asyncio.run(work()).endswith(b"bytes"))
 
 
 def with_buffer_beside(path):

@@ -7,7 +7,6 @@ import asyncio
 import json
 import shutil
 import socket
-import struct
 import sys
 import tempfile
 import threading
@@ -28,12 +27,15 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from . import project as projects
 from .files import MAX_UPLOAD, Files, Known, state_folder
 from .opening import Opening
+from .outbox import Outbox
 from .security import Allowed, Guard, new_token
 from .session import Session
 
 STATIC = Path(__file__).resolve().parent / "static"
 #: Users whose page has gone are forgotten, the one that was here longest ago first, beyond this number.
 MAX_SESSIONS = 8
+#: Project files beyond this are refused: 16 MiB are over a million points of strokes. [convention]
+MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
 
@@ -90,11 +92,9 @@ class Studio:
 
     async def put_file(self, request: Request) -> Response:
         """POST files?name=: takes a photo or a room from the page."""
-        data = bytearray()
-        async for part in request.stream():
-            data += part
-            if len(data) > MAX_UPLOAD:
-                return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
+        data = await body(request, MAX_UPLOAD)
+        if data is None:
+            return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
         name = request.query_params.get("name", "file")
         if not data:
             return problem(f"{name} is empty")
@@ -104,10 +104,10 @@ class Studio:
                 f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
             )
         try:
-            await run_in_threadpool(self.try_file, bytes(data), suffix)
+            await run_in_threadpool(self.try_file, data, suffix)
         except luxfer.Error as error:
             return problem(f"{name} cannot be read: {error}")
-        known = await run_in_threadpool(self.files.upload, name, bytes(data))
+        known = await run_in_threadpool(self.files.upload, name, data)
         return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
 
     def try_known(self, known: Known, data: bytes) -> None:
@@ -145,10 +145,15 @@ class Studio:
 
     async def put_project(self, request: Request) -> Response:
         """POST projects: the text of a project file; its project, or what is wrong with it."""
+        data = await body(request, MAX_PROJECT)
+        if data is None:
+            return problem(f"the project is larger than {MAX_PROJECT >> 20} MiB", 413)
         try:
-            return JSONResponse({"project": projects.checked(json.loads(await request.body()))})
+            return JSONResponse({"project": projects.checked(json.loads(data))})
         except (projects.Invalid, UnicodeDecodeError, json.JSONDecodeError) as error:
             return problem(str(error))
+        except RecursionError:
+            return problem("the project is nested too deeply")
 
     async def get_room(self, request: Request) -> Response:
         """GET room.glb?session=: the room before it is lit, for the page's own view of it."""
@@ -180,15 +185,15 @@ class Studio:
             return
         await socket.accept()
         session = await run_in_threadpool(self.session, name)
-        loop, queue = asyncio.get_running_loop(), asyncio.Queue[bytes]()
+        loop, outbox = asyncio.get_running_loop(), Outbox()
 
         def listen(header: dict[str, Any], payload: bytes) -> None:
-            text = json.dumps(header, default=float).encode()
-            loop.call_soon_threadsafe(queue.put_nowait, struct.pack("<I", len(text)) + text + payload)
+            loop.call_soon_threadsafe(outbox.put, header, payload)
 
         async def speak() -> None:
-            while True:
-                await socket.send_bytes(await queue.get())
+            while (message := await outbox.get()) is not None:
+                await socket.send_bytes(message)
+            await socket.close(1013)  # "try again later": the page connects anew
 
         session.hello()
         session.listeners.append(listen)
@@ -227,6 +232,19 @@ class Studio:
                 Mount("/", StaticFiles(directory=STATIC, html=True)),
             ]
         )
+
+
+async def body(request: Request, most: int) -> bytes | None:
+    """What a request brings; None, without reading on, if that is more than `most` bytes."""
+    stated = request.headers.get("content-length", "")
+    if stated.isdecimal() and int(stated) > most:
+        return None
+    data = bytearray()
+    async for part in request.stream():
+        data += part
+        if len(data) > most:
+            return None
+    return bytes(data)
 
 
 def problem(message: str, status: int = 400) -> Response:
