@@ -13,7 +13,8 @@ from unittest import mock
 
 from support import PACKAGE, Case, context, luxfer
 
-from luxfer.studio import app, command, files, opening, outbox, security
+from luxfer.studio import app, command, files, opening, outbox, project, security
+from luxfer.studio.session import Wanted
 
 MONTH = files.KEEP_SECONDS
 
@@ -205,6 +206,71 @@ class Limits(Case):
             return await asyncio.wait_for(waiting.get(), 5)
 
         self.assertTrue(asyncio.run(work()).endswith(b"bytes"))
+
+
+class Talk(Case):
+    """Messages that no page of the studio sends."""
+
+    def setUp(self):
+        super().setUp()
+        self.studio = app.Studio(files.Files(self.folder / "state", security.Allowed()), None, None)
+        self.addCleanup(self.studio.close)
+
+    def talk(self, *messages):
+        """What comes back through a socket, and how it is closed."""
+        waiting = [{"type": "websocket.connect"}, *messages, {"type": "websocket.disconnect", "code": 1000}]
+        sent = []
+
+        async def receive():
+            await asyncio.sleep(0.05)  # answers are sent meanwhile
+            return waiting.pop(0)
+
+        async def send(message):
+            sent.append(message)
+
+        scope = {"type": "websocket", "path": "/ws", "query_string": b"session=session01", "headers": []}
+        with mock.patch.object(app, "STATIC", PACKAGE):
+            asyncio.run(self.studio.app()({**scope, "root_path": "", "scheme": "ws"}, receive, send))
+        answers = [m["bytes"] for m in sent if m["type"] == "websocket.send"]
+        return [json.loads(a[4 : 4 + struct.unpack_from("<I", a)[0]]) for a in answers]
+
+    def test_wrong_messages_are_answered(self):
+        good = {"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}}
+        wrong = [
+            "[1, 2]",
+            "3",
+            "null",
+            '{"project": 3}',
+            f'{{"project": {json.dumps(good)}, "size": [1e999, 1]}}',
+            f'{{"project": {json.dumps(good)}, "size": 3}}',
+            f'{{"project": {json.dumps(good)}, "version": 1e999}}',
+        ]
+        answers = self.talk(*({"type": "websocket.receive", "text": text} for text in wrong))
+        self.assertEqual([a["type"] for a in answers], ["failed"] * len(wrong), answers)
+        for answer in answers:
+            self.assertGreater(len(answer["message"]), 5)
+
+    def test_what_is_no_message_ends_the_connection(self):
+        for last in ({"bytes": b"abc"}, {"text": "{"}, {"text": "[" * 200_000}):
+            self.assertEqual(self.talk({"type": "websocket.receive", **last}), [])
+
+    def test_an_error_without_words_is_told_by_its_name(self):
+        told = []
+        session = self.studio.session("session01")
+        session.listeners.append(lambda header, payload: told.append(header))
+        for failure in (MemoryError(), AssertionError(), FileNotFoundError("gone")):
+            session._failed(failure)
+        self.assertEqual([t["message"] for t in told], ["MemoryError", "AssertionError", "gone"])
+        self.assertEqual([t["missing"] for t in told], [False, False, True])
+
+    def test_a_room_that_is_missing_is_said(self):
+        session = self.studio.session("session01")
+        file = {"name": "gone.glb", "sha256": "1" * 64}
+        whole = project.checked({"luxfer_studio": 1, "photo": file, "room": file})
+        session.wanted = Wanted(whole, 1, (64, 64), "off", False, 0.0)
+        status, answer = route(self.studio, "/room.glb?session=session01")
+        self.assertEqual(status, 404)
+        self.assertIn("gone.glb", json.loads(answer)["message"])
 
 
 def with_buffer_beside(path):

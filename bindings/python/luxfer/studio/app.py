@@ -86,7 +86,7 @@ class Studio:
     async def get_start(self, request: Request) -> Response:
         """GET start: the first project, and which sessions have a page open."""
         project = await run_in_threadpool(self.start)
-        live = [name for name, session in self.sessions.items() if session.listeners]
+        live = [name for name, session in list(self.sessions.items()) if session.listeners]
         named = self.first is not None and self.first["photo"] is not None
         return JSONResponse({"project": project, "open": live, "named": named, "version": luxfer.__version__})
 
@@ -160,8 +160,12 @@ class Studio:
         session = self.sessions.get(request.query_params.get("session", ""))
         if session is None or session.wanted is None:
             return problem("there is no such session", 404)
-        room = await run_in_threadpool(session.room, session.wanted.project)
-        return Response(await run_in_threadpool(room.to_bytes), media_type="model/gltf-binary")
+        try:
+            room = await run_in_threadpool(session.room, session.wanted.project)
+            data = await run_in_threadpool(room.to_bytes)
+        except (OSError, ValueError, luxfer.Error) as error:
+            return problem(projects.message(error), 404 if isinstance(error, FileNotFoundError) else 409)
+        return Response(data, media_type="model/gltf-binary")
 
     async def get_out(self, request: Request) -> Response:
         """GET out/KIND?session=: a result as a file to keep."""
@@ -172,9 +176,9 @@ class Studio:
         done = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
         try:
             path = await run_in_threadpool(session.out, request.path_params["kind"], folder)
-        except (luxfer.Error, LookupError) as error:
+        except (luxfer.Error, LookupError, OSError) as error:
             shutil.rmtree(folder, ignore_errors=True)
-            return problem(str(error), 409)
+            return problem(projects.message(error), 409)
         return FileResponse(path, filename=path.name, background=done)
 
     async def talk(self, socket: WebSocket) -> None:
@@ -202,16 +206,10 @@ class Studio:
             while True:
                 message = await socket.receive_json()
                 try:
-                    if message.get("type") == "expose":
-                        await run_in_threadpool(session.expose, message.get("exposure"))
-                    else:
-                        await run_in_threadpool(session.edit, message)
-                except (projects.Invalid, TypeError, ValueError, OSError) as error:
-                    listen(
-                        {"type": "failed", "message": str(error), "missing": False, "error": type(error).__name__},
-                        b"",
-                    )
-        except (WebSocketDisconnect, json.JSONDecodeError):
+                    await run_in_threadpool(session.take, message)
+                except (projects.Invalid, TypeError, ValueError, ArithmeticError, OSError, luxfer.Error) as error:
+                    listen(projects.failure(error), b"")
+        except (WebSocketDisconnect, json.JSONDecodeError, RecursionError, KeyError):  # KeyError: bytes, not a text
             pass
         finally:
             session.listeners.remove(listen)

@@ -37,6 +37,17 @@ class Invalid(ValueError):
     """A project that is none; the message says where."""
 
 
+def message(error: Exception) -> str:
+    """What to tell the user about an error; never empty, which the page takes for no error."""
+    return str(error) or type(error).__name__
+
+
+def failure(error: Exception) -> dict[str, Any]:
+    """The message to the page about an error. A file that is missing can be given."""
+    missing = isinstance(error, FileNotFoundError)
+    return {"type": "failed", "message": message(error), "missing": missing, "error": type(error).__name__}
+
+
 def number(low: float, high: float) -> Callable[[Any, str], float]:
     def check(value: Any, name: str) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:

@@ -74,6 +74,15 @@ class Session:
         for listener in list(self.listeners):
             listener({"type": kind, **header}, payload)
 
+    def take(self, message: Any) -> None:
+        """A message of the page; Invalid, among others, if it is none."""
+        if not isinstance(message, dict):
+            raise projects.Invalid("a message is an object")
+        if message.get("type") == "expose":
+            self.expose(message.get("exposure"))
+        else:
+            self.edit(message)
+
     def hello(self) -> None:
         """A page has connected: it gets everything again with its next edit."""
         self._opened = None
@@ -107,7 +116,7 @@ class Session:
         else:
             self.work.put(wanted)
 
-    def expose(self, exposure: float) -> None:
+    def expose(self, exposure: Any) -> None:
         """Another brightness of the pictures that are shown; disturbs no work."""
         if self.wanted is not None and self.light is not None:
             self.wanted.project["exposure"] = projects.FIELDS["exposure"](exposure, "exposure")
@@ -208,8 +217,8 @@ class Session:
 
     def _failed(self, failure: Exception) -> None:
         """Tells the user; a file that is missing can be given."""
-        missing = isinstance(failure, FileNotFoundError)
-        self.send("failed", message=str(failure), missing=missing, error=type(failure).__name__)
+        header = projects.failure(failure)
+        self.send(header.pop("type"), **header)
 
     # -- results
 
