@@ -7,14 +7,15 @@ import os
 import re
 import stat
 import struct
+import threading
 import time
 import unittest
 from unittest import mock
 
-from support import PACKAGE, Case, context, luxfer
+from support import PACKAGE, Case, context, demo, luxfer
 
 from luxfer.studio import app, command, files, opening, outbox, project, security
-from luxfer.studio.session import Wanted
+from luxfer.studio.session import ENDINGS, Session, Wanted
 
 MONTH = files.KEEP_SECONDS
 
@@ -271,6 +272,78 @@ class Talk(Case):
         status, answer = route(self.studio, "/room.glb?session=session01")
         self.assertEqual(status, 404)
         self.assertIn("gone.glb", json.loads(answer)["message"])
+
+
+class Results(Case):
+    """Results as files, without a server."""
+
+    def setUp(self):
+        super().setUp()
+        self.files = files.Files(self.folder / "state", security.Allowed())
+        demo()[0].save(self.folder / "office.png")
+        photo = self.files.upload("office.png", (self.folder / "office.png").read_bytes())
+        named = {"name": photo.name, "sha256": photo.sha256}
+        self.project = project.checked({"luxfer_studio": 1, "photo": named, "noise": 1.0, "exposure": 1e-3})
+        self.session = Session("session01", context(), self.files, self.folder / "kept.json")
+        self.addCleanup(self.session.close)
+
+    def edit(self, seen=lambda header: None, draft=False, **changes):
+        """Sends a state of the project, and waits until the work is done."""
+        ended, failures = threading.Event(), []
+
+        def listen(header, payload):
+            seen(header)
+            if header["type"] == "failed":
+                failures.append(header["message"])
+            if header["type"] in ("idle", "failed"):
+                ended.set()
+
+        self.session.listeners[:] = [listen]
+        whole = {**self.project, **changes}
+        self.session.edit({"project": whole, "size": [160, 104], "draft": draft})
+        if not draft:
+            self.assertTrue(ended.wait(120))
+            self.assertEqual(failures, [])
+
+    def out(self, kind):
+        """The content of a file; None if it is not ready."""
+        try:
+            return self.session.out(kind, self.folder).read_bytes()
+        except luxfer.errors.NotReady:
+            return None
+
+    def test_results_belong_to_the_project_that_is_shown(self):
+        early = {}
+
+        def seen(header):  # in the thread of the work, before it goes on
+            if header["type"] == "picture" and not header["done"]:
+                early.update({kind: self.out(kind) for kind in ("exr", "png", "program", "csv", "glb", "project")})
+
+        self.edit(seen)
+        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program"])
+        first = {kind: self.out(kind) for kind in ENDINGS}
+        self.assertEqual([kind for kind, content in first.items() if content is None], [])
+        self.assertEqual(luxfer.Image.load(context(), self.folder / "office.exr").size[:2], (160, 104))
+
+        # A change that nothing has followed yet: no result of the former project is given for it.
+        self.edit(draft=True, white=200.0)
+        later = {kind: self.out(kind) for kind in ENDINGS}
+        self.assertEqual([kind for kind, content in later.items() if content is not None], ["project"])
+        self.assertEqual(json.loads(later["project"])["white"], 200.0)
+        self.edit(white=200.0)
+        for kind, content in first.items():
+            self.assertTrue(self.out(kind) not in (None, content), kind)
+
+    def test_a_page_that_connects_disturbs_no_work(self):
+        seen = []
+
+        def greet(header):
+            if header["type"] == "room":  # photo and room are open, and the work is about to use them
+                self.session.hello()
+            seen.append(header["type"])
+
+        self.edit(greet)
+        self.assertIn("picture", seen)
 
 
 def with_buffer_beside(path):

@@ -66,6 +66,9 @@ class Light:
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
+        # The projects, the very objects, that the lamps and the finished picture belong to.
+        self.lit_for: Project | None = None
+        self.pictured_for: Project | None = None
 
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all steps that are out of date, and tells the page of each result."""
@@ -77,6 +80,7 @@ class Light:
         self.step("unwarp", project["removed"], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", project["white"], lambda: self.relight(project))
+        self.lit_for = project
         self.step("lux", [], lambda: self.measure(surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
         if compare != "off":
@@ -86,6 +90,7 @@ class Light:
             self.step("plan", project["noise"], lambda: self.plan(project, size))
             project["plan"] = self.planned
         self.step("picture", project["plan"], lambda: self.refine(project, size))
+        self.pictured_for = project
 
     def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
         """Runs a step if it is out of date."""
