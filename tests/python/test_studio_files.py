@@ -10,11 +10,15 @@ import struct
 import threading
 import time
 import unittest
+from types import SimpleNamespace
 from unittest import mock
 
-from support import PACKAGE, Case, context, demo, luxfer
+from support import PACKAGE, Case, context, demo, luxfer, np
 
+from luxfer.cli.plane import above_floor
 from luxfer.studio import app, command, files, opening, outbox, project, security
+from luxfer.studio.light import Light
+from luxfer.studio.room import work_plane
 from luxfer.studio.session import ENDINGS, Session, Wanted
 
 MONTH = files.KEEP_SECONDS
@@ -344,6 +348,60 @@ class Results(Case):
 
         self.edit(greet)
         self.assertIn("picture", seen)
+
+
+class Planes(Case):
+    """Where the illuminance of the studio is calculated."""
+
+    def room(self, rise=3.0):
+        """A room of 5 x 4 x 2.8 m whose floor is at y = `rise`, over a terrain that lies 3 m below the floor."""
+        scene = luxfer.Scene(context())
+        black = scene.add_material(name="Black", base_color=(0, 0, 0))
+        for name, y, side, face in (
+            ("Ceiling", rise + 2.8, (5.0, 4.0), (0, 1, 2, 0, 2, 3)),
+            ("Floor", rise, (5.0, 4.0), (0, 2, 1, 0, 3, 2)),
+            ("Terrain", rise - 3.0, (50.0, 40.0), (0, 2, 1, 0, 3, 2)),
+        ):
+            x, z = side[0] / 2, side[1] / 2
+            corners = [(-x, y, -z), (x, y, -z), (x, y, z), (-x, y, z)]
+            scene.add_mesh(np.array(corners, np.float32), np.array(face, np.uint32).reshape(2, 3), material=black, name=name)
+        return scene
+
+    def test_the_plane_is_above_the_floor_below_the_ceiling(self):
+        plane, problem = work_plane(self.room(), "Ceiling")
+        self.assertEqual(problem, "")
+        self.assertAlmostEqual(plane.origin[1], 3.75, places=4)
+        self.assertEqual([round(side, 4) for side in sorted(plane.sides)], [3.0, 4.0])
+        self.assertEqual(plane, above_floor(self.room(), "Ceiling"))
+
+    def test_a_surface_without_a_floor_is_said(self):
+        plane, problem = work_plane(self.room(), "Terrain")
+        self.assertIn('"Terrain"', problem)
+        self.assertAlmostEqual(plane.origin[1], 2.9, places=4)
+
+    def measured(self, surface):
+        """What the page is told of the illuminance."""
+        told = []
+        room = self.room()
+        light = Light(demo()[0], room, SimpleNamespace(finish=lambda job: job.wait()), lambda *a, **k: told.append((a, k)))
+        room.add_light(kind="point", position=(0, 5, 0), intensity=(100, 100, 100))
+        light.lit = room
+        light.measure(surface)
+        return told[-1][1], light.exposure
+
+    def test_the_page_is_told_the_height_above_the_floor(self):
+        told, _ = self.measured("Ceiling")
+        self.assertAlmostEqual(told["height"], 0.75)
+        self.assertAlmostEqual(told["floor"], 3.0, places=4)
+        self.assertEqual([round(inset, 4) for inset in told["insets"]], [0.5, 0.5])
+        # 100 cd at 1.25 m above the plane: 64 lx below it, and less elsewhere.
+        self.assertLess(abs(told["maximum"] - 64), 3)
+
+    def test_without_a_plane_pictures_have_a_brightness(self):
+        told, exposure = self.measured("Terrain")
+        self.assertIn("no plane of desks", told["problem"])
+        self.assertNotIn("mean", told)
+        self.assertTrue(np.isfinite(exposure) and exposure > 0)
 
 
 def with_buffer_beside(path):

@@ -15,6 +15,7 @@ from typing import Any
 import luxfer
 import numpy as np
 
+from ..cli.plane import DESK
 from . import pictures
 from .jobs import Latest
 from .live import strokes_of
@@ -274,12 +275,13 @@ class Light:
         return render
 
     def measure(self, surface: str) -> None:
-        """Lux on the work plane."""
-        grid, metres = work_plane(self.room, surface)
+        """Lux on the work plane, and a brightness for the pictures."""
+        plane, problem = work_plane(self.room, surface)
+        metres = plane.sides
         cell = max(metres) / LUX_POINTS
         columns, rows = (max(1, round(m / cell)) for m in metres)
         job = luxfer.Illuminance(self.context, self.lit).start_grid(
-            grid, columns=columns, rows=rows, samples=LUX_SAMPLES
+            plane.grid(), columns=columns, rows=rows, samples=LUX_SAMPLES
         )
         lux = self.thread.finish(job)
         report = lux.report
@@ -287,11 +289,17 @@ class Light:
         open_points = values[values > 0]  # no light at all reaches points inside of furniture
         scale = values.size / max(1, open_points.size)
         self.exposure = exposure_for(report.mean * scale)
+        if problem:
+            self.send("lux", problem=problem)
+            return
+        sides = self.room.find_surface(surface).size
         self.send(
             "lux",
             values=[[round(float(v), 1) for v in row] for row in values],
             size=metres,
-            height=grid["origin"][1],
+            height=DESK,
+            floor=plane.origin[1] - DESK,
+            insets=[(whole - side) / 2 for whole, side in zip(sides, metres)],
             inside=values.size - open_points.size,
             minimum=float(open_points.min()) if open_points.size else 0.0,
             mean=report.mean * scale,
