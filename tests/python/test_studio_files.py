@@ -1,6 +1,7 @@
 """What the studio keeps, deletes and opens, and what it refuses. Runs where benches/peers/install.sh has installed
 `studio`."""
 
+import ast
 import asyncio
 import json
 import os
@@ -16,7 +17,7 @@ from unittest import mock
 from support import PACKAGE, Case, context, demo, luxfer, np
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import app, command, files, opening, outbox, project, security
+from luxfer.studio import app, command, files, opening, outbox, program, project, security
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.session import ENDINGS, Session, Wanted
@@ -348,6 +349,50 @@ class Results(Case):
 
         self.edit(greet)
         self.assertIn("picture", seen)
+
+
+class Programs(Case):
+    """The exported program, as a text."""
+
+    def text(self, **changes):
+        named = {"name": "photo.png", "sha256": "0" * 64}
+        whole = project.checked({"luxfer_studio": 1, "photo": named, **changes})
+        camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
+        return program.program(whole, (72, 48), changes.get("surface") or "Ceiling", camera, 0.01)
+
+    def test_names_are_those_of_the_files(self):
+        for name in ("😀.png", "Büro.png", "it's \"here\".png", "back\\slash.png", "two\nlines.png", "{braces}.png"):
+            file = {"name": name, "sha256": "0" * 64}
+            tree = ast.parse(self.text(photo=file, room=file, surface=name).encode())
+            values = {
+                node.targets[0].id: node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets
+            }
+            found = [values[n].orelse.value for n in ("photo_file", "room_file")] + [values["surface"].value]
+            self.assertEqual(found, [name] * 3)
+
+    def test_what_was_taken_out_stays_out(self):
+        zones, removed = [[0.0, 0.5, 1.0, 1.5]], [[12.0, 34.0]]
+        text = self.text(zones=zones, removed=removed)
+        ast.parse(text)
+        self.assertIn(f"transfer.set_zones({zones})", text)
+        self.assertIn(f"without(mask, {removed}, ", text)
+        self.assertNotIn("without(", self.text(zones=zones))
+
+    def test_a_plan_has_only_the_settings_of_a_plan(self):
+        good = {"samples": 64, "target_error": 0.1, "seed": 0}
+        self.assertIn("**{'samples': 64, 'target_error': 0.1, 'seed': 0}", self.text(plan={"render": good}))
+        for wrong in (
+            {**good, "time_budget_ms": 10},
+            {"width": 10},
+            {"target_error": float("nan")},
+            {"target_error": float("inf")},
+            {"samples": 1.5},
+            {"samples": 0},
+            {"seed": -1},
+            {"samples": True},
+        ):
+            with self.assertRaises(project.Invalid, msg=str(wrong)):
+                self.text(plan={"render": wrong})
 
 
 class Planes(Case):
