@@ -322,10 +322,14 @@ class Results(Case):
 
         def seen(header):  # in the thread of the work, before it goes on
             if header["type"] == "picture" and not header["done"]:
-                early.update({kind: self.out(kind) for kind in ("exr", "png", "program", "csv", "glb", "project")})
+                for kind in ENDINGS:
+                    early.setdefault(kind, self.out(kind))
+            if header["type"] == "plan":  # the picture has its full size, and becomes better
+                self.session.out("exr", self.folder).rename(self.folder / "early.exr")
 
         self.edit(seen)
         self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program"])
+        self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
         first = {kind: self.out(kind) for kind in ENDINGS}
         self.assertEqual([kind for kind, content in first.items() if content is None], [])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "office.exr").size[:2], (160, 104))

@@ -67,9 +67,7 @@ class Light:
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
-        # The projects, the very objects, that the lamps and the finished picture belong to.
-        self.lit_for: Project | None = None
-        self.pictured_for: Project | None = None
+        self.done: dict[str, Project] = {}  # by steps that files need: the project, the very object, that they belong to
 
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all steps that are out of date, and tells the page of each result."""
@@ -81,17 +79,18 @@ class Light:
         self.step("unwarp", project["removed"], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", project["white"], lambda: self.relight(project))
-        self.lit_for = project
+        self.done["relight"] = project
         self.step("lux", [], lambda: self.measure(surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
         self.step("second", shot, lambda: self.second_picture(project, size))
+        self.done["second"] = project
         if not project["plan"]:
             self.step("plan", project["noise"], lambda: self.plan(project, size))
             project["plan"] = self.planned
+        self.done["plan"] = project
         self.step("picture", project["plan"], lambda: self.refine(project, size))
-        self.pictured_for = project
 
     def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
         """Runs a step if it is out of date."""
@@ -249,11 +248,12 @@ class Light:
 
     def second_picture(self, project: Project, size: tuple[int, int]) -> None:
         """The full size, with one path for each pixel and the noise filter."""
-        self.render = render = luxfer.Render(self.context, self.lit)
+        render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
         start = time.perf_counter()
         self.send("working", stage="render")
         self.thread.finish(render.start(width=size[0], height=size[1], samples=1, preview=1.0))
+        self.render = render
         self.send_picture(render, project, "after", False, time.perf_counter() - start)
 
     def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
@@ -310,7 +310,7 @@ class Light:
     def refine(self, project: Project, size: tuple[int, int]) -> None:
         """The picture at its full size, better and better, until it has the paths of the plan."""
         settings = {**project["plan"]["render"], "width": size[0], "height": size[1], "preview": 1.0}
-        self.render = render = luxfer.Render(self.context, self.lit)
+        render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
         start, shown = time.perf_counter(), 1
 
@@ -319,6 +319,7 @@ class Light:
             self.send_progress(share, time.perf_counter() - start)
             try:
                 if render.report.samples > shown:
+                    self.render = render
                     self.send_picture(render, project, "after", False, time.perf_counter() - start)
                     shown = render.report.samples
             except luxfer.errors.NotReady:
@@ -326,6 +327,7 @@ class Light:
 
         self.send("working", stage="render")
         self.thread.finish(render.start(**settings), show)
+        self.render = render
         self.send_picture(render, project, "after", True, time.perf_counter() - start)
 
     def send_progress(self, share: float, seconds: float) -> None:

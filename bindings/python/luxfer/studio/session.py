@@ -31,6 +31,8 @@ MAX_SIDE = 1600
 
 #: The results as files: how their names end.
 ENDINGS = {"glb": "glb", "exr": "exr", "png": "png", "csv": "csv", "project": "luxfer.json", "program": "py"}
+#: The steps of Light after which they are there: a picture at its full size, and for the program brightness and plan.
+NEEDS = {"glb": "relight", "csv": "relight", "exr": "second", "png": "second", "program": "plan"}
 
 Send = Callable[[dict[str, Any], bytes], None]
 
@@ -262,7 +264,5 @@ def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
     file has no results."""
     if kind not in ENDINGS:
         raise LookupError(f"there is no result {kind}")
-    if kind in ("csv", "glb") and light.lit_for is not wanted.project:
-        raise luxfer.errors.NotReady("the lamps follow the latest change: try again in a moment")
-    if kind in ("png", "exr", "program") and light.pictured_for is not wanted.project:
-        raise luxfer.errors.NotReady("the picture follows the latest change: try again when it is finished")
+    if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:
+        raise luxfer.errors.NotReady("the room follows the latest change: try again in a moment")
