@@ -114,6 +114,13 @@ class Folders(Case):
             with self.assertRaises(PermissionError, msg=name):
                 opened.open(self.folder / "here" / name)
 
+    def test_two_projects_are_refused(self):
+        self.start("photo.png", b"photo.png")
+        kept = str(self.folder / "here" / "room.luxfer.json")
+        opened = files.Files(self.folder / "state", security.Allowed())
+        with self.assertRaises(project.Invalid):
+            app.first_project(command.parser().parse_args([kept, "--project", kept + ".other"]), opened)
+
     def test_names_in_a_project_do_not_lead_out_of_its_folder(self):
         (self.folder / "here" / "link.png").symlink_to(self.folder / "secret.png")
         for name in ("../secret.png", str(self.folder / "secret.png"), "link.png"):
@@ -173,6 +180,17 @@ class Limits(Case):
             self.assertEqual(route(self.studio, "/files?name=a.png", parts, content_length="4")[0], 413)
             self.assertEqual(parts, [b"never read"])
         self.assertEqual(list((self.folder / "state" / "files").iterdir()), [])
+
+    def test_users_without_a_page_make_room(self):
+        for i in range(app.MAX_SESSIONS + 3):
+            session = self.studio.session(f"session{i:02}")
+            session.used = i
+            if i in (0, 4):
+                session.listeners.append(lambda header, payload: None)
+        self.addCleanup(self.studio.close)
+        named = sorted(self.studio.sessions)
+        self.assertEqual(len(named), app.MAX_SESSIONS)
+        self.assertEqual(named, [f"session{i:02}" for i in (0, 4, 5, 6, 7, 8, 9, 10)])
 
     def test_a_project_nested_too_deeply_is_refused(self):
         self.assertEqual(route(self.studio, "/projects", b"[" * 200_000)[0], 400)

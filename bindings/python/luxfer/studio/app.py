@@ -255,7 +255,9 @@ def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Pro
     project: projects.Project | None = None
     kept, photo = asked.project, asked.photo
     if photo is not None and photo.suffix.lower() == ".json":
-        kept, photo = kept or photo, None
+        if kept is not None:
+            raise projects.Invalid(f"there are two projects: {photo} and --project {kept}")
+        kept, photo = photo, None
         if not kept.exists():
             raise FileNotFoundError(f"there is no file {kept}")
     if kept is not None and kept.exists():
@@ -276,7 +278,9 @@ def bind(port: int) -> socket.socket:
     strokes by port."""
     for candidate in [port, *range(port + 1, port + 20), 0] if port else [0]:
         listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-        if sys.platform != "win32":
+        if sys.platform == "win32":  # there, another program could otherwise bind the same port over it
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+        else:
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind(("127.0.0.1", candidate))
