@@ -54,7 +54,8 @@ export function showLux(message: Message): void {
     make(
       "p",
       { class: "quiet" },
-      `On a plane ${short(message.height as number)} m above the floor, ${distances(message.insets as number[])} from the walls. ± is 95 %.${
+      `On a plane ${short(message.height as number)} m above the floor, ` +
+        `${distances(message.insets as number[])} from the walls. ± is 95 %.${
         message.inside ? ` ${message.inside} points lie inside of furniture and do not count.` : ""
       }`,
     ),

@@ -29,8 +29,8 @@ DEMO_NAME = "generated office.png"
 MAX_UPLOAD = 1 << 30
 #: Files of the studio in its state folder are deleted if they have not been used for this time.
 KEEP_SECONDS = 30 * 24 * 3600.0
-#: The studio's own names in the state folder: projects of sessions, pages that open the studio, and files by their hash
-#: with the name after it, or with a dot before it while they are written. Any other name belongs to the user.
+#: The studio's own names in the state folder: projects of sessions, pages that open the studio, and files by their
+#: hash with the name after it, or with a dot before it while they are written. Any other name belongs to the user.
 SESSION = re.compile(r"session-[A-Za-z0-9]{8,64}\.json")
 OPENING = re.compile(r"open-studio-[0-9a-f]{16}\.html")
 KEPT = re.compile(r"([0-9a-f]{64})-(.+)", re.DOTALL)
@@ -92,8 +92,9 @@ class Files:
         """Deletes the studio's own files that have not been used for a month."""
         sessions = [p for p in self.state.iterdir() if SESSION.fullmatch(p.name) and is_project(p)]
         openings = [p for p in self.state.iterdir() if OPENING.fullmatch(p.name)]
-        kept = [p for p in (self.state / "files").iterdir() if KEPT.fullmatch(p.name) or PARTIAL.fullmatch(p.name)]
-        for path in sessions + openings + kept:
+        inside = (self.state / "files").iterdir()
+        given = [p for p in inside if KEPT.fullmatch(p.name) or PARTIAL.fullmatch(p.name)]
+        for path in sessions + openings + given:
             if path.is_file() and time.time() - path.stat().st_mtime > KEEP_SECONDS:
                 path.unlink()
 
@@ -104,7 +105,7 @@ class Files:
             os.utime(known.path)
 
     def open(self, path: Path, check: Callable[[Known, bytes], None] | None = None) -> Known:
-        """A file by its path, if the user has named it or its folder. `check` raises what is wrong with its content."""
+        """A file by its path, if the user has named it or its folder. `check` raises what is wrong with it."""
         real = self.allowed.check(path)
         data = real.read_bytes()
         known = Known(real.name, digest(data), real)
@@ -114,7 +115,7 @@ class Files:
         return known
 
     def open_named(self, project: Project, folder: Path) -> None:
-        """Opens the files of a project that lie beside it, if they are those that it means by their hash. A project may
+        """Opens the files of a project that lie beside it, if their hashes are those that it states. A project may
         come from a stranger: its names do not lead out of its folder."""
         folder = folder.resolve()
         for file in filter(None, (project["photo"], project["room"])):

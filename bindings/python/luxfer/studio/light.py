@@ -67,7 +67,8 @@ class Light:
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
-        self.done: dict[str, Project] = {}  # by steps that files need: the project, the very object, that they belong to
+        #: The project, the very object, to which the result of a step belongs, for the steps that files need.
+        self.done: dict[str, Project] = {}
 
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all steps that are out of date, and tells the page of each result."""

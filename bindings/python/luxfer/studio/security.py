@@ -66,8 +66,8 @@ class Guard:
         await self.app(inner, receive, sender(send) if scope["type"] == "http" else send)
 
     def is_opened(self, scope: Any) -> bool:
-        """Whether a request brings the code, which is then used up. It may come from another site, as the browser calls
-        the file that leads here."""
+        """Whether a request brings the code, which is then used up. It may come from another site: so the browser
+        calls the file that leads here."""
         headers = headers_of(scope)
         if not self.code or scope["type"] != "http" or scope["method"] != "GET":
             return False
