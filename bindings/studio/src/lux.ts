@@ -31,6 +31,11 @@ export function colourAt(share: number): string {
 }
 
 export function showLux(message: Message): void {
+  if (message.problem) {
+    byId("lux").replaceChildren(make("p", { class: "quiet" }, message.problem as string));
+    delete byId("lux").dataset.mean;
+    return;
+  }
   const values = message.values as number[][];
   const { minimum, mean, maximum, error } = message as unknown as Record<string, number>;
   const numbers: [string, string][] = [
@@ -49,12 +54,18 @@ export function showLux(message: Message): void {
     make(
       "p",
       { class: "quiet" },
-      `On a plane at a height of ${short(message.height as number)} m, half a metre from the walls. ± is 95 %.${
+      `On a plane ${short(message.height as number)} m above the floor, ` +
+        `${distances(message.insets as number[])} from the walls. ± is 95 %.${
         message.inside ? ` ${message.inside} points lie inside of furniture and do not count.` : ""
       }`,
     ),
   );
   byId("lux").dataset.mean = String(mean);
+}
+
+/** The distances of the plane from the walls along both of its sides. */
+function distances(insets: number[]): string {
+  return `${[...new Set(insets.map(short))].join(" and ")} m`;
 }
 
 function plan(values: number[][], [width, depth]: [number, number], maximum: number): HTMLElement {

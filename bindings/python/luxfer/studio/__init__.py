@@ -9,6 +9,8 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | command | the options of the command line |
 | app | the web application: its routes, its start |
 | security | who may ask: token, Host and Origin; which files may be read |
+| opening | how the browser finds the page without its address on a command line |
+| outbox | what waits to be sent to a page |
 | files | photos, scenes and project files, by the hash of their content |
 | session | one user: the project that is wanted, the connection to the page |
 | jobs | threads that do the newest work and give up what is out of date |

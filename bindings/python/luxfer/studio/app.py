@@ -7,11 +7,9 @@ import asyncio
 import json
 import shutil
 import socket
-import struct
 import sys
 import tempfile
 import threading
-import webbrowser
 from pathlib import Path
 from typing import Any
 
@@ -28,13 +26,17 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..cli.exits import Exit
 from . import project as projects
-from .files import MAX_UPLOAD, Files, state_folder
+from .files import MAX_UPLOAD, Files, Known, state_folder
+from .opening import Opening
+from .outbox import Outbox
 from .security import Allowed, Guard, new_token
 from .session import Session
 
 STATIC = Path(__file__).resolve().parent / "static"
 #: Users whose page has gone are forgotten, the one that was here longest ago first, beyond this number.
 MAX_SESSIONS = 8
+#: Project files beyond this are refused: 16 MiB are over a million points of strokes. [convention]
+MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
 
@@ -61,7 +63,7 @@ class Studio:
         with self.lock:
             if name not in self.sessions:
                 self._make_room()
-                saved = self.files.state / f"session-{name[:16]}.json"
+                saved = self.files.state / f"session-{name}.json"
                 if self.project_file is not None and all(
                     s.saved != self.project_file for s in self.sessions.values()
                 ):
@@ -85,17 +87,15 @@ class Studio:
     async def get_start(self, request: Request) -> Response:
         """GET start: the first project, and which sessions have a page open."""
         project = await run_in_threadpool(self.start)
-        live = [name for name, session in self.sessions.items() if session.listeners]
+        live = [name for name, session in list(self.sessions.items()) if session.listeners]
         named = self.first is not None and self.first["photo"] is not None
         return JSONResponse({"project": project, "open": live, "named": named, "version": luxfer.__version__})
 
     async def put_file(self, request: Request) -> Response:
         """POST files?name=: takes a photo or a room from the page."""
-        data = bytearray()
-        async for part in request.stream():
-            data += part
-            if len(data) > MAX_UPLOAD:
-                return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
+        data = await body(request, MAX_UPLOAD)
+        if data is None:
+            return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
         name = request.query_params.get("name", "file")
         if not data:
             return problem(f"{name} is empty")
@@ -105,16 +105,20 @@ class Studio:
                 f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
             )
         try:
-            await run_in_threadpool(self.try_file, bytes(data), suffix)
+            await run_in_threadpool(self.try_file, data, suffix)
         except luxfer.Error as error:
             return problem(f"{name} cannot be read: {error}")
-        known = await run_in_threadpool(self.files.upload, name, bytes(data))
+        known = await run_in_threadpool(self.files.upload, name, data)
         return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
 
-    def try_file(self, data: bytes, suffix: str) -> None:
+    def try_known(self, known: Known, data: bytes) -> None:
+        """Raises what the library says about a file of a folder, which may name files beside it."""
+        self.try_file(data, known.path.suffix.lower(), known.path.parent)
+
+    def try_file(self, data: bytes, suffix: str, folder: Path | None = None) -> None:
         """Raises what the library says about a file that it cannot read."""
         if suffix in ROOMS:
-            scene = luxfer.Scene.from_bytes(self.context, data)
+            scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
                 raise luxfer.errors.Degenerate("it has no surface that could receive lights")
         else:
@@ -124,8 +128,7 @@ class Studio:
         """GET files: what lies in the folders that the user named; open=PATH opens one of them."""
         if wanted := request.query_params.get("open"):
             try:
-                known = await run_in_threadpool(self.files.open, Path(wanted))
-                await run_in_threadpool(self.try_file, known.read(), known.path.suffix.lower())
+                known = await run_in_threadpool(self.files.open, Path(wanted), self.try_known)
             except (OSError, luxfer.Error) as error:
                 return problem(str(error), 403 if isinstance(error, PermissionError) else 400)
             return JSONResponse(
@@ -143,18 +146,27 @@ class Studio:
 
     async def put_project(self, request: Request) -> Response:
         """POST projects: the text of a project file; its project, or what is wrong with it."""
+        data = await body(request, MAX_PROJECT)
+        if data is None:
+            return problem(f"the project is larger than {MAX_PROJECT >> 20} MiB", 413)
         try:
-            return JSONResponse({"project": projects.checked(json.loads(await request.body()))})
+            return JSONResponse({"project": projects.checked(json.loads(data))})
         except (projects.Invalid, UnicodeDecodeError, json.JSONDecodeError) as error:
             return problem(str(error))
+        except RecursionError:
+            return problem("the project is nested too deeply")
 
     async def get_room(self, request: Request) -> Response:
         """GET room.glb?session=: the room before it is lit, for the page's own view of it."""
         session = self.sessions.get(request.query_params.get("session", ""))
         if session is None or session.wanted is None:
             return problem("there is no such session", 404)
-        room = await run_in_threadpool(session.room, session.wanted.project)
-        return Response(await run_in_threadpool(room.to_bytes), media_type="model/gltf-binary")
+        try:
+            room = await run_in_threadpool(session.room, session.wanted.project)
+            data = await run_in_threadpool(room.to_bytes)
+        except (OSError, ValueError, luxfer.Error) as error:
+            return problem(projects.message(error), 404 if isinstance(error, FileNotFoundError) else 409)
+        return Response(data, media_type="model/gltf-binary")
 
     async def get_out(self, request: Request) -> Response:
         """GET out/KIND?session=: a result as a file to keep."""
@@ -165,28 +177,28 @@ class Studio:
         done = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
         try:
             path = await run_in_threadpool(session.out, request.path_params["kind"], folder)
-        except (luxfer.Error, LookupError) as error:
+        except (luxfer.Error, LookupError, OSError) as error:
             shutil.rmtree(folder, ignore_errors=True)
-            return problem(str(error), 409)
+            return problem(projects.message(error), 409)
         return FileResponse(path, filename=path.name, background=done)
 
     async def talk(self, socket: WebSocket) -> None:
         """WebSocket ws?session=: edits come in, results go out as a JSON header and bytes."""
         name = socket.query_params.get("session", "")
-        if not (8 <= len(name) <= 64 and name.isalnum()):
+        if not (8 <= len(name) <= 64 and name.isascii() and name.isalnum()):
             await socket.close(1008)
             return
         await socket.accept()
         session = await run_in_threadpool(self.session, name)
-        loop, queue = asyncio.get_running_loop(), asyncio.Queue[bytes]()
+        loop, outbox = asyncio.get_running_loop(), Outbox()
 
         def listen(header: dict[str, Any], payload: bytes) -> None:
-            text = json.dumps(header, default=float).encode()
-            loop.call_soon_threadsafe(queue.put_nowait, struct.pack("<I", len(text)) + text + payload)
+            loop.call_soon_threadsafe(outbox.put, header, payload)
 
         async def speak() -> None:
-            while True:
-                await socket.send_bytes(await queue.get())
+            while (message := await outbox.get()) is not None:
+                await socket.send_bytes(message)
+            await socket.close(1013)  # "try again later": the page connects anew
 
         session.hello()
         session.listeners.append(listen)
@@ -195,16 +207,10 @@ class Studio:
             while True:
                 message = await socket.receive_json()
                 try:
-                    if message.get("type") == "expose":
-                        await run_in_threadpool(session.expose, message.get("exposure"))
-                    else:
-                        await run_in_threadpool(session.edit, message)
-                except (projects.Invalid, TypeError, ValueError, OSError) as error:
-                    listen(
-                        {"type": "failed", "message": str(error), "missing": False, "error": type(error).__name__},
-                        b"",
-                    )
-        except (WebSocketDisconnect, json.JSONDecodeError):
+                    await run_in_threadpool(session.take, message)
+                except (projects.Invalid, TypeError, ValueError, ArithmeticError, OSError, luxfer.Error) as error:
+                    listen(projects.failure(error), b"")
+        except (WebSocketDisconnect, json.JSONDecodeError, RecursionError, KeyError):  # KeyError: bytes, not a text
             pass
         finally:
             session.listeners.remove(listen)
@@ -227,6 +233,19 @@ class Studio:
         )
 
 
+async def body(request: Request, most: int) -> bytes | None:
+    """What a request brings; None, without reading on, if that is more than `most` bytes."""
+    stated = request.headers.get("content-length", "")
+    if stated.isdecimal() and int(stated) > most:
+        return None
+    data = bytearray()
+    async for part in request.stream():
+        data += part
+        if len(data) > most:
+            return None
+    return bytes(data)
+
+
 def problem(message: str, status: int = 400) -> Response:
     """An answer that says what is wrong."""
     return JSONResponse({"message": message}, status)
@@ -237,12 +256,14 @@ def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Pro
     project: projects.Project | None = None
     kept, photo = asked.project, asked.photo
     if photo is not None and photo.suffix.lower() == ".json":
-        kept, photo = kept or photo, None
+        if kept is not None:
+            raise projects.Invalid(f"there are two projects: {photo} and --project {kept}")
+        kept, photo = photo, None
         if not kept.exists():
             raise FileNotFoundError(f"there is no file {kept}")
     if kept is not None and kept.exists():
         project = projects.load(kept)
-        files.allowed.add(kept.resolve().parent)  # what a project names lies beside it
+        files.open_named(project, kept.resolve().parent)
     for path, entry in ((photo, "photo"), (asked.scene, "room")):
         if path is not None:
             if not path.exists():
@@ -258,7 +279,9 @@ def bind(port: int) -> socket.socket:
     strokes by port."""
     for candidate in [port, *range(port + 1, port + 20), 0] if port else [0]:
         listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-        if sys.platform != "win32":
+        if sys.platform == "win32":  # there, another program could otherwise bind the same port over it
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+        else:
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind(("127.0.0.1", candidate))
@@ -291,11 +314,16 @@ def serve(asked: argparse.Namespace) -> int:
         guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off"
     )
     print(f"luxfer studio: {address}", flush=True)
+    opening = None
     if not asked.no_browser:
-        threading.Timer(0.5, webbrowser.open, [address]).start()
+        opening = Opening(files.state, f"http://127.0.0.1:{port}/{guarded.new_code()}")
+        threading.Timer(0.5, opening.show).start()
     try:
         uvicorn.Server(config).run(sockets=[listener])
     except KeyboardInterrupt:
         pass
+    finally:
+        if opening is not None:
+            opening.close()
     studio.close()
     return 0

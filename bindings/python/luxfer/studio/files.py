@@ -7,15 +7,19 @@ kept in the state folder, so that a server that is started again still has it.
 from __future__ import annotations
 
 import hashlib
+import json
 import os
+import re
 import sys
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import luxfer
 
+from .project import Project
 from .security import Allowed
 
 #: Size of the photo that the library generates if there is none: a few seconds of work.
@@ -23,8 +27,14 @@ DEMO_SIZE = (600, 400)
 DEMO_NAME = "generated office.png"
 #: Uploads beyond this are refused.
 MAX_UPLOAD = 1 << 30
-#: What the state folder keeps for this time.
+#: Files of the studio in its state folder are deleted if they have not been used for this time.
 KEEP_SECONDS = 30 * 24 * 3600.0
+#: The studio's own names in the state folder: projects of sessions, pages that open the studio, and files by their
+#: hash with the name after it, or with a dot before it while they are written. Any other name belongs to the user.
+SESSION = re.compile(r"session-[A-Za-z0-9]{8,64}\.json")
+OPENING = re.compile(r"open-studio-[0-9a-f]{16}\.html")
+KEPT = re.compile(r"([0-9a-f]{64})-(.+)", re.DOTALL)
+PARTIAL = re.compile(r"\.[0-9a-f]{64}")
 
 
 @dataclass(frozen=True)
@@ -48,6 +58,15 @@ def digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
+def is_project(path: Path) -> bool:
+    """Whether a file is a project of the studio."""
+    try:
+        value = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(value, dict) and "luxfer_studio" in value
+
+
 def state_folder() -> Path:
     """Where the system wants programs to keep what is not a document."""
     if sys.platform == "win32":
@@ -66,22 +85,44 @@ class Files:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         self._forget_old()
         for path in sorted((state / "files").iterdir()):
-            sha256, _, name = path.name.partition("-")
-            if len(sha256) == 64 and name:
-                self.known[sha256] = Known(name, sha256, path)
+            if (named := KEPT.fullmatch(path.name)) and path.is_file():
+                self.known[named[1]] = Known(named[2], named[1], path)
 
     def _forget_old(self) -> None:
-        """Deletes what nobody has touched for a month."""
-        for path in [*self.state.glob("*.json"), *(self.state / "files").iterdir()]:
+        """Deletes the studio's own files that have not been used for a month."""
+        sessions = [p for p in self.state.iterdir() if SESSION.fullmatch(p.name) and is_project(p)]
+        openings = [p for p in self.state.iterdir() if OPENING.fullmatch(p.name)]
+        inside = (self.state / "files").iterdir()
+        given = [p for p in inside if KEPT.fullmatch(p.name) or PARTIAL.fullmatch(p.name)]
+        for path in sessions + openings + given:
             if path.is_file() and time.time() - path.stat().st_mtime > KEEP_SECONDS:
                 path.unlink()
 
-    def open(self, path: Path) -> Known:
-        """A file by its path, if the user has named it or its folder."""
+    def renew(self, sha256: str) -> None:
+        """Notes that a file is in use: it is kept for another month."""
+        known = self.known.get(sha256)
+        if known is not None and known.path.parent == self.state / "files" and known.path.exists():
+            os.utime(known.path)
+
+    def open(self, path: Path, check: Callable[[Known, bytes], None] | None = None) -> Known:
+        """A file by its path, if the user has named it or its folder. `check` raises what is wrong with it."""
         real = self.allowed.check(path)
-        known = Known(real.name, digest(real.read_bytes()), real)
+        data = real.read_bytes()
+        known = Known(real.name, digest(data), real)
+        if check is not None:
+            check(known, data)
         self.known[known.sha256] = known
         return known
+
+    def open_named(self, project: Project, folder: Path) -> None:
+        """Opens the files of a project that lie beside it, if their hashes are those that it states. A project may
+        come from a stranger: its names do not lead out of its folder."""
+        folder = folder.resolve()
+        for file in filter(None, (project["photo"], project["room"])):
+            path = (folder / file["name"]).resolve()
+            if path.parent == folder and path.is_file() and digest(path.read_bytes()) == file["sha256"]:
+                self.allowed.add(path)
+                self.open(path)
 
     def upload(self, name: str, data: bytes) -> Known:
         """A file that the user gave to the page."""
@@ -102,6 +143,7 @@ class Files:
     def find(self, sha256: str, name: str) -> Known:
         """A file that a project names; FileNotFoundError asks the user for it."""
         if sha256 in self.known:
+            self.renew(sha256)
             return self.known[sha256]
         for folder in self.allowed.folders:
             path = folder / name

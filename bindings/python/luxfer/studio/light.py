@@ -15,6 +15,7 @@ from typing import Any
 import luxfer
 import numpy as np
 
+from ..cli.plane import DESK
 from . import pictures
 from .jobs import Latest
 from .live import strokes_of
@@ -66,6 +67,8 @@ class Light:
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
+        #: The project, the very object, to which the result of a step belongs, for the steps that files need.
+        self.done: dict[str, Project] = {}
 
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all steps that are out of date, and tells the page of each result."""
@@ -77,14 +80,17 @@ class Light:
         self.step("unwarp", project["removed"], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", project["white"], lambda: self.relight(project))
+        self.done["relight"] = project
         self.step("lux", [], lambda: self.measure(surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
         self.step("second", shot, lambda: self.second_picture(project, size))
+        self.done["second"] = project
         if not project["plan"]:
             self.step("plan", project["noise"], lambda: self.plan(project, size))
             project["plan"] = self.planned
+        self.done["plan"] = project
         self.step("picture", project["plan"], lambda: self.refine(project, size))
 
     def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
@@ -243,11 +249,12 @@ class Light:
 
     def second_picture(self, project: Project, size: tuple[int, int]) -> None:
         """The full size, with one path for each pixel and the noise filter."""
-        self.render = render = luxfer.Render(self.context, self.lit)
+        render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
         start = time.perf_counter()
         self.send("working", stage="render")
         self.thread.finish(render.start(width=size[0], height=size[1], samples=1, preview=1.0))
+        self.render = render
         self.send_picture(render, project, "after", False, time.perf_counter() - start)
 
     def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
@@ -269,12 +276,13 @@ class Light:
         return render
 
     def measure(self, surface: str) -> None:
-        """Lux on the work plane."""
-        grid, metres = work_plane(self.room, surface)
+        """Lux on the work plane, and a brightness for the pictures."""
+        plane, problem = work_plane(self.room, surface)
+        metres = plane.sides
         cell = max(metres) / LUX_POINTS
         columns, rows = (max(1, round(m / cell)) for m in metres)
         job = luxfer.Illuminance(self.context, self.lit).start_grid(
-            grid, columns=columns, rows=rows, samples=LUX_SAMPLES
+            plane.grid(), columns=columns, rows=rows, samples=LUX_SAMPLES
         )
         lux = self.thread.finish(job)
         report = lux.report
@@ -282,11 +290,17 @@ class Light:
         open_points = values[values > 0]  # no light at all reaches points inside of furniture
         scale = values.size / max(1, open_points.size)
         self.exposure = exposure_for(report.mean * scale)
+        if problem:
+            self.send("lux", problem=problem)
+            return
+        sides = self.room.find_surface(surface).size
         self.send(
             "lux",
             values=[[round(float(v), 1) for v in row] for row in values],
             size=metres,
-            height=grid["origin"][1],
+            height=DESK,
+            floor=plane.origin[1] - DESK,
+            insets=[(whole - side) / 2 for whole, side in zip(sides, metres)],
             inside=values.size - open_points.size,
             minimum=float(open_points.min()) if open_points.size else 0.0,
             mean=report.mean * scale,
@@ -297,7 +311,7 @@ class Light:
     def refine(self, project: Project, size: tuple[int, int]) -> None:
         """The picture at its full size, better and better, until it has the paths of the plan."""
         settings = {**project["plan"]["render"], "width": size[0], "height": size[1], "preview": 1.0}
-        self.render = render = luxfer.Render(self.context, self.lit)
+        render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
         start, shown = time.perf_counter(), 1
 
@@ -306,6 +320,7 @@ class Light:
             self.send_progress(share, time.perf_counter() - start)
             try:
                 if render.report.samples > shown:
+                    self.render = render
                     self.send_picture(render, project, "after", False, time.perf_counter() - start)
                     shown = render.report.samples
             except luxfer.errors.NotReady:
@@ -313,6 +328,7 @@ class Light:
 
         self.send("working", stage="render")
         self.thread.finish(render.start(**settings), show)
+        self.render = render
         self.send_picture(render, project, "after", True, time.perf_counter() - start)
 
     def send_progress(self, share: float, seconds: float) -> None:

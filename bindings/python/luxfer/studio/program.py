@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from .light import MAX_TEXELS, REACH, RELIGHT
@@ -70,9 +69,9 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
         points = list(zip(stroke["points"][::2], stroke["points"][1::2]))
         strokes.append(f"    ({phase!r}, {points!r}, {max(stroke['radius'], 0.5)!r}, {positive!r}),\n")
     out = HEAD.format(
-        photo=json.dumps(project["photo"]["name"]),
-        room=json.dumps(project["room"]["name"]) if project["room"] else "None",
-        surface=json.dumps(surface),
+        photo=repr(project["photo"]["name"]),
+        room=repr(project["room"]["name"]) if project["room"] else "None",
+        surface=repr(surface),
         strokes="[\n" + "".join(strokes) + "]" if strokes else "[]",
     )
     if project["removed"]:

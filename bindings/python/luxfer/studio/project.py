@@ -12,6 +12,8 @@ from typing import Any
 FORMAT = 1
 KINDS = ("plane", "not-plane", "light", "not-light")
 SCALES = ("distance", "lamp", "spacing", "across")
+#: The library's own limit of paths per pixel, which a plan may choose.
+MOST_SAMPLES = 1 << 20
 
 Project = dict[str, Any]
 
@@ -35,6 +37,17 @@ DEFAULTS: Project = {
 
 class Invalid(ValueError):
     """A project that is none; the message says where."""
+
+
+def message(error: Exception) -> str:
+    """What to tell the user about an error; never empty, which the page takes for no error."""
+    return str(error) or type(error).__name__
+
+
+def failure(error: Exception) -> dict[str, Any]:
+    """The message to the page about an error. A file that is missing can be given."""
+    missing = isinstance(error, FileNotFoundError)
+    return {"type": "failed", "message": message(error), "missing": missing, "error": type(error).__name__}
 
 
 def number(low: float, high: float) -> Callable[[Any, str], float]:
@@ -91,11 +104,24 @@ def optional(check: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
     return lambda value, name: None if value is None else check(value, name)
 
 
-def settings(value: Any, name: str) -> dict[str, Any]:
-    """Settings of the library, which checks them itself."""
-    if not isinstance(value, dict) or not all(isinstance(v, (int, float)) for v in value.values()):
-        raise Invalid(f"{name} is an object of numbers")
-    return dict(value)
+def whole(low: int, high: int) -> Callable[[Any, str], int]:
+    def check(value: Any, name: str) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            raise Invalid(f"{name} is a whole number in [{low}, {high}], not {value!r}")
+        return value
+
+    return check
+
+
+def settings(**fields: Callable[[Any, str], Any]) -> Callable[[Any, str], dict[str, Any]]:
+    """Some settings of the library, and no others: a project may come from a stranger."""
+
+    def check(value: Any, name: str) -> dict[str, Any]:
+        if not isinstance(value, dict) or not set(value) <= set(fields):
+            raise Invalid(f"{name} is an object with some of {', '.join(fields)}")
+        return {key: fields[key](inner, f"{name}.{key}") for key, inner in value.items()}
+
+    return check
 
 
 PIXEL, METRE = number(-1e5, 1e5), number(-1e6, 1e6)
@@ -118,7 +144,9 @@ FIELDS = {
     "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),
     "exposure": optional(number(1e-9, 1e9)),
     "noise": number(1e-3, 1),
-    "plan": optional(record(render=settings)),
+    "plan": optional(
+        record(render=settings(samples=whole(1, MOST_SAMPLES), target_error=number(0, 1e9), seed=whole(0, 2**64 - 1)))
+    ),
 }
 
 

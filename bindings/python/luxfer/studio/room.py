@@ -8,10 +8,10 @@ from typing import Any
 import luxfer
 import numpy as np
 
+from ..cli.exits import Failure
+from ..cli.plane import Plane, above_floor, level
 from .project import Project
 
-#: Height of the work plane over the floor, and its distance from the walls, in metres [convention: EN 12464-1].
-WORK_PLANE, WALL_ZONE = 0.8, 0.5
 #: What the mean of a picture's surfaces becomes of display white [convention: half a stop over middle grey], and their
 #: reflectance [convention: between the 0.2 to 0.7 of EN 12464-1 for floors and ceilings].
 KEY, REFLECTANCE = 0.25, 0.45
@@ -40,13 +40,12 @@ def bounds(room: luxfer.Scene) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, An
     return np.min([p.min(0) for p in points if len(p)], 0), np.max([p.max(0) for p in points if len(p)], 0)
 
 
-def work_plane(room: luxfer.Scene, surface: str) -> tuple[dict[str, Any], tuple[float, float]]:
-    """The calculation grid below a surface, and its sides in metres."""
-    placed = room.find_surface(surface)
-    low, high = bounds(room)
-    inset = min(WALL_ZONE, 0.2 * min(placed.size))
-    u, v = np.array(placed.u_axis), np.array(placed.v_axis)
-    metres = (placed.size[0] - 2 * inset, placed.size[1] - 2 * inset)
-    origin = np.array(placed.origin) + inset * (u + v)
-    origin[1] = low[1] + min(WORK_PLANE, 0.4 * (high[1] - low[1]))
-    return {"origin": tuple(origin), "across": tuple(u * metres[0]), "down": tuple(v * metres[1])}, metres
+def work_plane(room: luxfer.Scene, surface: str) -> tuple[Plane, str]:
+    """The plane of desks above the floor below a surface, as `luxfer lux` has it, and an empty text. Where there is no
+    such plane, the reason, and a level plane halfway up, by which the brightness of pictures can be chosen."""
+    try:
+        return above_floor(room, surface), ""
+    except Failure:
+        low, high = ([float(x) for x in corner] for corner in bounds(room))
+        reason = f'There is no plane of desks: "{surface}" is not level, or there is no floor below it.'
+        return level((low[1] + high[1]) / 2, (low[0], low[2], high[0], high[2])), reason

@@ -14,6 +14,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from .opening import leading_to
+
 #: Scripts, styles and connections of the page come from this server alone; three.js reads textures from blob:
 #: addresses.
 POLICY = (
@@ -42,10 +44,19 @@ class Guard:
     def __init__(self, app: Any, token: str, port: int):
         self.app, self.token = app, token
         self.hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
+        self.code = ""
+
+    def new_code(self) -> str:
+        """The path of a page that leads to the address with the token, the first time that it is asked for."""
+        self.code = new_token()
+        return f"open/{self.code}"
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
+            return
+        if self.is_opened(scope):
+            await show(send, 200, b"text/html; charset=utf-8", leading_to(f"/{self.token}/"))
             return
         if reason := self.refusal(scope):
             await refuse(scope, receive, send, reason)
@@ -54,9 +65,22 @@ class Guard:
         inner["raw_path"] = inner["path"].encode()
         await self.app(inner, receive, sender(send) if scope["type"] == "http" else send)
 
+    def is_opened(self, scope: Any) -> bool:
+        """Whether a request brings the code, which is then used up. It may come from another site: so the browser
+        calls the file that leads here."""
+        headers = headers_of(scope)
+        if not self.code or scope["type"] != "http" or scope["method"] != "GET":
+            return False
+        if headers.get("host", "") not in self.hosts or "origin" in headers:
+            return False
+        if not hmac.compare_digest(scope["path"].encode(), f"/open/{self.code}".encode()):
+            return False
+        self.code = ""
+        return True
+
     def refusal(self, scope: Any) -> str:
         """Why a request is refused; empty if it is not."""
-        headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        headers = headers_of(scope)
         host, origin = headers.get("host", ""), headers.get("origin")
         if host not in self.hosts:
             return "the Host header names another server"
@@ -66,10 +90,15 @@ class Guard:
             return "a WebSocket states its origin"
         if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return "the request comes from another site"
-        given = scope["path"].split("/", 2)[1]
+        given = scope["path"][1:].partition("/")[0]  # the path of `OPTIONS *` has no slash
         if not hmac.compare_digest(given.encode(), self.token.encode()):
             return "the token of the address is wrong: open the address that the studio printed when it started"
         return ""
+
+
+def headers_of(scope: Any) -> dict[str, str]:
+    """The headers of a request."""
+    return {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
 
 
 def sender(send: Any) -> Any:
@@ -89,9 +118,13 @@ async def refuse(scope: Any, receive: Any, send: Any, reason: str) -> None:
         await receive()
         await send({"type": "websocket.close", "code": 1008})
         return
-    headers = [(b"content-type", b"text/plain; charset=utf-8"), *HEADERS]
-    await send({"type": "http.response.start", "status": 403, "headers": headers})
-    await send({"type": "http.response.body", "body": f"Refused: {reason}.\n".encode()})
+    await show(send, 403, b"text/plain; charset=utf-8", f"Refused: {reason}.\n")
+
+
+async def show(send: Any, status: int, kind: bytes, text: str) -> None:
+    """Answers with a text."""
+    await send({"type": "http.response.start", "status": status, "headers": [(b"content-type", kind), *HEADERS]})
+    await send({"type": "http.response.body", "body": text.encode()})
 
 
 class Allowed:

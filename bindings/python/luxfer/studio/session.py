@@ -29,6 +29,11 @@ SHOWN_PIXELS = 2_000_000
 #: Largest side of a picture.
 MAX_SIDE = 1600
 
+#: The results as files: how their names end.
+ENDINGS = {"glb": "glb", "exr": "exr", "png": "png", "csv": "csv", "project": "luxfer.json", "program": "py"}
+#: The steps of Light after which they are there: a picture at its full size, and for the program brightness and plan.
+NEEDS = {"glb": "relight", "csv": "relight", "exr": "second", "png": "second", "program": "plan"}
+
 Send = Callable[[dict[str, Any], bytes], None]
 
 
@@ -74,10 +79,18 @@ class Session:
         for listener in list(self.listeners):
             listener({"type": kind, **header}, payload)
 
+    def take(self, message: Any) -> None:
+        """A message of the page; Invalid, among others, if it is none."""
+        if not isinstance(message, dict):
+            raise projects.Invalid("a message is an object")
+        if message.get("type") == "expose":
+            self.expose(message.get("exposure"))
+        else:
+            self.edit(message)
+
     def hello(self) -> None:
-        """A page has connected: it gets everything again with its next edit."""
+        """A page has connected: it gets everything again with its next edit. Work that runs goes on as it was."""
         self._opened = None
-        self.light = None
 
     def edit(self, message: dict[str, Any]) -> None:
         """A new state of the page."""
@@ -107,7 +120,7 @@ class Session:
         else:
             self.work.put(wanted)
 
-    def expose(self, exposure: float) -> None:
+    def expose(self, exposure: Any) -> None:
         """Another brightness of the pictures that are shown; disturbs no work."""
         if self.wanted is not None and self.light is not None:
             self.wanted.project["exposure"] = projects.FIELDS["exposure"](exposure, "exposure")
@@ -119,6 +132,8 @@ class Session:
         with self._saving:
             if self.wanted is wanted:
                 projects.save(self.saved, wanted.project)
+                for file in filter(None, (wanted.project["photo"], wanted.project["room"])):
+                    self.files.renew(file["sha256"])
 
     # -- work
 
@@ -145,15 +160,15 @@ class Session:
         known = self.files.find(project["room"]["sha256"], project["room"]["name"])
         return luxfer.Scene.from_bytes(self.context, known.read(), known.path.parent)
 
-    def _open(self, project: Project) -> None:
+    def _open(self, project: Project) -> Light:
         """Loads photo and room, and shows them, if they are not those that the page has."""
         photo, room = self.photo(project), self.room(project)
         key = project["photo"]["sha256"], project["room"]["sha256"] if project["room"] else "demo"
         with self._lock:
-            if self._opened == key:
-                return
+            if self._opened == key and self.light is not None:
+                return self.light
             self._opened = key
-            self.light = Light(photo, room, self.work, self.send)
+            light = self.light = Light(photo, room, self.work, self.send)
         shown = pictures.reduced(photo, SHOWN_PIXELS)
         width, height, _ = photo.size
         colours = {"width": shown.size[0], "height": shown.size[1]}
@@ -166,10 +181,11 @@ class Session:
         self.send(
             "room",
             candidates=candidates,
-            camera=self.light.camera({**project, "camera": None}),
+            camera=light.camera({**project, "camera": None}),
             bounds=[low, high],
             warnings=[{"message": w.message, "advice": w.advice} for w in room.warnings],
         )
+        return light
 
     def _paint(self, wanted: Wanted) -> None:
         """The masks at a small size."""
@@ -198,16 +214,14 @@ class Session:
 
     def _work(self, wanted: Wanted) -> None:
         self.live.wait_idle(self.work.check)
-        self._open(wanted.project)
-        assert self.light is not None
-        self.light.follow(wanted.project, wanted.size, wanted.compare)
+        self._open(wanted.project).follow(wanted.project, wanted.size, wanted.compare)
         self._save(wanted)  # with the settings that the plan has chosen
         self.send("idle", version=wanted.version)
 
     def _failed(self, failure: Exception) -> None:
         """Tells the user; a file that is missing can be given."""
-        missing = isinstance(failure, FileNotFoundError)
-        self.send("failed", message=str(failure), missing=missing, error=type(failure).__name__)
+        header = projects.failure(failure)
+        self.send(header.pop("type"), **header)
 
     # -- results
 
@@ -220,26 +234,35 @@ class Session:
         return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project), light.exposure)
 
     def out(self, kind: str, folder: Path) -> Path:
-        """A file of the results, written into a folder; NotReady if they are not there yet."""
-        if self.wanted is None or self.light is None:
+        """A file of the results, written into a folder; NotReady if they are not there yet, or those of a project that
+        has been changed since."""
+        wanted, light = self.wanted, self.light
+        if wanted is None or light is None:
             raise luxfer.errors.NotReady("there is no result yet")
-        stem = Path(self.wanted.project["photo"]["name"]).stem or "studio"
+        check_ready(kind, wanted, light)
+        name = Path(wanted.project["photo"]["name"]).stem or "studio"
+        path = folder / f"{name}.{ENDINGS[kind]}"
         if kind in ("project", "program"):
-            path = folder / (f"{stem}.luxfer.json" if kind == "project" else f"{stem}.py")
-            path.write_text(self.text(kind, self.wanted, self.light), encoding="utf-8")
-            return path
-        path = folder / f"{stem}.{kind}"
-        if kind == "csv":
-            self.light.transfer.save_fixtures(path)
+            path.write_text(self.text(kind, wanted, light), encoding="utf-8")
+        elif kind == "csv":
+            light.transfer.save_fixtures(path)
         elif kind == "glb":
-            self.light.transfer.scene("lit").export(path)
-        elif kind in ("png", "exr"):
-            if self.light.render is None:
-                raise luxfer.errors.NotReady("there is no picture yet")
-            if kind == "exr":
-                self.light.render.write_exr(path)
-            else:
-                self.light.render.image("preview").save(path, self.wanted.project["exposure"] or self.light.exposure)
+            light.transfer.scene("lit").export(path)
         else:
-            raise LookupError(f"there is no result {kind}")
+            assert light.render is not None
+            if kind == "exr":
+                light.render.write_exr(path)
+            else:
+                light.render.image("preview").save(path, wanted.project["exposure"] or light.exposure)
+        if self.wanted is not wanted:  # the page has changed it while the file was written
+            raise luxfer.errors.NotReady("the project has been changed: try again in a moment")
         return path
+
+
+def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
+    """Whether the results that a file consists of are those of the project that is wanted; NotReady if not. A project
+    file has no results."""
+    if kind not in ENDINGS:
+        raise LookupError(f"there is no result {kind}")
+    if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:
+        raise luxfer.errors.NotReady("the room follows the latest change: try again in a moment")

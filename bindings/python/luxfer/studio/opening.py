@@ -1,0 +1,44 @@
+"""How the browser finds the page without its address on a command line, which every user of the machine can read.
+
+The browser is started with the path of a file that only its owner can read. The file leads to an address with a code
+that the server takes once; the answer leads to the address with the token.
+"""
+
+from __future__ import annotations
+
+import html
+import os
+import secrets
+import webbrowser
+from pathlib import Path
+
+PAGE = """<!doctype html>
+<meta charset="utf-8">
+<meta http-equiv="refresh" content="0; url={address}">
+<title>luxfer studio</title>
+<p><a href="{address}">Open luxfer studio</a></p>
+"""
+
+
+def leading_to(address: str) -> str:
+    """A page that leads to an address."""
+    return PAGE.format(address=html.escape(address))
+
+
+class Opening:
+    """A file that opens the studio once."""
+
+    def __init__(self, folder: Path, address: str):
+        """`folder` is where the file is written; `address` is the one with the code."""
+        self.path = folder / f"open-studio-{secrets.token_hex(8)}.html"
+        # O_EXCL: a file or a link that somebody else has put there is not written to.
+        with os.fdopen(os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as out:
+            out.write(leading_to(address))
+
+    def show(self) -> None:
+        """Starts the browser."""
+        webbrowser.open(self.path.absolute().as_uri())
+
+    def close(self) -> None:
+        """Deletes the file."""
+        self.path.unlink(missing_ok=True)

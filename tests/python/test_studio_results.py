@@ -1,0 +1,196 @@
+"""What the studio gives back: files of results, the exported program, and the illuminance. Runs where
+benches/peers/install.sh has installed `studio`."""
+
+import ast
+import json
+import threading
+import unittest
+from types import SimpleNamespace
+
+from support import Case, context, demo, luxfer, np
+
+from luxfer.cli.plane import above_floor
+from luxfer.studio import files, program, project, security
+from luxfer.studio.light import Light
+from luxfer.studio.room import work_plane
+from luxfer.studio.session import ENDINGS, Session
+
+
+class Results(Case):
+    """Results as files, without a server."""
+
+    def setUp(self):
+        super().setUp()
+        self.files = files.Files(self.folder / "state", security.Allowed())
+        demo()[0].save(self.folder / "office.png")
+        photo = self.files.upload("office.png", (self.folder / "office.png").read_bytes())
+        named = {"name": photo.name, "sha256": photo.sha256}
+        self.project = project.checked({"luxfer_studio": 1, "photo": named, "noise": 1.0, "exposure": 1e-3})
+        self.session = Session("session01", context(), self.files, self.folder / "kept.json")
+        self.addCleanup(self.session.close)
+
+    def edit(self, seen=lambda header: None, draft=False, **changes):
+        """Sends a state of the project, and waits until the work is done."""
+        ended, failures = threading.Event(), []
+
+        def listen(header, payload):
+            seen(header)
+            if header["type"] == "failed":
+                failures.append(header["message"])
+            if header["type"] in ("idle", "failed"):
+                ended.set()
+
+        self.session.listeners[:] = [listen]
+        whole = {**self.project, **changes}
+        self.session.edit({"project": whole, "size": [160, 104], "draft": draft})
+        if not draft:
+            self.assertTrue(ended.wait(120))
+            self.assertEqual(failures, [])
+
+    def out(self, kind):
+        """The content of a file; None if it is not ready."""
+        try:
+            return self.session.out(kind, self.folder).read_bytes()
+        except luxfer.errors.NotReady:
+            return None
+
+    def test_results_belong_to_the_project_that_is_shown(self):
+        early = {}
+
+        def seen(header):  # in the thread of the work, before it goes on
+            if header["type"] == "picture" and not header["done"]:
+                for kind in ENDINGS:
+                    early.setdefault(kind, self.out(kind))
+            if header["type"] == "plan":  # the picture has its full size, and becomes better
+                self.session.out("exr", self.folder).rename(self.folder / "early.exr")
+
+        self.edit(seen)
+        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program"])
+        self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
+        first = {kind: self.out(kind) for kind in ENDINGS}
+        self.assertEqual([kind for kind, content in first.items() if content is None], [])
+        self.assertEqual(luxfer.Image.load(context(), self.folder / "office.exr").size[:2], (160, 104))
+
+        # A change that nothing has followed yet: no result of the former project is given for it.
+        self.edit(draft=True, white=200.0)
+        later = {kind: self.out(kind) for kind in ENDINGS}
+        self.assertEqual([kind for kind, content in later.items() if content is not None], ["project"])
+        self.assertEqual(json.loads(later["project"])["white"], 200.0)
+        self.edit(white=200.0)
+        for kind, content in first.items():
+            self.assertTrue(self.out(kind) not in (None, content), kind)
+
+    def test_a_page_that_connects_disturbs_no_work(self):
+        seen = []
+
+        def greet(header):
+            if header["type"] == "room":  # photo and room are open, and the work is about to use them
+                self.session.hello()
+            seen.append(header["type"])
+
+        self.edit(greet)
+        self.assertIn("picture", seen)
+
+
+class Programs(Case):
+    """The exported program, as a text."""
+
+    def text(self, **changes):
+        named = {"name": "photo.png", "sha256": "0" * 64}
+        whole = project.checked({"luxfer_studio": 1, "photo": named, **changes})
+        camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
+        return program.program(whole, (72, 48), changes.get("surface") or "Ceiling", camera, 0.01)
+
+    def test_names_are_those_of_the_files(self):
+        for name in ("😀.png", "Büro.png", "it's \"here\".png", "back\\slash.png", "a\nb.png", "{brace}.png"):
+            file = {"name": name, "sha256": "0" * 64}
+            tree = ast.parse(self.text(photo=file, room=file, surface=name).encode())
+            values = {
+                node.targets[0].id: node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets
+            }
+            found = [values[n].orelse.value for n in ("photo_file", "room_file")] + [values["surface"].value]
+            self.assertEqual(found, [name] * 3)
+
+    def test_what_was_taken_out_stays_out(self):
+        zones, removed = [[0.0, 0.5, 1.0, 1.5]], [[12.0, 34.0]]
+        text = self.text(zones=zones, removed=removed)
+        ast.parse(text)
+        self.assertIn(f"transfer.set_zones({zones})", text)
+        self.assertIn(f"without(mask, {removed}, ", text)
+        self.assertNotIn("without(", self.text(zones=zones))
+
+    def test_a_plan_has_only_the_settings_of_a_plan(self):
+        good = {"samples": 64, "target_error": 0.1, "seed": 0}
+        self.assertIn("**{'samples': 64, 'target_error': 0.1, 'seed': 0}", self.text(plan={"render": good}))
+        for wrong in (
+            {**good, "time_budget_ms": 10},
+            {"width": 10},
+            {"target_error": float("nan")},
+            {"target_error": float("inf")},
+            {"samples": 1.5},
+            {"samples": 0},
+            {"seed": -1},
+            {"samples": True},
+        ):
+            with self.assertRaises(project.Invalid, msg=str(wrong)):
+                self.text(plan={"render": wrong})
+
+
+class Planes(Case):
+    """Where the illuminance of the studio is calculated."""
+
+    def room(self, rise=3.0):
+        """A room of 5 x 4 x 2.8 m whose floor is at y = `rise`, over a terrain that lies 3 m below the floor."""
+        scene = luxfer.Scene(context())
+        black = scene.add_material(name="Black", base_color=(0, 0, 0))
+        for name, y, side, face in (
+            ("Ceiling", rise + 2.8, (5.0, 4.0), (0, 1, 2, 0, 2, 3)),
+            ("Floor", rise, (5.0, 4.0), (0, 2, 1, 0, 3, 2)),
+            ("Terrain", rise - 3.0, (50.0, 40.0), (0, 2, 1, 0, 3, 2)),
+        ):
+            x, z = side[0] / 2, side[1] / 2
+            corners = [(-x, y, -z), (x, y, -z), (x, y, z), (-x, y, z)]
+            triangles = np.array(face, np.uint32).reshape(2, 3)
+            scene.add_mesh(np.array(corners, np.float32), triangles, material=black, name=name)
+        return scene
+
+    def test_the_plane_is_above_the_floor_below_the_ceiling(self):
+        plane, problem = work_plane(self.room(), "Ceiling")
+        self.assertEqual(problem, "")
+        self.assertAlmostEqual(plane.origin[1], 3.75, places=4)
+        self.assertEqual([round(side, 4) for side in sorted(plane.sides)], [3.0, 4.0])
+        self.assertEqual(plane, above_floor(self.room(), "Ceiling"))
+
+    def test_a_surface_without_a_floor_is_said(self):
+        plane, problem = work_plane(self.room(), "Terrain")
+        self.assertIn('"Terrain"', problem)
+        self.assertAlmostEqual(plane.origin[1], 2.9, places=4)
+
+    def measured(self, surface):
+        """What the page is told of the illuminance."""
+        told = []
+        room = self.room()
+        thread = SimpleNamespace(finish=lambda job: job.wait())
+        light = Light(demo()[0], room, thread, lambda kind, **header: told.append(header))
+        room.add_light(kind="point", position=(0, 5, 0), intensity=(100, 100, 100))
+        light.lit = room
+        light.measure(surface)
+        return told[-1], light.exposure
+
+    def test_the_page_is_told_the_height_above_the_floor(self):
+        told, _ = self.measured("Ceiling")
+        self.assertAlmostEqual(told["height"], 0.75)
+        self.assertAlmostEqual(told["floor"], 3.0, places=4)
+        self.assertEqual([round(inset, 4) for inset in told["insets"]], [0.5, 0.5])
+        # 100 cd at 1.25 m above the plane: 64 lx below it, and less elsewhere.
+        self.assertLess(abs(told["maximum"] - 64), 3)
+
+    def test_without_a_plane_pictures_have_a_brightness(self):
+        told, exposure = self.measured("Terrain")
+        self.assertIn("no plane of desks", told["problem"])
+        self.assertNotIn("mean", told)
+        self.assertTrue(np.isfinite(exposure) and exposure > 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
