@@ -231,6 +231,7 @@ def rendering() -> Scenario:
     s.run("render_start", stage, struct("render_params", width=16, height=12, samples=8, preview=1.0))
     s.make("render_get_image", stage, 0)
     s.call("render_get_report", stage, *report("render_report"))
+    s.call("render_get_requirements_text", stage, ROOM, 300, ROOM)
     s.call("render_get_layer_count", stage, ROOM)
     s.call("render_get_layer_name", stage, 0, ROOM, 50, ROOM)
     s.call("render_find_layer", stage, "direct", ROOM)

@@ -34,9 +34,11 @@ const LARGER: f64 = 1.6;
 /// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
 /// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind. Its area must
-/// be at least the share `SMALLER_KIND` of their minimum area, and the share of the ring around it that lies on the
-/// plane at least `SURELY_ON_PLANE`. [bench photos:tune, photos:real]
+/// be at least the share `SMALLER_KIND` of their minimum area, blur must leave the share `CLEAR` of its contrast, and
+/// the share of the ring around it that lies on the plane must be at least `SURELY_ON_PLANE`.
+/// [bench photos:tune, photos:real]
 const SMALLER_KIND: f64 = 0.25;
+const CLEAR: f64 = 0.9;
 const SURELY_ON_PLANE: f64 = 0.9;
 /// The aspect (length over width) of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of
 /// the lamps under the strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and
@@ -288,7 +290,7 @@ impl Search<'_> {
         match has_aspect {
             true if shown >= min => Size::Painted,
             _ if shown >= CUT * min && is_cut() => Size::Painted,
-            true if shown >= SMALLER_KIND * min && !is_cut() => Size::Smaller,
+            true if shown >= SMALLER_KIND * min && sharpness(area) >= CLEAR && !is_cut() => Size::Smaller,
             _ => Size::Other,
         }
     }
