@@ -33,13 +33,6 @@ const LARGER: f64 = 1.6;
 /// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
 /// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind. Its area must
-/// be at least the share `SMALLER_KIND` of their minimum area, blur must leave the share `CLEAR` of its contrast, and
-/// the share of the ring around it that lies on the plane must be at least `SURELY_ON_PLANE`.
-/// [bench photos:tune, photos:real]
-const SMALLER_KIND: f64 = 0.25;
-const CLEAR: f64 = 0.9;
-const SURELY_ON_PLANE: f64 = 0.9;
 /// The aspect (length over width) of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of
 /// the lamps under the strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and
 /// lengthens distant lamps along the line of sight. [bench photos:tune]
@@ -95,16 +88,6 @@ pub struct Similar {
     pub doubtful: Vec<u32>,
     /// Regions off the plane that would count as lamps if the plane continued there.
     pub beyond: Vec<u32>,
-}
-
-/// The size and aspect of a region, compared with those of the lamps under the strokes.
-#[derive(Clone, Copy, PartialEq)]
-enum Size {
-    /// Like a lamp under a stroke, or like such a lamp cut by the photo's border.
-    Painted,
-    /// Smaller than the lamps under the strokes, as a lamp of another kind may be.
-    Smaller,
-    Other,
 }
 
 /// The limits that a lamp must meet, derived from the lamps under the strokes.
@@ -163,7 +146,6 @@ impl Search<'_> {
         painted.iter().for_each(|&node| chosen.choose(node));
         let candidates = self.candidates(&model, painted, &chosen)?;
         let mut similar = Similar::default();
-        let mut smaller = Vec::new();
         for (k, &(node, likeness)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
                 job.check()?;
@@ -173,13 +155,6 @@ impl Search<'_> {
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
-            if self.size(&model, node as usize) == Size::Smaller {
-                if likeness >= 1.0 && ring.on_plane >= SURELY_ON_PLANE {
-                    try_push(&mut smaller, node)?;
-                    chosen.choose(node);
-                }
-                continue;
-            }
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
             let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
@@ -196,14 +171,6 @@ impl Search<'_> {
             }
             if is_in_hole || is_in_row || (is_on_plane && likeness >= NEARLY) {
                 chosen.choose(node);
-            }
-        }
-
-        // A single small bright thing may be anything: lamps of a smaller kind count only if there are at least two of
-        // equal size and shape.
-        for &node in &smaller {
-            if self.like_ones(smaller.iter().filter(|other| **other != node), node as usize).next().is_some() {
-                try_push(&mut similar.found, node)?;
             }
         }
         Ok(similar)
@@ -270,29 +237,21 @@ impl Search<'_> {
         }))
     }
 
-    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the
-    /// plane if the room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
-    fn size(&self, model: &Model, node: usize) -> Size {
+    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room has a box layout,
+    /// else in the photo. A lamp that the photo's border cuts may be much smaller.
+    fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
-            let is_like =
-                (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
-            return if is_like { Size::Painted } else { Size::Other };
+            return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
         };
-        let [min, max] = on_surface.area;
-        let shown = surface.area[node];
-        if area < model.min_area || shown > max || shown < min * SMALLER_KIND.min(CUT) {
-            return Size::Other;
-        }
-        let has_aspect = (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
         let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
-        match has_aspect {
-            true if shown >= min => Size::Painted,
-            _ if shown >= CUT * min && is_cut() => Size::Painted,
-            true if shown >= SMALLER_KIND * min && sharpness(area) >= CLEAR && !is_cut() => Size::Smaller,
-            _ => Size::Other,
+        if surface.area[node] > on_surface.area[1] {
+            return false;
         }
+        let is_whole = surface.area[node] >= on_surface.area[0]
+            && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
+        area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
@@ -335,7 +294,7 @@ impl Search<'_> {
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if self.size(model, node) == Size::Other || self.negatives[node] > 0.0 {
+        if !self.has_size(model, node) || self.negatives[node] > 0.0 {
             return 0.0;
         }
         let sharpness = sharpness(area);

@@ -115,21 +115,6 @@ fn a_lamp_that_the_border_cuts_may_be_of_any_size_and_a_thing_inside_may_not() {
 }
 
 #[test]
-fn smaller_lamps_that_are_equal_are_found_without_a_stroke_and_a_single_small_thing_is_not() {
-    let ceiling = ceiling();
-    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
-    // Downlights with an eighth of the painted lamp's area.
-    let small = [[95, 50, 103, 57], [205, 50, 213, 57]];
-    for count in 0..=2 {
-        let features = features_with(&[&LAMPS[..], &small[..count]].concat());
-        let mask = segment_in(&features, &strokes, Some(&ceiling)).mask;
-        for (k, [x, y, ..]) in small.into_iter().enumerate() {
-            assert_eq!(mask.pixel(x + 4, y + 3)[0] > 0.5, count == 2, "downlight {k} of {count}");
-        }
-    }
-}
-
-#[test]
 fn things_of_another_shape_are_no_lamps() {
     let ceiling = ceiling();
     // A bright strip with the area of a lamp, but 30 times as long as wide.
