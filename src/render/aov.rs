@@ -50,8 +50,8 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Returns the name of the attribute's layer in image files. It is the name that Blender or Nuke uses, where one
-    /// of these programs has the attribute.
+    /// Returns the name of the attribute's layer in image files: the name in Blender or Nuke, if they have this
+    /// attribute.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -78,8 +78,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f32 values per pixel in which a film accumulates this attribute (the totals). The number
-    /// of hits is stored separately.
+    /// Returns the number of f32 values per pixel in which a film sums up this attribute. The number of hits is stored
+    /// separately.
     pub fn total_count(self) -> usize {
         match self {
             Self::Depth | Self::Distance => 1,
@@ -89,8 +89,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f64 values per pixel (the lossless sums, see [`Surfaces::add_to`]) in which a render in
-    /// parts (`super::parts`) accumulates this attribute.
+    /// Returns the number of f64 values per pixel in which a render in parts (`super::parts`) sums up this attribute;
+    /// see [`Surfaces::add_to`].
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -98,7 +98,7 @@ impl Aov {
         }
     }
 
-    /// Converts the lossless f64 sums of a pixel to the f32 totals that a film stores.
+    /// Converts the f64 sums of a pixel in a render in parts to the f32 totals that a film stores.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -106,7 +106,7 @@ impl Aov {
         }
     }
 
-    /// Adds `others`, the lossless sums over other paths of the same pixel, to `sums`.
+    /// Adds `others`, the f64 sums over other paths of the same pixel, to `sums`.
     pub fn join_sums(self, sums: &mut [f64], others: &[f64]) {
         match self {
             Self::Object | Self::Material => ballot::join(sums, others),
@@ -171,7 +171,7 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to the lossless f64 sums of the pixel in a render in parts. Vote counts are exact for up to
+    /// Adds these sums to the pixel's f64 sums in a render in parts. Vote counts are exact for up to
     /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {

@@ -230,8 +230,8 @@ impl<'a> Layers<'a> {
         let s = substance;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // Compute two albedos of the top layer towards the viewer: the maximum channel of the whole layer (`top`), and
-        // the albedo of its dielectric part (`coat_albedo`).
+        // Compute two albedos of the top layer for light from the viewer's direction: the largest channel of the whole
+        // layer's albedo (`top`), and the albedo of its dielectric part (`coat_albedo`).
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {

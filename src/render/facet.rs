@@ -32,12 +32,12 @@ pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
 /// clear of such a surface in a building, yet must not move it through a wall in a scene as large as a country.
 /// [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
-/// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
-/// if its distance exceeds this multiple of its size. [convention]
+/// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
+/// of its size. [convention]
 const FAR: f64 = 32.0;
-/// Number of triangles from which the detail of a scene (the region where most triangles lie) is located. In a larger
-/// scene, every n-th triangle is used, so that at least this many and fewer than twice as many are used. The number is
-/// small, so that the list of their corners fits in the memory reserve. [convention]
+/// The region where most triangles of a scene lie is located from a sample of its triangles: from at least this many,
+/// if the scene has so many, and from fewer than twice as many. A small sample fits in the memory reserve.
+/// [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -108,7 +108,8 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
         return true;
     }
     let [a, b, c] = mesh.triangles[triangle].map(|i| mesh.normals[i as usize].normalize_or_zero());
-    // Compare with the flipped normal if the vertex normals oppose the winding: only the axis of a normal matters.
+    // If the vertex normals oppose the winding, compare them with the flipped geometric normal, because shading flips
+    // them.
     let side = if a.dot(normal) < 0.0 { -normal } else { normal };
     [a, b, c].iter().all(|n| (*n - side).abs().max_element() < 1e-6)
 }

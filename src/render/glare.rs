@@ -57,12 +57,13 @@ pub struct Rating {
     /// Background luminance in cd/m², and its standard error.
     pub background: f64,
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from lights that the rating leaves out.
+    /// Direct illuminance at the eye, in lux, from lights that the rating ignores: emissive surfaces, the environment,
+    /// and lights without a luminous opening.
     pub unrated_lux: f64,
     pub sources: Vec<Source>,
 }
 
-/// A luminaire in view of an observer.
+/// A luminaire that an observer sees, and that causes glare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// Index of the luminaire among the lights of the scene.
@@ -88,8 +89,8 @@ const MAX_SOLID_ANGLE: f64 = 0.1;
 /// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper lines of sight are
 /// refused, because the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
-/// Let the reference be the largest of an opening's projected areas along its own axes. The opening counts as seen
-/// edge-on if its projected area towards the eye is at most this share of the reference. [rounding]
+/// An opening counts as seen edge-on if its projected area towards the eye is at most this multiple of its largest
+/// projected area along one of its own axes. [rounding]
 const EDGE_ON: f64 = 1e-6;
 /// Number of visibility rays along each side of each face of a luminous opening.
 const RAYS: usize = 16;
@@ -132,7 +133,7 @@ fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
     }
 }
 
-/// A luminaire that is rated, because it has a luminous opening.
+/// A luminaire that the rating takes into account, because it has a luminous opening.
 struct Lamp {
     light: usize,
     position: DVec3,
@@ -239,7 +240,8 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     Rating { ugr, background, background_error, unrated_lux, sources }
 }
 
-/// Returns the background luminance, its standard error, and the direct illuminance from lights that are not rated.
+/// Returns the background luminance, its standard error, and the direct illuminance from lights that the rating
+/// ignores.
 fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
     let vertex = Vertex::free(world, eye.position, eye.direction.normalize());
     let per_batch = params.samples.div_ceil(BATCHES);
@@ -268,11 +270,12 @@ fn luminance(light: DVec3) -> f64 {
     f64::from(colour::luminance(light.as_vec3()))
 }
 
-/// Splits the light that paths carry to an eye into indirect light and direct light from lights that are not rated.
+/// Divides the light that paths carry to an eye: indirect light (`indirect`), and direct light from lights that the
+/// rating ignores (`unrated`).
 struct Split<'a> {
-    /// For each light of the scene, whether the rating accounts for it.
+    /// For each light of the scene, whether the rating takes it into account.
     rated: &'a [bool],
-    /// Whether the path has scattered at a surface other than a clear pane.
+    /// Whether the path has scattered so far at a surface other than a clear pane.
     scattered: bool,
     indirect: DVec3,
     unrated: DVec3,

@@ -69,11 +69,11 @@ pub struct Output {
 /// recorded]
 const BATCHES: u32 = 16;
 
-/// To learn which lights reach its points, a calculation first traces `LEARNING_PATHS` paths from each of at most
-/// `MAX_LEARNING_POINTS` points. [convention]
+/// To learn which lights reach its points, a calculation first traces `LEARNING_PATHS` paths from each of up to
+/// `MAX_LEARNING_POINTS` of its points. [convention]
 const MAX_LEARNING_POINTS: usize = 1024;
 const LEARNING_PATHS: u32 = 4;
-/// A calculation learns only if its own paths are at least this multiple of those from which it would learn.
+/// A calculation learns only if it traces at least this many times as many paths as are needed for learning.
 /// [convention]
 const MIN_RATIO: usize = 50;
 /// Added to the seed of the paths from which a calculation learns, so that its own paths get other random numbers.
@@ -115,7 +115,8 @@ pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Ou
     summary(params, &estimates)
 }
 
-/// Learns from a few paths of some points which lights reach them, if these paths are few compared with all.
+/// Learns from a few paths which lights reach the points. Does not learn if these paths are too many compared with
+/// those of the calculation.
 fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> Result<World> {
     let points = params.columns * params.rows;
     let stride = points.div_ceil(MAX_LEARNING_POINTS);

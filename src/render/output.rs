@@ -26,10 +26,11 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of point lights, spot lights and luminaires that emit. The image cannot show them, because they have no
-    /// surface.
+    /// Number of point lights, spot lights and luminaires that emit. They have no surface, so the image cannot show
+    /// them.
     pub unseen_lights: usize,
-    /// Which lamps reach the surfaces in view; `None` if the render found no lamp that does not.
+    /// How many lamps cannot reach the surfaces in view; `None` if the render found too few of them to treat them
+    /// differently.
     pub reach: Option<Reach>,
     /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`Reach::sentence`].
     pub requirements: Vec<String>,

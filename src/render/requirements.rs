@@ -1,10 +1,9 @@
 //! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
 //! a bounce can reflect or transmit at most.
 //!
-//! For each material, the analysis considers the product of each factor with every texel of the texture that belongs
-//! to the factor. Only materials of meshes with triangles count. Tracing skips features that cannot occur, which
-//! changes no estimate. The number of bounces that matter is reported, but limits no render, since paths end by
-//! Russian roulette alone.
+//! The analysis multiplies each factor of a material with the smallest and the largest texel of the factor's texture.
+//! Only materials of meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate.
+//! The number of bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -31,7 +30,8 @@ pub struct Requirements {
     pub spots: bool,
     pub directional: bool,
     pub environment: bool,
-    /// Number of textures that affect scattering or emission (`textures`), and number of textures in the scene.
+    /// Number of textures that affect scattering or emission (`textures`), and number of all textures of the scene
+    /// (`textures_given`).
     pub textures: usize,
     pub textures_given: usize,
     /// Upper bound of the albedo of all surfaces, per channel. The albedo includes diffuse, glossy and transmitted
@@ -207,8 +207,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 }
 
 impl Requirements {
-    /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
-    /// BSDF parameters that bound those of the material (see the function `extremes`).
+    /// Adds the kinds of scattering that a material can cause, and the bound of the material's albedo. `extremes`
+    /// holds BSDF parameters between which those of the material lie (see the function `extremes`).
     fn include_material(
         &mut self,
         index: usize,
@@ -322,8 +322,9 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the BSDF parameters of a material for each combination of its smallest or largest metalness and roughness.
-/// In between, all parameters of the layers are linear or monotone.
+/// Returns the BSDF parameters of a material for the four combinations of its smallest or largest metalness with its
+/// smallest or largest roughness. All parameters of the layers are linear or monotone in between, so these are the
+/// extremes.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);

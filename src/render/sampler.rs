@@ -55,8 +55,8 @@ impl Sampler {
         Block(std::array::from_fn(|d| scramble(point[d], seed(d as u32)).reverse_bits()))
     }
 
-    /// Returns a point of the Sobol' sequence in its first four dimensions. Each look-up handles eight bits of the
-    /// index. The bits of the index and of the results are in reversed order.
+    /// Returns a point of the Sobol' sequence in its first four dimensions. The bits of `index` and of the results are
+    /// in reversed order. Each table look-up handles eight bits of the index.
     #[inline]
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
@@ -105,8 +105,8 @@ fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// For each byte of an index and each value of the byte, the XOR that it contributes to a point. Indices and points
-/// have reversed bits.
+/// Look-up tables of the Sobol' sequence. A point is the XOR of four entries, one for each byte of its index:
+/// `SOBOL[byte][value]`. Indices and points have reversed bits.
 static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
 
 const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {

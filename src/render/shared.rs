@@ -129,7 +129,7 @@ struct Viewer {
     lobes: Lobes,
     /// Solid-angle pdf with which the BSDF of the primary vertex samples `direction`.
     pdf: f32,
-    /// Factor that converts this pdf to an area pdf at the secondary vertex: cosine / squared distance.
+    /// Factor that converts `pdf` to an area pdf at the secondary vertex: cosine / squared distance.
     solid_angle_per_area: f32,
 }
 

@@ -96,7 +96,7 @@ impl Vertex {
             let [a, b, c] = mesh.triangles[self.triangle as usize].map(|i| mesh.normals[i as usize]);
             let v = self.barycentric;
             let n = (a * (1.0 - v.x - v.y) + b * v.x + c * v.y).normalize_or(normal);
-            // Flip normals that oppose the winding: only the axis of a normal matters.
+            // Flip a normal that opposes the winding, so that it lies on the front side.
             normal = if n.dot(normal) < 0.0 { -n } else { n };
         }
         let Some(texture) = &material.normal_texture else { return normal };

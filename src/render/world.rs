@@ -18,7 +18,8 @@ use std::sync::Arc;
 
 /// A scene prepared for path tracing: acceleration structure, triangle data and light distributions. Triangles have
 /// scene-wide numbers (ids), mesh after mesh. World coordinates are relative to a centre, so that scenes far from the
-/// origin keep their precision. Clones share all data but what a render learns about the lights.
+/// origin keep their precision. A clone is cheap, because it shares the data; only what a render learns about the
+/// lights is its own.
 #[derive(Clone)]
 pub struct World {
     scene: Arc<Scene>,
@@ -119,29 +120,29 @@ impl World {
         self.any_see_through = true;
     }
 
-    /// Makes renders sample all lights alike, whether they reach the surfaces in view or not. Tests and benchmarks use
-    /// this function to measure what the distinction gains.
+    /// Makes renders sample all lights alike, whether or not they reach the surfaces in view. Tests and benchmarks use
+    /// this function to measure how much learning helps.
     pub fn without_learning(&mut self) {
         self.lights.learns = false;
     }
 
-    /// A copy for a render that learns which lights reach the surfaces in view.
+    /// Returns a copy that learns, from the paths traced in it, which lights reach the surfaces in view.
     pub(super) fn learning(&self) -> Result<Self> {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// The copy for the next pass, if the paths so far suggest a change ([`Lights::learned`]).
+    /// Returns an updated copy for the next pass; `None` if this copy stays in use ([`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         Ok(self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }))
     }
 
-    /// The copy for paths that learn no more: with all that this copy has learned.
+    /// Ends the learning: returns a copy that keeps what this copy has learned, and learns no more.
     pub(super) fn settled(&self) -> Result<Self> {
         let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
         Ok(Self { lights: learned.settled(), ..self.clone() })
     }
 
-    /// The lamps that do not reach the surfaces in view, as far as this copy has learned.
+    /// Returns how many lamps do not reach the surfaces in view ([`Lights::reach`]).
     pub(super) fn reach(&self) -> Result<Option<Reach>> {
         self.lights.reach()
     }
@@ -247,9 +248,9 @@ impl World {
         }
     }
 
-    /// Returns the transmittance per channel between the ends of a ray. The triangles in `ends`, at the two ends, do
-    /// not count. Partly transparent surfaces and clear panes attenuate the light. `panes` receives these surfaces in
-    /// arbitrary order.
+    /// Returns the transmittance per channel between the ends of a ray. Partly transparent surfaces and clear panes
+    /// attenuate the light; `panes` receives them in arbitrary order. The triangles in `ends`, at the two ends of the
+    /// ray, do not count.
     pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
         if let Some(panes) = &mut panes {
             panes.clear();
@@ -280,8 +281,8 @@ impl World {
         self.any_see_through
     }
 
-    /// Whether no surface lies between the ends of a ray. Transparent surfaces count; points of a surface whose
-    /// opacity is 0 and the triangles in `ends`, at the two ends, do not count.
+    /// Whether no surface lies between the ends of a ray. Clear panes and partly transparent surfaces count as
+    /// surfaces, except where the opacity is 0. The triangles in `ends`, at the two ends of the ray, do not count.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;

@@ -21,7 +21,8 @@ use std::time::Instant;
 /// The sums over all paths so far, for every pixel of the image.
 pub struct Canvas<'a> {
     pub(super) world: &'a World,
-    /// The world with what the passes so far have learned about the lights.
+    /// A copy of `world`, updated after each pass with what its paths have learned about which lights reach the
+    /// surfaces in view.
     pub(super) learning: World,
     pub(super) eye: Eye,
     pub(super) seed: u64,

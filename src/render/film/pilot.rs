@@ -43,8 +43,8 @@ const MAX_TILES: usize = 128;
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation over all tiles. It
-/// lets tiles without variance be selected, too. [origin not recorded]
+/// Constant that is added to each tile's selection weight, as a multiple of the mean standard deviation of all tiles,
+/// so that even tiles without variance can be selected. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
@@ -56,7 +56,8 @@ pub struct Pilot {
     pub seconds_per_path: f64,
     /// Predicted square of [`super::super::Film::error`] for each number of paths per pixel in [`PATHS`].
     pub squared_errors: [f64; 3],
-    /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
+    /// Number of paths that uniform sampling needs, divided by the number that adaptive sampling needs for the same
+    /// error; at least 1.
     pub adaptive_gain: f64,
     /// Root mean square of the image's radiance, divided by its mean. If the error of every pixel is the same share of
     /// the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
@@ -77,7 +78,7 @@ struct PilotTile {
     weight: f64,
     /// Number of pilot tiles that this tile represents in the third pass; 0 if the third pass leaves it out.
     deep_weight: f64,
-    /// Mean radiance of the tile in the first look.
+    /// Mean radiance of the tile, estimated beforehand with few paths (`tile_moments`).
     expected: f64,
     pixels: [Pixel; AREA],
     /// Number of paths of each pixel (`paths`), and total time in seconds for all paths of the tile (`seconds`).
@@ -90,7 +91,7 @@ struct PilotTile {
 struct TileSums {
     weight: f64,
     pixels: f64,
-    /// Predictions of the first look for the sums `mean` and `square`.
+    /// Values of the sums `mean` and `square` that the estimate of `tile_moments` predicts.
     expected: [f64; 2],
     mean: f64,
     square: f64,
@@ -184,9 +185,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is multiplied by the
-/// ratio of the weighted mean over the tiles to the unweighted mean, because the selected tiles are not typical of the
-/// image.
+/// Returns the time per path of the image in seconds. Expensive tiles may be selected more often than others. The mean
+/// time of the pilot's paths is therefore corrected by a ratio: the mean time per path with the tiles weighted by how
+/// many tiles they represent, over the unweighted mean.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -224,7 +225,8 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     Ok(chosen)
 }
 
-/// Systematic sampling: marks at equal distances along the cumulative sum of the items' chances select the items.
+/// Systematic sampling: places marks at equal distances along the cumulative sum of the items' chances, and selects
+/// each item that contains a mark.
 struct SystematicSampler {
     step: f64,
     next: f64,
@@ -232,7 +234,7 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// Sets `count` marks along a cumulative sum whose total is `sum`.
+    /// Places `count` marks at equal distances, with a random start, in the interval `[0, sum]`.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }

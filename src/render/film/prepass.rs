@@ -1,11 +1,10 @@
-//! Prepass: traces a few paths over the scene, from which renders in parts take their weights for Russian roulette
-//! (see `roulette`).
+//! Prepass for renders in parts: traces a few paths over the whole scene, from which every part takes the same weights
+//! for Russian roulette (see `roulette`).
 //!
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
 //! not know each other's paths. Instead, each part traces the same few paths over the image and over each of its
 //! tiles, and gets the same weights. These paths have their own seeds and are not part of the image, so they bias no
-//! estimate. They also learn which lights reach
-//! the surfaces in view, for all paths of the part.
+//! estimate. From them, the part also learns which lights reach the surfaces in view.
 
 use super::block::seed_of;
 use super::eye::{Eye, paths};
@@ -49,7 +48,7 @@ impl<'a> Prepass<'a> {
         Ok(prepass)
     }
 
-    /// Replaces the world by the one that has learned from the first paths, for the paths of the tiles.
+    /// Replaces the world by `world`, for the paths of the tiles: it has learned from the paths over the image.
     pub fn in_world(self, world: &'a World) -> Self {
         Self { world, ..self }
     }

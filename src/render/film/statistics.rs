@@ -12,10 +12,10 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::DVec3;
 
-/// In the relative error of the whole image, the error of a pixel is divided by its radiance. For pixels darker than
-/// this share of the image's mean, it is divided by this share of the mean. The share may be lower than for targets on
-/// single pixels, where one dark pixel would delay the whole image. [convention: the relative error is defined with
-/// it]
+/// In the relative error of the whole image, each pixel's error is divided by the pixel's radiance, or by this share
+/// of the image's mean if the pixel is darker. The share is lower than `adaptive::MIN_RELATIVE_LUMINANCE`, the limit
+/// for targets on single pixels, because one dark pixel cannot delay the whole image here. [convention: the relative
+/// error is defined with it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// Sums of paths, radiance and variance over the pixels of a tile or of the image.
@@ -25,11 +25,11 @@ pub struct Statistics {
     pub pixels: u32,
     /// Largest number of paths in a pixel.
     pub max_paths: u32,
-    /// Sum of the mean radiances of the pixels, averaged over the channels.
+    /// Sum, over the pixels, of the pixel's mean radiance, averaged over the channels.
     mean: f64,
-    /// Sum of the variances of these mean radiances.
+    /// Sum, over the pixels, of the variance of the pixel's mean radiance.
     variance: f64,
-    /// Sum, over the pixels, of the variance of a single path.
+    /// Sum, over the pixels, of the variance of the radiance of a single path.
     pub path_variance: f64,
 }
 

@@ -43,7 +43,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Returns the sums of a part before any of its paths is traced.
+    /// Creates the sums of a part, all 0.
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };

@@ -30,7 +30,7 @@ pub struct TileContext<'a> {
     pub discarded: &'a AtomicU64,
 }
 
-/// A tile while one worker thread traces its paths.
+/// The state of a tile while one worker thread traces its paths.
 pub struct Tile<'a> {
     context: TileContext<'a>,
     number: usize,

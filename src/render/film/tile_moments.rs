@@ -1,4 +1,5 @@
-//! A first look at all tiles of an image with few paths: the mean and the variance of each tile's radiance.
+//! Estimates the mean and the variance of the radiance of every tile of an image, from a few paths. The pilot run
+//! selects its tiles by these values.
 
 use super::grid::{Grid, TILE};
 use super::prepass::Prepass;
@@ -6,7 +7,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// The paths per tile are reduced until all tiles together have at most this number of paths, but not below
+/// Largest number of paths of all tiles together. If it is exceeded, each tile gets fewer paths, but at least
 /// `MIN_ALONG` × `MIN_ALONG`. [origin not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile. Both are powers of two, as is the side of a tile.

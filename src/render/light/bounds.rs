@@ -22,10 +22,12 @@ pub struct Receiver {
 pub struct Bounds {
     pub low: Vec3,
     pub high: Vec3,
-    /// Unit axis of the emission; 0 if `cone_angle` covers all directions. `cone_angle` is in radians, and no light is
-    /// emitted at a larger angle to the axis. Up to an angle of cone_angle - 90°, the bound is the full intensity. At
-    /// a larger angle θ, it is the full intensity times cos(θ + 90° - cone_angle). So with a cone angle of 90°, the
-    /// bound falls with the cosine, as for a flat surface.
+    /// The cone of the emission: unit axis (`axis`), and the angle to the axis beyond which no light is emitted
+    /// (`cone_angle`, in radians). The axis is 0 if the light may go in all directions.
+    ///
+    /// Up to an angle of `cone_angle` - 90° to the axis, the bound on the intensity is the full intensity. At a larger
+    /// angle θ, it is the full intensity times cos(θ + 90° - `cone_angle`). With a cone angle of 90°, it falls with
+    /// the cosine, as for a flat surface.
     pub axis: Vec3,
     pub cone_angle: f32,
     /// Whether all lights of the cluster also emit backwards.
@@ -115,11 +117,12 @@ pub struct BoundsLanes {
     centre: [Lanes; 3],
     /// Half-extents of the box, widened by the rounding error of a point.
     half: [Lanes; 3],
-    /// Reciprocal of the squared distance from the centre of the box to a corner.
+    /// Upper limit on 1 / squared distance, for receivers in or near the box: the reciprocal of the squared distance
+    /// from the centre to a corner.
     inverse_square: Lanes,
     axis: [Lanes; 3],
-    /// Half-extent of the box along the axis of the emission; if the cone angle is not 90°, half the diagonal of the
-    /// box.
+    /// Half-extent of the box along the axis of the emission, or half the diagonal of the box if the cone angle is not
+    /// 90°. Divided by the distance, it is added to the cosine at the emitters.
     box_extent: Lanes,
     /// -1 for two-sided lights, 1 for all others.
     back_sign: Lanes,

@@ -29,7 +29,7 @@ impl Lamps {
             let (a, b) = (root(&mut parents, pair[0].1), root(&mut parents, pair[1].1));
             parents[a.max(b) as usize] = a.min(b);
         }
-        // Number only lamps that have pieces.
+        // Number the lamps that have pieces, and skip the others.
         let (mut of_roots, mut lamps) = (try_vec(count, u32::MAX)?, 0);
         let of_pieces = try_collect((0..pieces).map(|piece| {
             let lamp = &mut of_roots[root(&mut parents, emitters.emitter_of(piece) as u32) as usize];
@@ -41,9 +41,9 @@ impl Lamps {
         Ok(Self { of_pieces, count: lamps as usize })
     }
 
-    /// Returns the number of all lamps of the scene, and the number of lamps of which every light is hidden. The
-    /// lights of a surface are its pieces; every punctual light and the environment is a lamp of its own. `is_hidden`
-    /// takes the number of a light in the [`Inventory`].
+    /// Returns the number of all lamps of the scene, and the number of hidden ones: lamps of which every light is
+    /// hidden. A connected luminous surface is one lamp, whose lights are its pieces; every punctual light and the
+    /// environment is a lamp of its own. `is_hidden` takes the number of a light in the [`Inventory`].
     pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
         let mut surfaces = try_vec(self.count, true)?;
         self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));
@@ -59,7 +59,8 @@ impl Lamps {
     }
 }
 
-/// Returns the representative of the lamp that holds an emitter, and halves the path to it (union-find).
+/// Union-find: returns the representative of the set (the lamp) that contains `emitter`. Shortens the chain of
+/// `parents` on the way.
 fn root(parents: &mut [u32], mut emitter: u32) -> u32 {
     while parents[emitter as usize] != emitter {
         let parent = parents[parents[emitter as usize] as usize];

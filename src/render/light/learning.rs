@@ -8,16 +8,14 @@ use super::survey::{ENOUGH, Progress, Survey};
 use crate::error::Result;
 use std::sync::Arc;
 
-/// Unlikely lights get a selector of their own only if they took at least this share of all samples so far. A room
-/// with a single hidden light usually stays below this share; its image is then the same, bit for bit, as without
-/// learning. In
-/// buildings, 70 % and more of the samples are wasted on unlikely lights. [judged on 3 scenes]
+/// Lights that are unlikely to reach the surfaces in view get a selector of their own only if they took at least this
+/// share of all light samples so far; in buildings, they take 70 % and more. In a room with a single hidden light, the
+/// share is usually smaller, so the image is the same, bit for bit, as without learning. [judged on 3 scenes]
 const MIN_GAIN: f64 = 0.6;
-/// Minimum number of samples before the first decision; scenes of many lights wait for half as many samples as they
-/// have lights. [convention]
+/// Minimum number of light samples before the first decision, or half the number of lights if that is larger.
+/// [convention]
 const FIRST_DECISION: u64 = 256;
-/// Maximum number of samples between two decisions; in scenes of many lights, half the number of lights if that is
-/// larger. [convention]
+/// Maximum number of light samples between two decisions, or half the number of lights if that is larger. [convention]
 const DECISION: u64 = 4096;
 
 impl Lights {
@@ -49,7 +47,7 @@ impl Lights {
         match &self.split {
             Some(split) if split.is_same(&weights) && counted > ENOUGH => return Ok(Some(lights)),
             Some(_) => {}
-            // Keep the selector of all lights. After `ENOUGH` samples, stop counting as well.
+            // Keep one selector for all lights. After `ENOUGH` samples, stop counting as well.
             None if (unlikely as f64) < MIN_GAIN * counted as f64 => {
                 lights.survey = lights.survey.filter(|_| counted < ENOUGH);
                 return Ok(Some(lights));
@@ -62,13 +60,13 @@ impl Lights {
         Ok(Some(lights))
     }
 
-    /// Returns the lights with all that was learned so far, for paths whose samples are no longer counted.
+    /// Ends the learning: keeps the selectors learned so far, and counts no further samples.
     pub fn settled(self) -> Self {
         Self { survey: None, ..self }
     }
 
-    /// Counts the lamps that reach the surfaces in view and those that do not. Returns `None` if the render has one
-    /// selector for all lights, because it found too few unlikely lights or did not learn.
+    /// Counts the lamps of the scene and those that do not reach the surfaces in view. Returns `None` if the render
+    /// still has one selector for all lights, because it found too few such lamps or did not learn.
     pub fn reach(&self) -> Result<Option<Reach>> {
         let Some(split) = &self.split else { return Ok(None) };
         let own;

@@ -41,11 +41,11 @@ pub struct Lights {
     inventory: Arc<Inventory>,
     /// Selects among all lights.
     all: Arc<Selector>,
-    /// The selectors for likely and for unlikely lights, which replace `all`; `None` until a render has learned which
-    /// lights are likely to reach the surfaces in view.
+    /// Separate selectors for the lights that are likely and unlikely to reach the surfaces in view, which replace
+    /// `all`; `None` until a render has learned which lights these are.
     split: Option<Arc<Split>>,
-    /// Counts the samples of each light, and those that are not occluded; `None` if the render does not learn, or has
-    /// stopped learning.
+    /// Counts how many samples of each light were drawn and how many were not occluded; `None` if the render does not
+    /// learn, or has stopped learning.
     survey: Option<Arc<Survey>>,
     progress: Progress,
     /// Whether renders may learn which lights reach the surfaces in view.
@@ -57,8 +57,8 @@ pub struct Lights {
 /// A sample of the light that reaches a receiver.
 pub struct LightSample {
     pub source: LightSource,
-    /// The light's number in the [`Inventory`], by which [`Lights::count_arrived`] counts the sample; [`UNCOUNTED`] if
-    /// the sample is not to be counted.
+    /// The light's number in the [`Inventory`], under which [`Lights::count_arrived`] counts the sample; [`UNCOUNTED`]
+    /// if the sample is not counted.
     surveyed: u32,
     /// Unit direction from the receiver to the light.
     pub direction: Vec3,

@@ -95,9 +95,9 @@ impl Punctual {
         (bounds.intensity > 0.0).then_some(bounds)
     }
 
-    /// Returns the luminous flux in lumens by which groups of lights are selected. A spot counts with its full
-    /// intensity throughout the outer cone, a directional light with the flux through the cross-section of a sphere
-    /// around the scene.
+    /// Returns the luminous flux in lumens, as an estimate from which selection probabilities are computed. A spot
+    /// counts with its full intensity throughout the outer cone, a directional light with the flux through the
+    /// cross-section of a sphere around the scene.
     pub fn flux(light: &PunctualLight, distributions: &[Arc<Luminaire>], radius: f32) -> f64 {
         let (solid_angle_or_area, strength) = match *light {
             PunctualLight::Point { intensity, .. } => (4.0 * std::f64::consts::PI, intensity),

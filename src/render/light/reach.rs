@@ -30,17 +30,17 @@ use crate::image::try_vec;
 /// A light of which no sample has arrived is unlikely if the estimated probability that its next sample arrives is
 /// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
-/// Share of the light samples that the unlikely lights get: `UNLIKELY_ROOT` divided by the square root of the number
-/// of samples drawn from them in vain, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
+/// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` divided by the square root of the
+/// number of samples already drawn from them, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
-/// A neighbour in the light tree with more samples than this counts as having this many, with the same share that
-/// arrived. [judged on 3 scenes]
+/// A neighbour in the light tree counts as at most this many samples. If it has more, its counts of drawn and of
+/// arrived samples are scaled down by the same factor. [judged on 3 scenes]
 const MAX_WITNESS: f64 = 16.0;
-/// The importance of a likely light is multiplied by the square root of the probability that a sample of it arrives,
-/// or by this factor if the root is smaller. [judged on 3 scenes]
+/// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
+/// arrives. The root counts as at least this value. [judged on 3 scenes]
 const MIN_WEIGHT: f64 = 0.1;
-/// Bit of [`Split::places`] that marks an unlikely light.
+/// Bit that marks an unlikely light in an entry of [`Split::places`].
 const UNLIKELY: u32 = 1 << 31;
 
 /// What a render has learned about which lamps reach the surfaces in view.
@@ -48,8 +48,8 @@ const UNLIKELY: u32 = 1 << 31;
 pub struct Reach {
     /// Number of all lamps of the scene: connected luminous surfaces, punctual lights, and the environment.
     pub lamps: usize,
-    /// Number of hidden lamps: no light sample of the lamp has arrived at a vertex of a path so far, and later samples
-    /// are unlikely to arrive.
+    /// Number of hidden lamps. A lamp is hidden if none of its light samples has arrived at a vertex of a path so far,
+    /// and later samples are unlikely to arrive.
     pub hidden: usize,
     /// Number of light samples on which `hidden` is based.
     pub samples: u64,
@@ -72,7 +72,7 @@ fn grouped(number: usize) -> String {
     digits.chars().enumerate().flat_map(|(i, digit)| is_start(i).then_some(',').into_iter().chain([digit])).collect()
 }
 
-/// The lights of a scene, divided into likely and unlikely lights.
+/// The lights of a scene, divided by whether their samples are likely or unlikely to arrive unoccluded.
 pub struct Split {
     pub likely: Selector,
     pub unlikely: Selector,
@@ -81,13 +81,14 @@ pub struct Split {
     /// For each light at a finite distance, its index in the tree of the selector that holds it. The bit [`UNLIKELY`]
     /// is set if that is the selector `unlikely`.
     places: Vec<u32>,
-    /// For each number of the [`Inventory`], the factor on the light's importance; 0 for unlikely lights.
+    /// Factor on the importance of each light, indexed by the light's number in the [`Inventory`]; 0 for unlikely
+    /// lights.
     pub weights: Vec<f32>,
 }
 
 impl Split {
-    /// Divides the lights: those with a positive weight are likely, those with weight 0 unlikely. Returns `None` if
-    /// all lights are likely or all are unlikely.
+    /// Divides the lights: those with a positive weight are likely, those with weight 0 are unlikely. Returns `None`
+    /// if all lights are on the same side.
     pub fn new(lights: &Inventory, weights: Vec<f32>, unlikely_share: f64) -> Result<Option<Self>> {
         let likely = Selector::of_some(lights, |light| weights[light])?;
         let unlikely = Selector::of_some(lights, |light| if weights[light] > 0.0 { 0.0 } else { 1.0 })?;
@@ -122,16 +123,18 @@ impl Split {
     }
 }
 
-/// Returns the share of the light samples for the unlikely lights, of which `samples` samples were drawn and none
-/// arrived. The share with the smallest variance is proportional to the square root of the probability that a sample
-/// arrives, and that probability is at most about `1 / samples`.
+/// Returns the share of the light samples that the unlikely lights get together. `samples` is the number of samples
+/// already drawn from them, none of which arrived.
+///
+/// The share with the smallest variance is proportional to the square root of the probability that a sample arrives.
+/// That probability is at most about `1 / samples`.
 pub fn unlikely_share(samples: u64) -> f64 {
     let [min, max] = UNLIKELY_SHARES;
     (UNLIKELY_ROOT / (samples.max(1) as f64).sqrt()).clamp(min, max)
 }
 
-/// Returns the weight of each light: the square root of the probability that a sample of it arrives, at least
-/// [`MIN_WEIGHT`], or 0 if the light is unlikely. Weights equal to the root minimise the variance if this probability
+/// Returns the factor on each light's importance: the square root of the probability that a sample of the light
+/// arrives, at least [`MIN_WEIGHT`], or 0 if the light is unlikely. The root minimises the variance if the probability
 /// is the same for all receivers. The probability is estimated from the light's own samples and a prior, which counts
 /// as one further sample.
 pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> Result<Vec<f32>> {
@@ -147,12 +150,12 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
     Ok(weights)
 }
 
-/// Sets the prior of each light of a tree: the probability that a sample of the light arrives, as estimated without
-/// the light's own samples. On the way from the root to the light, the prior is updated in each cluster with the
-/// samples of all children of that cluster that do not contain the light.
+/// Sets the prior of each light of a tree: the probability that a sample of the light arrives, estimated from its
+/// neighbours in the tree alone. From the root down to the light, each cluster's prior is updated with the samples of
+/// the cluster's children, except the child that contains the light.
 fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
-    // Add up the samples of each cluster, beginning with the last: clusters come before the clusters within them. A
-    // child counts as at most `MAX_WITNESS` samples.
+    // Add up the samples of each cluster, from the last cluster to the first: a cluster comes before the clusters
+    // within it. A child counts as at most `MAX_WITNESS` samples.
     let mut witnesses = try_vec(tree.clusters(), [0.0; 2])?;
     let of_child = |witnesses: &[[f64; 2]], child: Child| {
         let [drawn, arrived] = match child {

@@ -7,14 +7,16 @@ use crate::image::{try_collect, try_with_capacity};
 use crate::render::distribution::Distribution;
 use std::f64::consts::PI;
 
-/// The data of a scene's lights from which selectors are built. It gives each light a number. The numbers begin with
-/// the lights at a finite distance: pieces of emissive surfaces, then punctual lights that are not directional. Then
-/// comes one number for each punctual light of the scene, which only directional lights use. The last number is the
-/// environment's.
+/// The data of a scene's lights from which selectors are built. It numbers the lights in this order:
+///
+/// 1. The pieces of emissive surfaces: triangles, or tiles of textured triangles.
+/// 2. The punctual lights at a finite distance.
+/// 3. One number for every punctual light of the scene; only those of directional lights are used.
+/// 4. The environment.
 pub struct Inventory {
     /// Bounds of the lights at a finite distance.
     pub bounds: Vec<Bounds>,
-    /// Number of pieces of emissive surfaces.
+    /// Number of pieces of emissive surfaces (triangles, or tiles of textured triangles).
     pub pieces: usize,
     /// Flux of all pieces together, in lumens.
     pub piece_flux: f64,
@@ -29,17 +31,19 @@ pub struct Inventory {
 }
 
 impl Inventory {
-    /// Returns the number of the directional light with the given index in the scene's list of punctual lights.
+    /// Returns the inventory's number for the directional light that has this index in the scene's list of punctual
+    /// lights.
     pub fn directional(&self, index: usize) -> usize {
         self.bounds.len() + index
     }
 
-    /// Returns the number of the environment.
+    /// Returns the inventory's number for the environment, which is the largest one.
     pub fn environment(&self) -> usize {
         self.bounds.len() + self.flux.len()
     }
 
-    /// Returns one more than the largest number. It exceeds the count of lights, because some numbers are unused.
+    /// Returns the length of an array indexed by the inventory's numbers. It exceeds the count of lights, because some
+    /// numbers are unused.
     pub fn len(&self) -> usize {
         self.environment() + 1
     }
@@ -63,8 +67,8 @@ impl Inventory {
 pub struct Selector {
     /// Selects among the lights at a finite distance.
     pub tree: LightTree,
-    /// For each light of the tree, its number in the [`Inventory`]. The list is empty if the tree holds all lights at
-    /// a finite distance, because the index in the tree is then the number.
+    /// For each light of the tree, its number in the [`Inventory`]. Empty if the tree holds all lights at a finite
+    /// distance, because both numberings are then the same.
     members: Vec<u32>,
     /// Selects among the directional lights. It has an entry for each punctual light of the scene; the entries of
     /// lights that are not directional have zero weight.
@@ -82,8 +86,8 @@ impl Selector {
         Ok(Self { tree: LightTree::build(&lights.bounds)?, members: Vec::new(), directional, groups })
     }
 
-    /// Builds a selector that selects only among the lights with a positive weight. The function `weight` takes the
-    /// number of a light; the importance of the light is multiplied by its weight.
+    /// Builds a selector that selects only among the lights with a positive weight. `weight` maps a light's number in
+    /// the [`Inventory`] to the factor on the light's importance.
     pub fn of_some(lights: &Inventory, weight: impl Fn(usize) -> f32) -> Result<Self> {
         let members = try_collect((0..lights.bounds.len()).filter(|&i| weight(i) > 0.0).map(|i| i as u32))?;
         let (mut bounds, mut near_power) = (try_with_capacity(members.len())?, 0.0);
@@ -101,13 +105,14 @@ impl Selector {
         Ok(Self { tree: LightTree::build(&bounds)?, members, directional, groups })
     }
 
-    /// Returns the number in the [`Inventory`] of the light with index `light` in the tree.
+    /// Converts an index in the tree to the light's number in the [`Inventory`].
     #[inline]
     pub fn number(&self, light: usize) -> usize {
         self.members.get(light).map_or(light, |&number| number as usize)
     }
 
-    /// Returns the numbers of the tree's lights; empty if the tree holds all lights at a finite distance.
+    /// Returns, for each light of the tree, its number in the [`Inventory`]. Empty if the tree holds all lights at a
+    /// finite distance.
     pub fn members(&self) -> &[u32] {
         &self.members
     }

@@ -6,11 +6,11 @@ use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Stands for the number of the light if a light sample is not counted.
+/// Value of `LightSample::surveyed` for a light sample that is not counted.
 pub const UNCOUNTED: u32 = u32::MAX;
 
-/// Once this number of samples is counted, only samples of unlikely lights are counted; if no light is treated as
-/// unlikely, none. [convention]
+/// Once this number of samples is counted, samples of likely lights are no longer counted. If the render then still
+/// has one selector for all lights, no samples are counted at all. [convention]
 pub const ENOUGH: u64 = 1 << 17;
 
 /// The counts of light samples, to which all threads of a render add.
@@ -68,14 +68,14 @@ impl Survey {
 /// How far a render has come in learning which lights reach the surfaces in view.
 #[derive(Clone, Copy, Default)]
 pub struct Progress {
-    /// Number of samples that were counted by the last decision; 0 before the first.
+    /// Number of samples that had been counted at the last decision; 0 before the first decision.
     pub counted: u64,
-    /// Number of counted samples from which on the next decision is due.
+    /// Number of counted samples at which the next decision is due.
     pub next: u64,
 }
 
 impl Progress {
-    /// Whether samples of likely lights are still counted, not only samples of unlikely lights.
+    /// Whether all samples are still counted, or only those of lights that are unlikely to reach the surfaces in view.
     #[inline]
     pub fn counts_likely(&self) -> bool {
         self.counted < ENOUGH

@@ -362,7 +362,8 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         }
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
-        // Half of the lights in a cluster face away, so that some samples are invalid. The measured error is 1.5 %.
+        // Half of the lights in a cluster face away from the floor, so some of the light samples carry no light. The
+        // measured error is 1.5 %.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }
 }
@@ -520,7 +521,8 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
 
 #[test]
 fn light_transport_between_two_surfaces_is_reciprocal() {
-    // Test reciprocity between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
+    // Test reciprocity, ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩, between two matt quads. An obstacle blocks a part of the light, and a
+    // wall reflects light from one quad to the other.
     let quads = || {
         vec![
             Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),

@@ -29,7 +29,7 @@ pub struct LightTree {
     /// light, and lights whose bounds differ only in intensity, such as the two triangles of a rectangle.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
-    /// For each light its slot: 8 × the index of its node, plus its lane in the node.
+    /// Slot of each light: 8 × the index of the node that holds it, plus its lane there.
     slots: Vec<u32>,
     /// Squared distances below this value count as this value; see [`BoundsLanes::importance`].
     nearest: f32,
@@ -38,13 +38,13 @@ pub struct LightTree {
 #[derive(Clone)]
 struct Node {
     bounds: BoundsLanes,
-    /// Indices of child nodes, or of lights with the bit `LIGHT`; `NONE` for unused lanes.
+    /// Children: the index of a node, or the index of a light with the bit `LIGHT` set; `NONE` for unused lanes.
     children: [u32; LANES],
-    /// The slot of this node in its parent node.
+    /// Slot of this node: 8 × the index of its parent node, plus its lane there; `NONE` for the root.
     parent: u32,
 }
 
-/// A light while the tree is built.
+/// A light, with the data needed while the tree is built.
 struct Item {
     bounds: Bounds,
     extent: Extent,
@@ -52,14 +52,14 @@ struct Item {
     light: u32,
 }
 
-/// A cluster of at least two lights, divided into two parts. Its index in the list of clusters is the index of the
-/// first light of its second part. No two clusters share this index.
+/// A cluster of at least two lights, divided into two parts. In the list of clusters, it stands at the index of the
+/// first light of its second part, which no other cluster has.
 #[derive(Clone, Copy, Default)]
 struct Cluster {
     /// Value of the split heuristic for the undivided cluster.
     cost: f32,
-    /// Indices of the two parts in the list of clusters; for a part that is a single light, the index of the light
-    /// with the bit `LIGHT`.
+    /// Indices of the two parts in the list of clusters. For a part that is a single light: the light's index, with
+    /// the bit `LIGHT` set.
     parts: [u32; 2],
 }
 
@@ -97,8 +97,8 @@ impl LightTree {
         Ok(tree)
     }
 
-    /// Appends the nodes of a cluster, parents before children. Returns the cluster as a child of slot `slot`, and its
-    /// bounds.
+    /// Appends the nodes of a cluster, parents before children. `slot` is the place of the cluster in its parent node.
+    /// Returns the entry for [`Node::children`], and the bounds of the cluster.
     fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
@@ -204,8 +204,8 @@ impl LightTree {
     }
 }
 
-/// Divides a cluster down to single lights, in parallel. Returns the index of the cluster in the list of clusters.
-/// `clusters` is the part of this list from index `first` on.
+/// Divides a cluster down to single lights, in parallel, and stores the clusters in `clusters`, the list of clusters
+/// from index `first` on. Returns the index of the cluster in the whole list.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;

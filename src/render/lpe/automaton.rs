@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 /// The state from which no expression can be completed.
 pub const DEAD: u16 = 0;
 
-/// Limits of the construction: number of states of the nondeterministic automaton, number of states before
-/// minimisation, and number of visited transitions. They bound time and memory. [convention]
+/// Limits of the construction, which bound time and memory: number of states of the nondeterministic automaton, number
+/// of states before minimisation, and number of visited transitions. [convention]
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
@@ -28,8 +28,8 @@ pub struct Automaton {
     start: u16,
     /// The next state for each state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// For each state and light event, the index in `lists` of the expressions that accept a path which ends at this
-    /// light.
+    /// For each state and light event: the index, in `lists`, of the list of expressions that accept a path which ends
+    /// there.
     ends: Vec<u16>,
     /// Lists of expressions: every path is accepted by exactly the expressions of one list. List 0 is empty.
     lists: Vec<Vec<u16>>,
@@ -101,8 +101,8 @@ impl Automaton {
         self.alphabet.light(source)
     }
 
-    /// Returns the index in [`Automaton::lists`] of the expressions that accept a path which reaches `light` in
-    /// `state`. List 0 is empty.
+    /// Returns the index, in [`Automaton::lists`], of the list of expressions that accept a path which reaches `light`
+    /// in `state`. List 0 is empty.
     #[inline]
     pub fn accepting(&self, state: u16, light: usize) -> u16 {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
@@ -128,8 +128,8 @@ impl Automaton {
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Separate states by the expressions that they accept; then, repeatedly, by the groups to which their next
-        // states belong.
+        // Put states in different groups if they accept different expressions. Then divide the groups repeatedly, by
+        // the groups to which the states' successors belong.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {

@@ -49,8 +49,8 @@ use crate::error::Result;
 /// Which of the letters `L`, `O` and `B` match emissive surfaces and the environment in camera-first expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EmitterAs {
-    /// Surfaces are both `L` and `O`, the environment is both `L` and `B`, so `C<RD>L` is all direct light of diffuse
-    /// reflection. The sum of `L` and `O` counts surfaces twice.
+    /// Surfaces are both `L` and `O`, and the environment is both `L` and `B`. `C<RD>L` is therefore all directly lit
+    /// diffuse reflection. In the sum of `L` and `O`, surfaces count twice.
     #[default]
     Both,
     /// All lights are `L` only.

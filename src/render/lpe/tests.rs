@@ -143,7 +143,8 @@ fn all_expressions_together_accept_what_each_accepts_alone() {
         assert!(yes.iter().all(|p| accepted(&together, p).contains(&number)), "{expression}");
         assert!(!no.iter().any(|p| accepted(&together, p).contains(&number)), "{expression}");
     }
-    // The five expressions of StyLit need few states, so that paths store their light for few states.
+    // The five expressions of StyLit need few states. This matters because a path stores its light once for each
+    // state.
     let five = automaton(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
     assert!(five.states() <= 8, "{} states", five.states());
 }

@@ -48,7 +48,7 @@ pub struct Trail<'a> {
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
-    /// Light that has arrived from the light event `rest_light` since all states became absorbing. `flush_rest`
+    /// Light from the light event `rest_light` that has arrived since all states became absorbing. `flush_rest`
     /// distributes it to the components.
     rest: Vec3A,
     rest_light: usize,
@@ -114,7 +114,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Sets the panes between a vertex and its light sample, unless no state depends on them any more.
+    /// Sets the panes between a vertex and its light sample. Does nothing if every component is in an absorbing state,
+    /// where panes change nothing.
     pub fn set_panes(&mut self, panes: &[Pane]) {
         if !self.absorbing && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
@@ -122,8 +123,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the list to fill with the panes between a vertex and its light sample, or `None` if no state depends on
-    /// them any more.
+    /// Returns the list to fill with the panes between a vertex and its light sample; `None` if every component is in
+    /// an absorbing state, where panes change nothing.
     #[inline]
     pub fn panes_wanted(&mut self) -> Option<&mut Vec<Pane>> {
         if self.absorbing { None } else { Some(&mut self.panes) }
@@ -149,7 +150,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Advances several components, or a component that a diffuse and a glossy layer split.
+    /// Advances the components by a scattering event in the general case: there are several components, or the two
+    /// layers of the surface split a component.
     #[inline(never)]
     fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
         let Self { automaton, components, before, .. } = self;
@@ -217,8 +219,9 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components:
-    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses the pane.
+    /// Adds the contribution of a light sample that reaches the vertex through panes. A component is a state of the
+    /// automaton with its share of the light. Each pane splits it: one part passes through the pane; if the opacity is
+    /// below 1, another part misses the pane.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;
@@ -299,7 +302,8 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
     }
 }
 
-/// Advances all components by the event `scatter`, or, if it is `None`, by scattering at both layers of a surface.
+/// Advances all components by the event `scatter`. If `scatter` is `None`, the surface scatters in both layers, and
+/// each component splits into a diffuse and a glossy one.
 fn advance(
     automaton: &Automaton,
     class: usize,

@@ -1,15 +1,18 @@
-//! Renders in parts, for distribution to many machines: a part is a rectangle of the image and a range of its paths.
+//! Renders in parts, for distribution to many machines. A part is a rectangle of the image, with a range of the paths
+//! of each of its pixels.
 //!
 //! [`run`] computes the sums of a part, a [`File`] stores them, and [`merge`] adds up the sums of all parts to an
 //! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in one
 //! part, for any partition and order, up to the rounding of f64 sums (`film::sums`).
 //!
-//! The pixels of a block of 8 × 8 pixels share secondary vertices. If the border of a part cuts a block, rendering the
-//! part therefore also traces the pixels of the block outside the part. Borders at multiples of 8 pixels avoid this
-//! cost. A part does not depend on the results of other parts. All parts therefore have a fixed number of paths,
-//! without error targets or a time budget. Their weights for Russian roulette come from a prepass (`film::prepass`),
-//! whereas [`super::run`] takes these weights from its previous passes. Both ways give unbiased images, but these
-//! images differ by their noise.
+//! The pixels of a block (4 × 2 or 2 × 4 pixels, `film::block`) share secondary vertices. If the border of a part cuts
+//! a block, rendering the part therefore also traces the pixels of the block outside the part. Borders at multiples of
+//! 8 pixels cut no block.
+//!
+//! A part does not depend on the results of other parts. All parts therefore have a fixed number of paths, without
+//! error targets or a time budget. Their weights for Russian roulette come from a prepass (`film::prepass`), whereas
+//! [`super::run`] takes these weights from its previous passes. Both ways give unbiased images, but these images
+//! differ by their noise.
 //!
 //! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 

@@ -170,7 +170,7 @@ fn closed_white_rooms_end_with_the_right_energy() {
     scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
     let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
     assert_mean(&film, 100.0);
-    // Test emissive walls of albedo 0.99.
+    // Test emissive walls of albedo 0.99, whose radiance is the emission divided by 1 - albedo.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.99, 1.0)], ..Scene::default() };
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
@@ -209,8 +209,7 @@ fn surfaces_in_the_same_place_are_one_or_the_other() {
     for ((&d, &v), &b) in dark.data.iter().zip(&both.data).zip(&bright.data) {
         assert!(v >= d * 0.99999 && v <= b * 1.00001, "{d} {v} {b}");
     }
-    // Alone, the surfaces reflect a fifth and four fifths of the light of the sky, which is the only light in the
-    // scene.
+    // The dark surface alone reflects a fifth of the light of the sky, the bright surface alone four fifths.
     for (image, albedo) in [(&dark, 0.2), (&bright, 0.8)] {
         let mean = image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
         assert!((mean / albedo - 1.0).abs() < 0.01, "{mean} of {albedo}");

@@ -51,7 +51,7 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
     // The standard error is nearly as small as for the separate lamp: no samples are wasted on dark texels.
     assert!(own_error < 2.0 * error, "{own_error} and {error}");
 
-    // Map the same texel to the same place by other texture coordinates.
+    // Shift or mirror the texture coordinates; the wrap mode must map the lit texel to the same place.
     for (wrap, from, to) in [
         (crate::scene::Wrap::Repeat, Vec2::new(3.0, -2.0), Vec2::new(4.0, -1.0)),
         (crate::scene::Wrap::Mirror, Vec2::new(2.0, 2.0), Vec2::new(1.0, 1.0)),
@@ -61,7 +61,7 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         moved.textures[0].wrap = [wrap; 2];
         moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = from + (to - from) * *uv);
         if wrap == crate::scene::Wrap::Mirror {
-            // Mirror once more, so that the texture runs from left to right while u falls from 2 to 1.
+            // Let u fall from 2 to 1: the mirrored copy of the texture then runs from left to right again.
             moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::splat(2.0) - (*uv - Vec2::splat(2.0)));
         }
         let (mean, own_error) = measure(&world(moved), &centre_of(0));

@@ -1,12 +1,12 @@
-//! Tests of renders that learn which lights reach the surfaces in view: the same means, true intervals, the same bits
-//! on any number of threads, and nothing lost that comes through a gap.
+//! Tests of renders that learn which lights reach the surfaces in view: learning leaves means and confidence intervals
+//! correct, results do not depend on the number of threads, and light through a gap is not lost.
 
 use super::*;
 use crate::exec::Pool;
 use crate::render::illuminance as lux;
 
-/// Adds a room of 3 × 2.5 × 3 m, whose sides face inwards, with a lamp under its ceiling. The side at the larger x has
-/// a gap of this width from floor to ceiling; 0 for none.
+/// Adds a room of 3 × 2.5 × 3 m, whose sides face inwards, with a lamp under its ceiling. The walls at the smaller and
+/// at the larger x have gaps from floor to ceiling, with the widths `gap` in metres; 0 for none.
 fn add_room(scene: &mut Scene, x: f32, gap: [f32; 2], lamp: usize) {
     let (w, h, d) = (Vec3::X * 3.0, Vec3::Y * 2.5, Vec3::Z * 3.0);
     let at = Vec3::X * x;
@@ -21,8 +21,8 @@ fn add_room(scene: &mut Scene, x: f32, gap: [f32; 2], lamp: usize) {
     scene.meshes.push(Mesh::parallelogram(at + Vec3::new(1.2, 2.45, 1.2), Vec3::X * 0.6, Vec3::Z * 0.6, lamp));
 }
 
-/// Six rooms in a row; the camera is in the first. A gap of 5 cm lets light of the second room into it, and nothing
-/// else comes from outside, neither from the other lamps and a sun nor from the sky.
+/// Six rooms in a row; the camera is in the first. Through a gap of 5 cm, the first room gets light from the second.
+/// No light of the other rooms, of the sun or of the sky gets into the first room.
 fn building() -> Scene {
     let gloss = Material { base_color: Vec3::splat(0.5), metallic: 0.0, roughness: 0.3, ..Material::default() };
     let mut scene = Scene {
@@ -53,7 +53,7 @@ fn worlds(scene: Scene) -> [World; 2] {
     [learns, alike]
 }
 
-/// Mean luminance of each tile, for several seeds.
+/// Returns, for each of several seeds, the mean radiance of each tile of 8 × 8 pixels.
 fn tiles(world: &World, params: &Params, seeds: u64) -> Vec<Vec<f64>> {
     let across = params.width / 8;
     (0..seeds)
@@ -85,12 +85,13 @@ fn learning_changes_no_mean_and_gains_variance() {
         let (mean, variance) = mean_and_variance(learned.iter().map(|t| t[tile]));
         let (expected, other) = mean_and_variance(reference.iter().map(|t| t[tile]));
         let z = (mean - expected) / (variance + other).sqrt();
-        // 99.9 % of six differences stay below this together, by Student's t with 62 degrees of freedom.
+        // The probability that any of the six differences exceeds this limit is 0.1 %, by Student's t with 62 degrees
+        // of freedom.
         assert!(z.abs() < 4.0, "tile {tile}: {mean} instead of {expected}, {z} standard errors");
         squares += z * z;
         variances = [variances[0] + variance / mean.powi(2), variances[1] + other / mean.powi(2)];
     }
-    // 99.9 % of the values of chi² with six degrees of freedom.
+    // A chi-squared variable with six degrees of freedom is below this limit with a probability of 99.9 %.
     assert!(squares < 22.5, "{squares}");
     assert!(variances[0] * 1.5 < variances[1], "variances {variances:?}");
 }
@@ -133,7 +134,7 @@ fn any_number_of_threads_learns_the_same() {
 
 #[test]
 fn light_through_a_gap_is_not_lost() {
-    // The first room is dark but for a dim lamp: most of its light comes through the gap.
+    // The lamp of the first room is so dim that most of the room's light comes through the gap.
     let mut scene = building();
     scene.materials[2].emission = Vec3::splat(0.01);
     let [learns, alike] = worlds(scene);
@@ -142,11 +143,11 @@ fn light_through_a_gap_is_not_lost() {
         |world: &World| tiles(world, &params, 24).into_iter().map(|t| t.iter().sum::<f64>()).collect::<Vec<_>>();
     let [(mean, variance), (expected, other)] =
         [&learns, &alike].map(|world| mean_and_variance(whole(world).into_iter()));
-    // 99.9 % by Student's t with 46 degrees of freedom.
+    // The probability of a larger difference is 0.1 %, by Student's t with 46 degrees of freedom.
     let z = (mean - expected) / (variance + other).sqrt();
     assert!(z.abs() < 3.5, "{mean} instead of {expected}: {z} standard errors");
     assert!(expected > 10.0 * other.sqrt() && mean > 10.0 * variance.sqrt(), "{expected} {other} {mean} {variance}");
-    // Light through the gap also comes soon: a single rendering shows it.
+    // A single render with few paths also shows the light through the gap.
     let film = render(&learns, &inside(), &params);
     let sum = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / (3.0 * 64.0);
     assert!((sum / expected - 1.0).abs() < 0.3, "{sum} {expected}");
@@ -175,8 +176,8 @@ fn requirements_name_the_lamps_that_cannot_be_reached() {
     let film =
         render(&world(building()), &inside(), &Params { width: 64, height: 48, samples: 8, ..Params::default() });
     let reach = film.reach.unwrap();
-    // Six lamps, a point light, the sun and the sky. The lamps of the first two rooms arrive; so few paths may leave
-    // one of the others undecided.
+    // There are nine lights: six lamps, a point light, the sun and the sky. Those of the first two rooms reach the
+    // view. With so few paths, one of the others may still be undecided.
     assert!(reach.lamps == 9 && (6..=7).contains(&reach.hidden), "{reach:?}");
     let sentence = film.requirements.last().unwrap();
     let start = format!("{} of 9 lamps cannot be reached from here", reach.hidden);

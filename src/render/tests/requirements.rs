@@ -1,5 +1,5 @@
-//! Tests of the static scene analysis: it finds the required features, omitting the others changes nothing, and its
-//! bounds hold.
+//! Tests of the static scene analysis: it finds the features that a scene requires, omitting all others changes no
+//! image, and its bounds hold.
 
 use super::*;
 
