@@ -38,8 +38,8 @@ pub struct Substance {
 }
 
 impl Substance {
-    /// Returns the share of light that continues in a straight line for a ray whose angle to the normal has this
-    /// cosine.
+    /// Returns the share of a ray's light that continues in a straight line; `cosine` is the cosine of the angle
+    /// between the ray and the normal.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
@@ -284,7 +284,8 @@ impl<'a> Layers<'a> {
         (lobes, pdf)
     }
 
-    /// Returns the albedo of the dielectric top layer for a direction with this cosine to the normal.
+    /// Returns the albedo of the dielectric top layer for a direction; `cosine` is the cosine of its angle to the
+    /// normal.
     fn coat_albedo(&self, cosine: f32) -> f32 {
         let s = &self.substance;
         match &self.lobe {

@@ -56,9 +56,9 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview, relative to the mean of the image. The bias is averaged within squares of 8 × 8
-    /// pixels; this is the root mean square of these averages. The square of this estimate is unbiased. Blur within a
-    /// square of pixels goes undetected.
+    /// Estimated bias of the preview, relative to the mean of the image: the root mean square, over squares of 8 × 8
+    /// pixels, of the mean bias in a square. The square of this estimate is unbiased. Blur within a square of pixels
+    /// goes undetected.
     pub bias: f64,
 }
 
@@ -275,8 +275,9 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Estimates the bias of the filter relative to the mean of the image. Within each square of pixels, multiplies the
-/// mean change of one half by the mean change of the other half; the bias is the square root of the mean product.
+/// Estimates the bias of the filter, relative to the mean of the image, from the images of two halves of the paths
+/// before and after filtering. In each square of pixels, the mean change of one half is multiplied by the mean change
+/// of the other half. The bias is the square root of the mean of these products.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

@@ -35,9 +35,8 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
 /// of its size. [convention]
 const FAR: f64 = 32.0;
-/// The region where most triangles of a scene lie is located from a sample of its triangles: from at least this many,
-/// if the scene has so many, and from fewer than twice as many. A small sample fits in the memory reserve.
-/// [convention]
+/// To find the region where most triangles of a scene lie, this many triangles are sampled at least (or all, if there
+/// are fewer), and fewer than twice as many. A small sample fits in the memory reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;

@@ -114,7 +114,8 @@ pub struct AlbedoRow<'a> {
 }
 
 impl AlbedoRow<'_> {
-    /// Returns scale and bias for a direction with this cosine to the normal.
+    /// Returns the scale and the bias of the directional albedo (see [`AlbedoTable`]) for a direction; `cosine` is the
+    /// cosine of its angle to the normal.
     pub fn directional(&self, cosine: f32) -> Vec2 {
         let (column, s) = cell(cosine);
         let at = |row: usize| {
@@ -124,7 +125,7 @@ impl AlbedoRow<'_> {
         at(self.row).lerp(at(self.row + 1), self.t)
     }
 
-    /// Returns the cosine-weighted mean of scale and bias over the hemisphere.
+    /// Returns the cosine-weighted mean, over the hemisphere, of the scale and the bias.
     pub fn average(&self) -> Vec2 {
         self.table.averages[self.row].lerp(self.table.averages[self.row + 1], self.t)
     }

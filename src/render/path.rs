@@ -151,7 +151,7 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     }
 }
 
-/// Traces a path from segment `leg`, which follows `scattered` bounces, to its end.
+/// Traces the rest of a path, from the segment `leg` on; `scattered` is the number of bounces before this segment.
 pub(super) fn walk<O: Observer>(
     world: &World,
     mut leg: Leg,

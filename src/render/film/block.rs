@@ -43,7 +43,8 @@ pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
 
-/// Returns, for each block of a tile, the indices of its pixels in the tile.
+/// Returns, for each block of a tile, the indices of its pixels in the tile. A block has 4 × 2 pixels in even
+/// replications, and 2 × 4 pixels in odd ones.
 pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     let wide = replication.is_multiple_of(2);
     let (width, height) =

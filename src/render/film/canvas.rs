@@ -86,7 +86,7 @@ impl<'a> Canvas<'a> {
         job.check()
     }
 
-    /// Returns the mean number of paths per pixel after a pass, relative to `samples`.
+    /// Returns the progress of a render after a pass: the mean number of paths per pixel, divided by `samples`.
     pub fn progress(&self, pass: &Pass, samples: u32) -> f64 {
         let paths = |tile| self.grid.area(tile) as f64 * pass.per_pixel(tile);
         let pixels = (self.grid.width * self.grid.height) as f64;
@@ -115,8 +115,8 @@ impl<'a> Canvas<'a> {
         (x, y)
     }
 
-    /// Returns for each pixel of the image which pixel is displayed in its place ([`Canvas::nearest`]): tile, index in
-    /// the tile, and number of paths.
+    /// Returns, for each pixel of the image, the pixel whose value it shows ([`Canvas::nearest`]): tile, index in the
+    /// tile, and number of paths.
     pub(super) fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
         let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
         exec::for_rows(&mut places, self.grid.width, job, |y, row| {

@@ -45,7 +45,8 @@ impl Clock {
         value
     }
 
-    /// Whether to publish another image now: enough time has passed since the last one, or there is none yet.
+    /// Whether to publish another image now: no image has been published yet, or enough time has passed since the last
+    /// one.
     pub fn is_publish_due(&self) -> bool {
         self.published.is_none_or(|published| published.elapsed() >= self.publishing * PUBLISH_RATIO)
     }

@@ -149,7 +149,8 @@ pub fn run(
     let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
     let seconds = clock().saturating_sub(start).as_secs_f64();
 
-    // Estimate the mean and the mean square of the radiance by the difference estimator.
+    // Estimate the mean and the mean square of the radiance: take the estimates of `tile_moments` over all tiles, and
+    // correct them by the errors found in the pilot tiles (difference estimator).
     let seen =
         |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * expected[t].mean.powi(power)).sum::<f64>() / area;
     let brightness = (seen(1) + mean(&last, &|t| t.mean - t.expected[0])).max(f64::MIN_POSITIVE);
@@ -225,8 +226,8 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     Ok(chosen)
 }
 
-/// Systematic sampling: places marks at equal distances along the cumulative sum of the items' chances, and selects
-/// each item that contains a mark.
+/// Systematic sampling: lays the items side by side on a line, each as long as its chance, places marks at equal
+/// distances, and selects each item that contains a mark.
 struct SystematicSampler {
     step: f64,
     next: f64,

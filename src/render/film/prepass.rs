@@ -48,7 +48,8 @@ impl<'a> Prepass<'a> {
         Ok(prepass)
     }
 
-    /// Replaces the world by `world`, for the paths of the tiles: it has learned from the paths over the image.
+    /// Returns the prepass for the paths of the tiles. They use `world`, which has learned from the paths over the
+    /// image.
     pub fn in_world(self, world: &'a World) -> Self {
         Self { world, ..self }
     }

@@ -21,7 +21,7 @@ const PRIOR_PATHS: f64 = 8.0;
 /// not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
-/// Returns the median of the mean radiances of the tiles, per channel; `None` if no pixel has paths.
+/// Returns the median, over the tiles, of the mean radiance of a tile, per channel; `None` if no pixel has paths.
 pub fn median_radiance(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;

@@ -154,8 +154,8 @@ impl Sums {
         self.width
     }
 
-    /// Returns the radiance sum of each replication, beginning with the replication of the part's first path, and the
-    /// sums of the layers.
+    /// Returns the radiance sum of each replication, and the sums of the layers. The list of replications begins with
+    /// the one that contains the part's first path, as `Pixel::of_sums` expects.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
         let (light, others) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;

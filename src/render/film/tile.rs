@@ -24,7 +24,7 @@ pub struct TileContext<'a> {
     pub eye: &'a Eye,
     pub seed: u64,
     pub grid: Grid,
-    /// Median of the mean radiances of the image's tiles; `None` before the first path.
+    /// Median, over the tiles of the image, of the mean radiance of a tile, per channel; `None` before the first path.
     pub median_radiance: Option<DVec3>,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: &'a AtomicU64,

@@ -36,7 +36,8 @@ pub struct Bounds {
     pub intensity: f32,
 }
 
-/// The cone angle of a light that may have full intensity in all directions. [convention]
+/// Cone angle of a light that may have its full intensity in all directions: full intensity reaches up to the cone
+/// angle minus 90°. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {

@@ -52,8 +52,8 @@ struct Item {
     light: u32,
 }
 
-/// A cluster of at least two lights, divided into two parts. In the list of clusters, it stands at the index of the
-/// first light of its second part, which no other cluster has.
+/// A cluster of at least two lights, divided into two parts. Its index in the list of clusters is the index of the
+/// first light of its second part; no other cluster has this index.
 #[derive(Clone, Copy, Default)]
 struct Cluster {
     /// Value of the split heuristic for the undivided cluster.

@@ -61,8 +61,8 @@ impl Alphabet {
             let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
             set.into_iter().cloned().collect()
         };
-        // Group meshes with equal labels into classes. The class without labels always exists, so that the scene does
-        // not affect which expressions can match a path.
+        // Group meshes with equal labels into classes. The class without labels always exists, even if no mesh belongs
+        // to it: whether any path can match an expression must not depend on the meshes of the scene.
         let mut classes = BTreeMap::new();
         let (mut scatters, mut lights) = (Vec::new(), Vec::new());
         let mut class = |labels: Vec<String>| {

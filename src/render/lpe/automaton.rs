@@ -128,8 +128,8 @@ impl Automaton {
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Put states in different groups if they accept different expressions. Then divide the groups repeatedly, by
-        // the groups to which the states' successors belong.
+        // Group the states by the expressions that they accept. Then divide each group whose states lead to different
+        // groups, until no group divides any more.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {

@@ -199,7 +199,8 @@ impl Parser<'_> {
                 "C and E in one expression; use C for camera-first or E for light-first order",
             )),
             [None, None] => {
-                // Report any other syntax error first, rather than that both camera and eye are missing.
+                // Parse the text first, so that any other syntax error is reported rather than the missing camera or
+                // eye.
                 self.either()?;
                 self.unexpected_unless_end()?;
                 let end = self.characters.len();

@@ -22,8 +22,8 @@ use glam::{Vec3, Vec3A};
 /// A state of the automaton with its share of the path's light.
 #[derive(Clone, Copy)]
 struct Component {
-    /// Index in `Trail::sums` of the first sum of the component. For each initial state, there is one sum per list of
-    /// expressions.
+    /// Index, in `Trail::sums`, of the first sum that belongs to the component's initial state. Each initial state has
+    /// one sum per list of expressions.
     offset: u32,
     state: u16,
     share: Vec3A,
@@ -274,7 +274,7 @@ impl<'a> Trail<'a> {
     }
 }
 
-/// Adds light to the sum of a list; `offset` selects the initial state.
+/// Adds light to the sum of a list of expressions; `offset` selects the initial state.
 #[inline(always)]
 fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {
@@ -282,7 +282,7 @@ fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     }
 }
 
-/// Adds the light of a recorded subpath that a component joins in `state`, multiplied by `importance`.
+/// Adds the light of a recorded subpath that begins in `state`, multiplied by `importance`.
 #[inline(always)]
 fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome: &[PathOutcome]) {
     for PathOutcome { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {

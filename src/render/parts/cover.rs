@@ -57,8 +57,8 @@ fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
         }
     }
     let Some(hole) = counts.iter().position(|&count| count < params.samples) else { return Ok(()) };
-    // Find the first missing range of paths at the first such pixel, and a rectangle of pixels from there that lack
-    // the same range.
+    // Find the first range of paths that the pixel `hole` lacks, and a rectangle of pixels, from this one on, that
+    // lack the same range.
     let (x, y) = (hole % width, hole / width);
     let missing_at = |at: [usize; 2]| {
         let mut ranges: Vec<(u32, u32)> =

@@ -158,7 +158,7 @@ fn a_cancelled_render_leaves_what_was_published() {
         monitor.cancel();
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
-    // Only some pixels have a path; every other pixel shows the value of one of these pixels.
+    // Only some pixels have paths. A pixel without paths shows the value of one that has.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");

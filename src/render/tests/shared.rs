@@ -124,7 +124,7 @@ fn shared_paths_scatter_less() {
         ..Scene::default()
     };
     let world = world(scene);
-    // The surfaces above the lamp are in its shadow, so all their light is indirect.
+    // The rays meet the wall of the sphere above the lamp.
     let rays = rays(&world, Vec3::new(0.0, 2.5, -1.5));
     let length = PathLength { max_bounces: 2, roulette_weight: None };
     let own = estimates(|trial| apart(&world, &rays, length, trial), 64);
