@@ -211,8 +211,8 @@ mod tests {
             for _ in 0..2000 {
                 let (u, v) = (rng.next_f64(), rng.next_f32());
                 let d = sampler.sample(u, v).0.as_dvec3();
-                // Invert the sampling: find the pixel of the direction, and the direction's relative position in it by
-                // solid angle.
+                // Invert the sampling: find the pixel that contains the direction, and where the direction lies in the
+                // pixel, as a share of the pixel's solid angle.
                 let height = columns.len();
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);

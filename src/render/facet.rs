@@ -35,8 +35,9 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
 /// of its size. [convention]
 const FAR: f64 = 32.0;
-/// To find the region where most triangles of a scene lie, this many triangles are sampled at least (or all, if there
-/// are fewer), and fewer than twice as many. A small sample fits in the memory reserve. [convention]
+/// Least number of triangles that are sampled to find the region where most triangles of a scene lie. Fewer than twice
+/// as many are sampled, so that the sample fits in the memory reserve. A smaller scene is sampled as a whole.
+/// [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -143,8 +144,8 @@ pub fn centre(meshes: &[Mesh]) -> DVec3 {
     if whole == DVec3::ZERO { centre_of_detail(meshes).unwrap_or(whole) } else { whole }
 }
 
-/// Returns the centre for a scene most of whose triangles lie close together and far from the origin; `None` for other
-/// scenes.
+/// If most triangles of the scene lie close together and far from the origin, returns the centre of world coordinates
+/// that suits these triangles; `None` otherwise.
 fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
     let count: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let triangles = meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(move |triangle| (mesh, triangle)));

@@ -121,8 +121,9 @@ impl Leg {
 pub struct PathLength {
     /// Largest number of bounces of a path.
     pub max_bounces: u32,
-    /// Factor for Russian roulette. It converts the throughput of a path to the path's expected contribution, relative
-    /// to the pixel's estimate. If it is `None`, the reciprocal of the throughput after the first bounce is used.
+    /// Factor for Russian roulette: the product of this factor and the throughput of a path is the path's expected
+    /// contribution, as a share of the pixel's estimate. `None` stands for the reciprocal of the throughput after the
+    /// first bounce.
     pub roulette_weight: Option<Vec3>,
 }
 
@@ -365,8 +366,8 @@ pub(super) fn reciprocal(v: Vec3) -> Vec3 {
     Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 
-/// Returns the MIS weight of a sample of pdf `own` against a strategy of pdf `other` (power heuristic with exponent
-/// 2).
+/// Returns the MIS weight of a sample by the power heuristic with exponent 2. `own` is the pdf with which the sample
+/// was drawn, `other` the pdf with which the other strategy would draw it.
 fn power_heuristic(own: f32, other: f32) -> f32 {
     // Compute the ratio first, so that no square overflows.
     if own <= 0.0 {

@@ -208,7 +208,7 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 
 impl Requirements {
     /// Adds the kinds of scattering that a material can cause, and the bound of the material's albedo. `extremes`
-    /// holds BSDF parameters between which those of the material lie (see the function `extremes`).
+    /// holds the material's BSDF parameters at the ends of their ranges (see the function `extremes`).
     fn include_material(
         &mut self,
         index: usize,

@@ -47,8 +47,8 @@ impl ReplayObserver for Sum {
     }
 }
 
-/// A tape that adds up contributions, and tracks the subpath from every automaton state in which an observer may start
-/// to replay it.
+/// A tape that adds up contributions, and also tracks the subpath through the automaton of light path expressions:
+/// once from every state in which an observer may start to replay it.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,

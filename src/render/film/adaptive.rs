@@ -1,12 +1,14 @@
 //! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! The first passes render a coarse image. The next passes give every pixel a few paths, then twice as many, and so
-//! on, since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
-//! paths after [`MIN_UNIFORM_PATHS`] paths per pixel. If the target limits the error of the whole image, the number of
-//! paths is proportional to the standard deviation of the tile's paths, absolute or relative to the tile's radiance
-//! (Neyman 1934). If the target limits the error of each pixel, the number follows from the tile's own error. Each
-//! adaptive pass doubles the paths of the tiles whose required number of paths is largest relative to the paths they
-//! have.
+//! 1. The first passes render a coarse image.
+//! 2. The next passes give every pixel a few paths, then twice as many, and so on, since sample points are stratified
+//!    best at powers of two.
+//! 3. If there is an error target, the passes from [`MIN_UNIFORM_PATHS`] paths per pixel on are adaptive. Each of them
+//!    doubles the paths of the tiles with the largest ratio of required to present paths.
+//!
+//! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
+//! standard deviation of its paths, absolute or relative to the tile's radiance (Neyman 1934). If the target limits
+//! the error of each pixel, the number follows from the tile's own error.
 //!
 //! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
 //! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring

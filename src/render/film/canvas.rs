@@ -75,7 +75,7 @@ impl<'a> Canvas<'a> {
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         let context = TileContext { world: learning, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
-            // Skip tiles of which a coarse pass covers no pixel.
+            // Skip tiles in which a coarse pass covers no pixel.
             if !pass.passes_over(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }

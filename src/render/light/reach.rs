@@ -27,7 +27,7 @@ use super::tree::{Child, LightTree};
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// A light of which no sample has arrived is unlikely if the estimated probability that its next sample arrives is
+/// A light is unlikely if none of its samples has arrived and the estimated probability that the next one arrives is
 /// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
 /// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` divided by the square root of the

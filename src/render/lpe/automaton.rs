@@ -28,8 +28,8 @@ pub struct Automaton {
     start: u16,
     /// The next state for each state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// For each state and light event: the index, in `lists`, of the list of expressions that accept a path which ends
-    /// there.
+    /// For each state and light event: the index, in `lists`, of the list of expressions that accept a path which
+    /// reaches this light in this state.
     ends: Vec<u16>,
     /// Lists of expressions: every path is accepted by exactly the expressions of one list. List 0 is empty.
     lists: Vec<Vec<u16>>,

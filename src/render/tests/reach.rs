@@ -176,8 +176,8 @@ fn requirements_name_the_lamps_that_cannot_be_reached() {
     let film =
         render(&world(building()), &inside(), &Params { width: 64, height: 48, samples: 8, ..Params::default() });
     let reach = film.reach.unwrap();
-    // There are nine lights: six lamps, a point light, the sun and the sky. Those of the first two rooms reach the
-    // view. With so few paths, one of the others may still be undecided.
+    // There are nine lights: six lamps, a point light, the sun and the sky. The lamps of the first two rooms reach the
+    // view. With so few paths, one other light may still be undecided.
     assert!(reach.lamps == 9 && (6..=7).contains(&reach.hidden), "{reach:?}");
     let sentence = film.requirements.last().unwrap();
     let start = format!("{} of 9 lamps cannot be reached from here", reach.hidden);
