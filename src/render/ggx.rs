@@ -153,7 +153,7 @@ fn cosine_average(row: &[Vec2]) -> Vec2 {
 }
 
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
-    // Number of Hammersley points of the estimate. [origin not recorded]
+    // Number of Hammersley points from which the directional albedo is estimated. [origin not recorded]
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let lobe = Lobe::new(wo, alpha);

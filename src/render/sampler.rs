@@ -22,7 +22,7 @@ pub struct Sampler {
 pub struct Block([u32; 4]);
 
 impl Block {
-    /// Returns a number uniform in `[0, 1)`, with 24 bits.
+    /// Returns a number uniform in `[0, 1)`, with a resolution of 24 bits.
     #[inline]
     pub fn get(&self, dimension: usize) -> f32 {
         // Convert to f32 as a signed integer, which is a single instruction; 24 bits never set the sign.

@@ -6,7 +6,7 @@ use crate::image::try_vec;
 
 /// The number of paths that each pixel has after a pass.
 pub struct Pass {
-    /// Number of paths per covered pixel, for each tile.
+    /// For each tile: number of paths of each pixel that the pass covers.
     pub(super) counts: Vec<u32>,
     /// The pass covers only pixels whose column and row are multiples of this power of two.
     pub(super) stride: usize,

@@ -31,7 +31,7 @@ pub struct LightTree {
     nodes: Vec<Node>,
     /// Slot of each light: 8 × the index of the node that holds it, plus its lane there.
     slots: Vec<u32>,
-    /// Squared distances below this value count as this value; see [`BoundsLanes::importance`].
+    /// Squared distances count as at least this value; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
@@ -63,7 +63,7 @@ struct Cluster {
     parts: [u32; 2],
 }
 
-/// A part of a cluster.
+/// A child of a cluster, by its index: another cluster, or a light.
 #[derive(Clone, Copy)]
 pub enum Child {
     Cluster(usize),

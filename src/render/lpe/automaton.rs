@@ -22,7 +22,7 @@ const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
 
-/// The automaton of all expressions, over the events of a scene.
+/// The automaton that matches paths, as sequences of the events of a scene, against all expressions.
 pub struct Automaton {
     alphabet: Alphabet,
     start: u16,

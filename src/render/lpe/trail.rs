@@ -184,7 +184,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Distributes a contribution to all components.
+    /// Adds a contribution to the sums of all components, to each in proportion to its share.
     #[inline(never)]
     fn add_to_components(&mut self, light: usize, contribution: Vec3A) {
         let Self { automaton, components, sums, .. } = self;

@@ -45,7 +45,7 @@ fn inside() -> Camera {
     Camera::look_at(Vec3::new(0.4, 1.4, 2.4), Vec3::new(2.6, 0.7, 1.0), 1.3)
 }
 
-/// A world that learns, and one that samples all lights alike.
+/// Returns two worlds: one that learns which lights reach the view, and one that samples all lights alike.
 fn worlds(scene: Scene) -> [World; 2] {
     let learns = world(scene);
     let mut alike = learns.clone();
