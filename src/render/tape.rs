@@ -54,8 +54,8 @@ pub struct LpeTape<'a> {
     automaton: &'a Automaton,
     sum: Vec3,
     trail: Trail<'a>,
-    /// The states after scattering at the primary vertices (`viewers`), and the states in which the subpath begins
-    /// (`origins`).
+    /// States from which observers may start: those after scattering at the primary vertices (`viewers`), and those in
+    /// which the subpath begins (`origins`).
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,

@@ -164,8 +164,8 @@ impl Emitters {
         }
     }
 
-    /// Returns the piece that contains the point of an emitter with the texture coordinates `uv`; `None` if the tile
-    /// or the triangle there is dark.
+    /// Returns the piece of an emitter at the texture coordinates `uv`; `None` if the tile or the triangle there is
+    /// dark.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
             Division::Even(piece) => piece,

@@ -2,15 +2,16 @@
 //!
 //! No number known before rendering predicts the cost and the variance of paths well. The pilot run therefore renders
 //! a sample of tiles exactly as the image would: at full resolution and with the same path sharing. A few tiles, such
-//! as those at the edge of a lamp, may cause most of an image's error. A first look at all tiles with few paths
-//! therefore estimates the standard deviation of each tile's light. Tiles are selected with a probability proportional
-//! to this deviation, and weighted by its reciprocal (Horvitz and Thompson 1952). The first look may miss the edge of
-//! a lamp in one tile but find it in the next, so the deviations are spread to neighbouring tiles.
+//! as those at the edge of a lamp, may cause most of an image's error. Therefore a few paths are first traced in all
+//! tiles (`tile_moments`), to estimate the standard deviation of each tile's light. Tiles are selected with a
+//! probability proportional to this deviation, and weighted by its reciprocal (Horvitz and Thompson 1952). These few
+//! paths may miss the edge of a lamp in one tile but find it in the next, so the deviations are spread to neighbouring
+//! tiles.
 //!
 //! The interior of a lamp has no variance and is hardly ever selected, although it may have most of the image's light.
-//! The mean of the image is therefore taken from the first look at all tiles; the selected tiles only correct it, by
-//! the difference between their mean and the first look (the difference estimator of Särndal, Swensson and Wretman
-//! 1992).
+//! The mean of the image is therefore taken from the first estimates of all tiles. The selected tiles only correct it,
+//! by the difference between their mean and their first estimates (the difference estimator of Särndal, Swensson and
+//! Wretman 1992).
 //!
 //! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. The
 //! pilot run therefore measures the variance at three numbers of paths. It traces the largest number only in some of

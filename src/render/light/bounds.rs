@@ -171,7 +171,8 @@ impl BoundsLanes {
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;
             lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
-            // Scale cones narrower than 90° so that the bound on their axis is the full intensity.
+            // For cones narrower than 90°, scale the intensity so that the bound on the cone's axis is the full
+            // intensity.
             lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
         }
         lanes

@@ -150,9 +150,9 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
     Ok(weights)
 }
 
-/// Sets the prior of each light of a tree: the probability that a sample of the light arrives, estimated from its
-/// neighbours in the tree alone. From the root down to the light, each cluster's prior is updated with the samples of
-/// the cluster's children, except the child that contains the light.
+/// Sets the prior of each light of a tree: an estimate of the probability that a sample of the light arrives, from the
+/// samples of other lights near it in the tree. The prior is updated at each cluster from the root down to the light,
+/// with the samples of the cluster's children except the child that contains the light.
 fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
     // Add up the samples of each cluster, from the last cluster to the first: a cluster comes before the clusters
     // within it. A child counts as at most `MAX_WITNESS` samples.
