@@ -1,8 +1,8 @@
 //! Glare of observers
 //!
-//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
-//! luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
-//! the eye.
+//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
+//! scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening
+//! as seen from the eye.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -36,8 +36,8 @@ pub struct luxfer_observer_glare {
     pub background: f64,
     /// Standard error of background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-on or
-    /// whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the environment.
+    /// Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
+    /// emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
     pub solid_angle: f64,
@@ -88,7 +88,7 @@ fn eye(raw: &[u8]) -> Eye {
     Eye { position: Vec3::new(px, py, pz), direction: Vec3::new(dx, dy, dz) }
 }
 
-/// Returns the fields of a rating as words, in the order of `luxfer_observer_glare`.
+/// Returns the fields of a rating as 32-bit words, in the order of `luxfer_observer_glare`.
 fn words(rating: &Rating) -> [u32; 12] {
     let solid_angle = rating.sources.iter().map(|s| s.solid_angle).sum();
     let numbers = [rating.ugr, rating.background, rating.background_error, rating.unrated_lux, solid_angle];

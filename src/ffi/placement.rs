@@ -113,8 +113,8 @@ pub struct luxfer_placement {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
-    /// the cells had twice the width and height. The error is about a third of this change.
+    /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
+    /// comes from the size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 
