@@ -57,7 +57,7 @@ pub struct luxfer_candidate {
     /// as for a closed box.
     pub normal: [f32; 3],
     /// Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the scene's
-    /// bounding box), and the square of (height above the scene's lowest point) / (height of the scene); each of the
+    /// bounding box), and the square of (height above the scene's lowest point) / (height of the scene). Each of the
     /// three ratios is at most 1. A name such as "ceiling" raises the score.
     pub score: f32,
     /// Reserved; always 0.

@@ -34,7 +34,7 @@ pub struct luxfer_observer_glare {
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
     pub background: f64,
-    /// Standard error of background, in cd/m².
+    /// Standard error of the field background, in cd/m².
     pub background_error: f64,
     /// Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
     /// emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.

@@ -77,7 +77,7 @@ pub struct luxfer_importance_report {
     pub paths: u32,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of response.
+    /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
     /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
     /// comes from the size of the cells is about a third of this change.

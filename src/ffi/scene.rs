@@ -256,7 +256,7 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+/// Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
 /// thread.
 /// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]
