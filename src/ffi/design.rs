@@ -126,8 +126,8 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 
 /// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
 /// to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
-/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is its mean
-/// radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
+/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is the target's
+/// mean radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(

@@ -85,8 +85,8 @@ pub struct luxfer_emission_params {
     /// edge. A lattice is stretched until whole periods fit, by less than half a period over the whole texture. Needs
     /// whole_lamps. Default 0.
     pub tileable: u32,
-    /// 1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle between two
-    /// lamps, then lies at the centre of the texture, so that the border cuts as few lamps as possible.
+    /// 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
+    /// so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
     pub centred: u32,
     /// Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
     /// lattice, in [1, 65536]; default 192.

@@ -3,7 +3,7 @@
 //! mode for which Rust defines its arithmetic, and restores the mode of the host on return. A thread inherits the mode
 //! of the thread that starts it, so the worker threads have the standard mode too.
 
-/// Stores the mode of the host during a call, and restores it when dropped.
+/// Stores the floating-point mode of the host during a call, and restores it when dropped.
 pub(super) struct FloatMode {
     host: Mode,
 }

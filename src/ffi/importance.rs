@@ -41,8 +41,8 @@ pub struct luxfer_importance_params {
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
-    /// relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this reason.
+    /// Stop when the relative half-width of the 95 % confidence interval of the light that the target would receive
+    /// from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,

@@ -1,7 +1,8 @@
 //! Functions of the caller as jobs
 //!
-//! Synchronous calls (files, warps, pictures of results) may take long for large inputs. luxfer_job_start runs any
-//! sequence of calls as a job, so that a user interface can show its progress and cancel it.
+//! Synchronous calls, such as loading a file, warping an image or getting an image of a result, may take long for
+//! large inputs. luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress
+//! and cancel it.
 
 use super::context::luxfer_context;
 use super::guard::{catch, enter};

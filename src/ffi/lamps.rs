@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
-//! is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
-//! light that the goal receives from each lamp, for all lamps at once, even for thousands.
+//! Finds powers for the lamps of an emission, within bounds, with which a scene comes nearest to several goals. A goal
+//! is a surface or a calculation grid that should receive a given light. One set of paths per goal measures the light
+//! from all lamps at once, even from thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -71,9 +71,8 @@ pub struct luxfer_lamps_params {
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is known
-    /// to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0: do not
-    /// stop for this reason.
+    /// Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light from
+    /// all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop tracing after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,

@@ -252,8 +252,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_reason(
     })
 }
 
-/// Gets the emission texture in which every lamp is multiplied by its scale; linear RGB. The caller releases *texture.
-/// Any thread.
+/// Gets the emission texture of the solution, in which every lamp is multiplied by its factor luxfer_lamp.scale;
+/// linear RGB. The caller releases *texture. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_texture(

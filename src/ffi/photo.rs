@@ -56,10 +56,10 @@ pub struct luxfer_photo_metadata {
     /// brightness keep these tags.
     pub white_luminance: f64,
     /// Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-    /// standard output sensitivity instead.
+    /// standard output sensitivity and not a saturation-based speed.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case that the
-    /// ISO speed is a recommended exposure index.
+    /// Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
+    /// recommended exposure index.
     pub white_luminance_high: f64,
     /// How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value.
     pub colour: luxfer_file_colour,

@@ -1,5 +1,5 @@
-//! Pointers of the caller other than handles and structs of settings: places for results, strings and arrays, at any
-//! alignment.
+//! Checked access to the caller's memory: places for results, strings and arrays, at any alignment. Handles and
+//! structs of settings have modules of their own.
 
 use crate::error::{Error, Result};
 use std::ffi::{CStr, CString, c_char};

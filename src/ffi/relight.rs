@@ -143,9 +143,8 @@ pub struct luxfer_relight_report {
     /// The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
     /// channels.
     pub error: f64,
-    /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the colour that
-    /// the target has and the colour that it should have is below this value, at the exposure that shows the target as
-    /// middle grey.
+    /// Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its actual
+    /// colour and the wanted colour is below this value, at the exposure that shows the target as middle grey.
     pub delta_e: f64,
 }
 

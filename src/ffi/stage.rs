@@ -1,5 +1,5 @@
-//! The base of all stages. A stage has inputs that change only between jobs, runs one job at a time, and stores the
-//! result of a job that has succeeded.
+//! The base of all stages, which are objects that compute a result in a job. A stage has inputs that change only
+//! between jobs, runs one job at a time, and stores the result of a job that has succeeded.
 
 use super::context::Context;
 use super::guard::lock;

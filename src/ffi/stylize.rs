@@ -105,7 +105,7 @@ impl Inputs {
     }
 }
 
-/// Adds a guide, or replaces the guide with that name.
+/// Adds a guide, or replaces the guide of the same name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
     let others = guides.iter().filter(|g| g.name != pair.name);
     let channels = others.map(|g| g.source.image().channels).sum::<usize>() + pair.source.image().channels;
@@ -157,10 +157,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the guide with that name. The image source shows the exemplar scene, and the image target
-/// shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the target
-/// too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in [0, 1e6],
-/// is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+/// Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
+/// target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
+/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
+/// [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
 ///
 /// All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
 /// target, values that are not finite count as 0; pixels of a source with such values are not used.
@@ -184,11 +184,13 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the rendered guides of two scenes: the parameter source is for the exemplar scene, the parameter target for
-/// the scene to paint. The call adds the five guides of light LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a
-/// common exposure, under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1.
-/// For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or
-/// "materials", each with weight extra_weight, in [0, 1e6]. Any thread.
+/// Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
+/// paint. Any thread.
+///
+/// The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure,
+/// under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the
+/// LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or "materials", each with
+/// weight extra_weight, in [0, 1e6].
 /// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
 /// range.
 #[unsafe(no_mangle)]

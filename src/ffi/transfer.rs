@@ -258,10 +258,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
 }
 
 /// Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
-/// transfer never changes the scene; each job uses the scene as it is when the job starts. Of the planes of that
-/// object or material, the transfer takes the plane that faces most of the room. The parts of this plane, for example
-/// between the beams of a ceiling, share one pattern that continues from part to part. Triangles in other planes stay
-/// unchanged; light them by another transfer with its own pattern. Any thread.
+/// transfer never changes the scene; each job uses the scene as it is when the job starts. Any thread.
+///
+/// Of the planes of that object or material, the transfer takes the plane that faces most of the room. The parts of
+/// this plane, for example between the beams of a ceiling, share one pattern that continues from part to part.
+/// Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,

@@ -82,8 +82,8 @@ pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// The photo clips channels of the target colour, so the values of these channels are only lower bounds; the severity
 /// is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
-/// A scene is so high, so wide or so small that its unit is probably not the metre. The severity is its height or
-/// width in metres. If the scene is too small, the severity is the larger of the two, and is below the limit. The
+/// A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
+/// height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
 /// message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
