@@ -351,7 +351,8 @@ pub(super) fn unwarped_of(
     ])
 }
 
-/// Borrows a photo from its handle and reads the homography into it; `None` if `photo` is NULL.
+/// Borrows a photo from its handle, and reads the homography from unwarped pixels to photo pixels; `None` if `photo`
+/// is NULL.
 pub(super) fn photo_of(
     context: &Arc<Context>,
     photo: *mut luxfer_image,

@@ -113,7 +113,7 @@ impl Job {
 impl Drop for Job {
     fn drop(&mut self) {
         self.shared.monitor.cancel();
-        // A function that runs as a job may release that job: the job's thread cannot wait for itself.
+        // A function that runs as a job may release that job, on the job's own thread, which cannot wait for itself.
         let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
         if let Some(thread) = lock(&self.thread).take().filter(is_other) {
             // The thread catches all panics, so it always ends well.

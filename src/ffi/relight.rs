@@ -305,7 +305,7 @@ impl Emitter {
         Ok(emitter)
     }
 
-    /// Returns (mesh, triangle) for each triangle of the target mesh.
+    /// Returns the indices (mesh, triangle) of each triangle of the target mesh.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         if self.material as usize >= scene.materials.len() {
             return Err(missing("material", self.material, scene.materials.len()));

@@ -31,8 +31,8 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². The errors of the eight pixels of a block are
-/// correlated, because these pixels share the results of their paths: the variance of a sum over pixels is up to eight
+/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a block and
+/// share the results of their paths, so their errors are correlated: the variance of a sum over pixels is up to eight
 /// times the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
@@ -133,8 +133,8 @@ pub struct luxfer_render_report {
     pub error: f64,
     /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// Estimated bias of the preview: the difference between its expected value and the true image, root mean square
-    /// over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
+    /// Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x 8
+    /// pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview.
     pub preview_bias: f64,
     /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two

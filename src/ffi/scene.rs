@@ -123,7 +123,7 @@ impl Handle for luxfer_scene {
 }
 
 impl SceneObject {
-    /// Creates the object of a scene whose size is counted in the memory budget.
+    /// Creates the object of a scene and counts the size of the scene in the memory budget.
     pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
         let charges = vec![context.charge(cost(&scene))?];
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))

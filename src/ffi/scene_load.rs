@@ -39,7 +39,7 @@ pub struct luxfer_scene_load_params {
 
 const SIZE: usize = 24;
 
-/// Lengths in metres that a unit may have: a micrometre to a thousand kilometres. [convention]
+/// Range of the length of a file's unit, in metres: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
 versioned!(luxfer_scene_load_params, [SIZE], {

@@ -27,7 +27,7 @@ pub(super) struct Context {
     process: u32,
 }
 
-/// The error message of a call, made in a forked child process, on an object that its parent process created.
+/// The error message for a call in a forked child process on an object that the parent process created.
 pub(super) const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
                          create a context and its objects in the child process";
 

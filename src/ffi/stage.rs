@@ -9,7 +9,7 @@ use super::pointer::Out;
 use crate::error::{Error, ErrorKind, Result};
 use std::sync::{Arc, Mutex};
 
-/// An object that computes a result `O` from inputs `I` by a job, such as a segmentation or a rendering.
+/// A stage, such as a segmentation or a rendering: its jobs compute a result `O` from inputs `I`.
 pub(super) struct Stage<I, O> {
     context: Arc<Context>,
     state: Mutex<State<I, O>>,

@@ -121,10 +121,10 @@ pub struct luxfer_stylize_params {
     pub coarse_guides: f32,
     /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
-    /// Weight, lambda, of the cost of patches that are used often, for LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-    /// default 0.1, which Fiser et al. found best by hand (Fig. 10n). 0 is LUXFER_STYLIZE_MODE_NEAREST. A match to a
-    /// patch of average usage costs lambda in addition to its distance, in the unit of Eq. 1: squared differences of
-    /// channels in [0, 1], summed over a patch.
+    /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; 0
+    /// is LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a
+    /// patch of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
+    /// differences of channels in [0, 1] (Eq. 1).
     pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,
