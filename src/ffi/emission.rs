@@ -175,8 +175,8 @@ pub struct luxfer_emission_report {
     pub error: f64,
     /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
-    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because most lamps are then
-    /// cut by the border. Without a whole lamp, the texture is made from the lamps that the border cuts.
+    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
+    /// many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts.
     pub exemplar_lamps: u32,
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
     /// ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are

@@ -37,7 +37,7 @@ pub type luxfer_fit = i32;
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
 /// more, so the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor
-/// 1/(1+CV²), where CV is the coefficient of variation of the light that the target surface receives.
+/// 1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.

@@ -49,9 +49,9 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter: light with more bounces is at most a small share of all scattered light, the
-    /// argument error of luxfer_scene_get_requirements. 0 if the albedos give no such bound. For information only: no
-    /// rendering ends paths at this number.
+    /// Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light with
+    /// more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For information
+    /// only: no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

@@ -56,7 +56,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         lock(&self.state).output = Some(Arc::new(output));
     }
 
-    /// Changes the result, for example to use an image that the caller supplies instead; an error while a job runs.
+    /// Changes a part of the result, for example to use an image that the caller supplies; an error while a job runs.
     pub(super) fn replace(&self, change: impl FnOnce(&mut O)) -> Result<()>
     where
         O: Clone + Default,
