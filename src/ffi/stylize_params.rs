@@ -94,8 +94,8 @@ pub struct luxfer_stylize_params {
     /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
     /// may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
-    /// Cost of a seam between neighbouring patches in the sweeps that the field settle counts, as a share of the mean
-    /// error, in [0, 100]; default 0.2.
+    /// Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It applies
+    /// to the sweeps after each matching; see settle.
     pub seam: f32,
     /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
     /// LUXFER_STYLIZE_VOTE_WEIGHTED.
