@@ -56,9 +56,9 @@ pub struct luxfer_candidate {
     /// Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals cancel,
     /// as for a closed box.
     pub normal: [f32; 3],
-    /// Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area / area;
-    /// level_area / floor area of the scene's bounding box; and the square of the height above the scene's lowest
-    /// point / height of the scene. A name such as "ceiling" raises the score.
+    /// Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the scene's
+    /// bounding box), and the square of (height above the scene's lowest point) / (height of the scene). Each of the
+    /// three ratios is at most 1. A name such as "ceiling" raises the score.
     pub score: f32,
     /// Reserved; always 0.
     pub reserved: u32,

@@ -55,9 +55,9 @@ pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
-    /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: they run
-    /// on the calling thread or on threads of their own. Each such call gets a set of num_threads threads. The context
-    /// starts as many sets as calls run at the same time, and keeps up to four sets for later calls.
+    /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
+    /// call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as many sets
+    /// as calls run at the same time, and keeps up to four sets for later calls.
     pub num_threads: u32,
     /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
     /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is
@@ -101,11 +101,13 @@ pub unsafe extern "C" fn luxfer_context_create(
     })
 }
 
-/// Copies the message of the calling thread's latest failed call in this context into buffer: zero-terminated UTF-8,
-/// truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole message
-/// needs. If no call of this thread has failed, the message is empty. A message stays until the thread's next failure;
-/// the context keeps the messages of the 256 threads that failed last. buffer may be NULL if capacity is 0. A call
-/// that fails because its first handle is not valid leaves no message. Any thread.
+/// Gets the message of the calling thread's latest failed call in this context: copies it into buffer as
+/// zero-terminated UTF-8, truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity
+/// that the whole message needs. buffer may be NULL if capacity is 0. Any thread.
+///
+/// If no call of this thread has failed, the message is empty. A message stays until the thread's next failure; the
+/// context keeps the messages of the 256 threads that failed last. A call that fails because its first handle is not
+/// valid leaves no message.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_get_last_error(
     context: *mut luxfer_context,

@@ -45,13 +45,13 @@ pub struct luxfer_temperature_fit {
     pub reserved: u32,
     /// Correlated colour temperature, in [1000, 20000] kelvin.
     pub kelvin: f64,
-    /// Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
-    /// cd/m².
+    /// Luminance of the emission, >= 0. It is in cd/m² if the array response of luxfer_fit_temperature was measured
+    /// for a white emission of 1 cd/m².
     pub luminance: f64,
-    /// Mean radiance of the target from this light and all other light, in cd/m².
+    /// Mean radiance of the target from this light and all other lights together, in cd/m².
     pub achieved: [f64; 3],
-    /// CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted radiance
-    /// as middle grey.
+    /// CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the wanted
+    /// radiance as middle grey.
     pub delta_e: f64,
 }
 
@@ -88,10 +88,10 @@ versioned!(luxfer_preset, [56], {
 });
 
 /// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
-/// primaries holds three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative
-/// for LEDs outside the gamut of Rec.709. count is in [1, 64]. The array drives receives count drive levels in [0,
-/// max_drive]; max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture
-/// with the smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
+/// primaries holds the linear RGB of each of count LEDs at drive level 1; a channel of an LED outside the gamut of
+/// Rec.709 may be negative. count is in [1, 64]. The array drives receives count drive levels in [0, max_drive];
+/// max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture with the
+/// smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -126,8 +126,8 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 
 /// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
 /// to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
-/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is its mean
-/// radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
+/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is the target's
+/// mean radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(

@@ -76,33 +76,33 @@ pub struct luxfer_emission_params {
     /// other textures.
     pub offset: [f64; 2],
     /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
-    /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0:
-    /// no lamp counts as clipped.
+    /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
+    /// channels. 0: no lamp counts as clipped.
     pub clip_level: f32,
     /// 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo.
     pub even_lamps: u32,
-    /// 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side,
-    /// and a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps.
-    /// Default 0.
+    /// 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
+    /// edge. A lattice is stretched until whole periods fit, by less than half a period over the whole texture. Needs
+    /// whole_lamps. Default 0.
     pub tileable: u32,
-    /// 1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle between two
-    /// lamps, then lies at the centre of the texture, so that the border cuts as few lamps as possible.
+    /// 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
+    /// so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
     pub centred: u32,
     /// Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
     /// lattice, in [1, 65536]; default 192.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// The law, which is the rule by which the texture continues the lights: a LUXFER_LAW_ value other than
+    /// The law: the rule by which the texture continues the lights of the exemplar, a LUXFER_LAW_ value other than
     /// LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
-    /// 1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is exact at
-    /// any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
-    /// lamp has the outline of the mask.
+    /// 1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same outline,
+    /// which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the photo and
+    /// whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
-    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out, as if
-    /// the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the factor in
-    /// length by which unwarping has magnified the photo there, relative to the least magnified pixel of the exemplar.
+    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left out,
+    /// as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of unwarped
+    /// pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar.
     pub max_magnification: f64,
 }
 
@@ -160,8 +160,8 @@ impl luxfer_emission_params {
     }
 }
 
-/// Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no texels are
-/// set.
+/// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality.
+/// For a plan (luxfer_emission_start_plan), only the fields that need no texels are set.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -170,28 +170,29 @@ pub struct luxfer_emission_report {
     /// Number of luminaires in the texture; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
     /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
-    /// of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the less
-    /// reliable is this error. NaN for a plan, which has no texels yet.
+    /// of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
+    /// exemplar_lamps is small. NaN for a plan, which has no texels yet.
     pub error: f64,
     /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
-    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
-    /// large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
+    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
+    /// many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts.
     pub exemplar_lamps: u32,
-    /// Estimated sampling error of the statistics that error compares: their root mean square difference between the
-    /// whole texture and parts of it that are as large as the exemplar. If error is at most twice this value, it does
-    /// not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended exemplars, and for
-    /// a plan.
+    /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
+    /// ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are
+    /// as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0 for
+    /// LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for blended exemplars, and for a plan.
     pub sampling_error: f32,
-    /// The law by which the texture continues the lights: a LUXFER_LAW_ value.
+    /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
-    /// The law with the best score among all laws but the field law: a LUXFER_LAW_ value.
+    /// The law with the best score among all laws that were not chosen: a LUXFER_LAW_ value.
     pub runner_up: luxfer_emission_law,
-    /// Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps. Lamps
+    /// Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps
     /// weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
     /// few of the lights are whole lamps.
     pub law_score: f64,
-    /// law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly better.
+    /// law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores slightly
+    /// better.
     pub margin: f64,
 }
 
@@ -350,7 +351,8 @@ pub(super) fn unwarped_of(
     ])
 }
 
-/// Borrows a photo from its handle and reads the homography into it; `None` if `photo` is NULL.
+/// Borrows a photo from its handle, and reads the homography from unwarped pixels to photo pixels; `None` if `photo`
+/// is NULL.
 pub(super) fn photo_of(
     context: &Arc<Context>,
     photo: *mut luxfer_image,
@@ -458,8 +460,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the quality of the texture. For a plan, only the fields that need no texels are set. size is sizeof *report.
-/// Any thread.
+/// Gets the quality of the texture. For a plan (luxfer_emission_start_plan), only the fields that need no texels are
+/// set. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -497,9 +499,10 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
-/// described as it appears in the exemplar, cut at the edges of the texture. Only lights that run through the whole
-/// exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
+/// Describes a luminaire of the texture; index starts at 0. After luxfer_emission_start_plan there are no texels yet,
+/// so a luminaire is described as it appears in the exemplar, cut at the edges of the texture; only lights that run
+/// through the whole exemplar, such as light bands, are described as the texture will show them. size is sizeof
+/// *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -531,9 +534,10 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 ///
 /// The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
 /// the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
-/// larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead in three
-/// cases: lamps up to two texels wide, masks of only 0 and 1, and lights of a plan that run through the whole
-/// exemplar.
+/// larger than texels, these figures are in unwarped pixels.
+///
+/// In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only
+/// 0 and 1, and for lights of a plan that run through the whole exemplar.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(

@@ -5,10 +5,10 @@
 use crate::emission::{Continuation, Law};
 use crate::error::{Error, Result};
 
-/// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
+/// The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best. If no law is clearly better than the law that
-/// LUXFER_LAW_CORRELATION selects, the latter is used.
+/// The law that predicts the lamps of the photo best. LUXFER_LAW_CORRELATION is used unless another law is clearly
+/// better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
 /// The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a shift by
 /// this period is at least min_regularity of luxfer_emission_params.
@@ -19,7 +19,7 @@ pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
 pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
 /// The exemplar repeats as a whole, edge to edge.
 pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
-/// The lights have no period: patches of the exemplar may lie anywhere.
+/// The lights have no period: patches of the exemplar are placed anywhere in the texture.
 pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
 /// In results only: the texture is a copied part of the exemplar, or the caller supplied the texture.
 pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;

@@ -20,13 +20,14 @@ use crate::image::Image;
 
 /// Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
 /// and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
-/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. The
-/// image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
-/// added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
-/// has the rest.
+/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
+/// thread.
 ///
-/// Each lamp of the texture comes from one exemplar, chosen at random with the weights as probabilities, so that the
-/// light per area blends linearly. The lattice of each exemplar keeps its own period and phase. Any thread.
+/// The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
+/// added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
+/// gets the remaining weight. Each lamp of the texture comes from one exemplar, chosen at random with the weights as
+/// probabilities, so that the light per area blends linearly. The lattice of each exemplar keeps its own period and
+/// phase.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_add_style(
     emission: *mut luxfer_emission,

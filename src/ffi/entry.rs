@@ -6,7 +6,7 @@ use super::status::luxfer_status;
 use crate::error::Result;
 use std::sync::Arc;
 
-/// Runs `work` on the object behind a handle. If it fails, the context of the object keeps the message for the calling
+/// Runs `work` on the object behind a handle. If `work` fails, the object's context keeps the message for the calling
 /// thread.
 pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Object>) -> Result<()>) -> luxfer_status {
     guard(|| {

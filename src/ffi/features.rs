@@ -53,8 +53,8 @@ pub type luxfer_features_image = i32;
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
-/// The depth along z that a network has estimated, in the unit of near_plane and from near_plane to far_plane; 1
-/// channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
+/// The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1 channel. Set it
+/// as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
 /// How the photo's colours are normalised for a network: a LUXFER_NORMALISATION_ value. An ONNX file does not state
@@ -88,12 +88,12 @@ pub struct luxfer_features_params {
     /// sizeof(luxfer_features_params), set by luxfer_features_params_init.
     pub struct_size: u32,
     /// Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
-    /// unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane.
+    /// unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this plane.
     pub near_plane: f32,
     /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
     /// near_plane; default 10.
     pub far_plane: f32,
-    /// Normals come from planes fitted in a square window; this is half the width of the window in pixels, in [0, 64];
+    /// Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in [0, 64];
     /// default 0: chosen by the photo's size.
     pub normal_radius: u32,
 }
@@ -296,10 +296,10 @@ pub unsafe extern "C" fn luxfer_features_set_view(
 }
 
 /// Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
-/// prefers a room in which one surface, such as the ceiling, contains every positive stroke, whether for the plane or
-/// for the lights, and no stroke that is negative for the plane (LUXFER_PHASE_PLANE). The strokes have no effect if
-/// the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes them.
-/// Any thread.
+/// prefers a room in which one surface, such as the ceiling, contains all positive strokes, those of
+/// LUXFER_PHASE_PLANE and of LUXFER_PHASE_LIGHTS, and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes
+/// have no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes;
+/// NULL removes them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

@@ -3,7 +3,7 @@
 //! mode for which Rust defines its arithmetic, and restores the mode of the host on return. A thread inherits the mode
 //! of the thread that starts it, so the worker threads have the standard mode too.
 
-/// Stores the mode of the host during a call, and restores it when dropped.
+/// Stores the floating-point mode of the host during a call, and restores it when dropped.
 pub(super) struct FloatMode {
     host: Mode,
 }
@@ -42,7 +42,7 @@ mod register {
     #[inline]
     pub fn read() -> Mode {
         let mut mode = 0u32;
-        // SAFETY: stores the control register into the local variable `mode`.
+        // SAFETY: the instruction only stores the control register into the local variable `mode`.
         unsafe { asm!("stmxcsr [{}]", in(reg) &mut mode, options(nostack, preserves_flags)) };
         mode
     }
@@ -65,7 +65,7 @@ mod register {
     #[inline]
     pub fn read() -> Mode {
         let mode: u64;
-        // SAFETY: reads the control register.
+        // SAFETY: the instruction only reads the control register.
         unsafe { asm!("mrs {}, fpcr", out(reg) mode, options(nomem, nostack, preserves_flags)) };
         mode
     }

@@ -16,8 +16,9 @@ use crate::image::MAX_SIDE;
 use crate::rectify;
 use glam::{DMat3, DVec2};
 
-/// Computes the homography that maps four points to four other points. The arrays from and to hold x and y of each
-/// point, 8 doubles; homography receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+/// Computes the homography that maps four points to four other points. The array from holds x and y of the four
+/// points, 8 doubles; the array to holds x and y of the points to which they are mapped. homography receives the nine
+/// entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
 /// LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_homography_from_corners(

@@ -1,8 +1,8 @@
 //! Glare of observers
 //!
-//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
-//! luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
-//! the eye.
+//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
+//! scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening
+//! as seen from the eye.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -34,10 +34,10 @@ pub struct luxfer_observer_glare {
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
     pub background: f64,
-    /// Standard error of background, in cd/m².
+    /// Standard error of the field background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-on or
-    /// whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the environment.
+    /// Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
+    /// emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
     pub solid_angle: f64,
@@ -47,10 +47,10 @@ pub struct luxfer_observer_glare {
     pub outside_range: u32,
 }
 
-/// Rates the glare of count observers in a scene; the array ratings receives count elements. The parameter samples is
-/// the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16; 4096 suit
-/// most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count * samples.
-/// The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
+/// Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
+/// samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
+/// 4096 suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count *
+/// samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
 /// straight up or down, or is inside a luminaire: the message names the observer. In these cases no rating is written.
 #[unsafe(no_mangle)]
@@ -88,7 +88,7 @@ fn eye(raw: &[u8]) -> Eye {
     Eye { position: Vec3::new(px, py, pz), direction: Vec3::new(dx, dy, dz) }
 }
 
-/// Returns the fields of a rating as words, in the order of `luxfer_observer_glare`.
+/// Returns the fields of a rating as 32-bit words, in the order of `luxfer_observer_glare`.
 fn words(rating: &Rating) -> [u32; 12] {
     let solid_angle = rating.sources.iter().map(|s| s.solid_angle).sum();
     let numbers = [rating.ugr, rating.background, rating.background_error, rating.unrated_lux, solid_angle];

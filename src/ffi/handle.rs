@@ -19,7 +19,7 @@ pub(super) trait Owned {
 /// The opaque C type of a handle, and the type of the object behind it.
 pub(super) trait Handle {
     type Object: Owned;
-    /// First word of the shell, different for every kind of handle.
+    /// The tag of this kind of handle: the first eight bytes of the memory that the handle points to.
     const TAG: u64;
     /// Name of the C type.
     const NAME: &'static str;
@@ -52,8 +52,7 @@ pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
     Arc::into_raw(Arc::new(shell)).cast_mut().cast()
 }
 
-/// Reads the first word behind a pointer that should be a handle: its tag. `None` if the pointer is null or
-/// misaligned.
+/// Reads the tag of a handle: the first eight bytes at the pointer. `None` if the pointer is null or misaligned.
 pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     let tag: *const AtomicU64 = handle.cast();
     // SAFETY: the tag of a valid handle is readable at any time. A pointer that is not a handle is the host's mistake;
@@ -61,7 +60,7 @@ pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
 }
 
-/// Returns the shell behind a handle; an error if its tag is not `H::TAG`.
+/// Returns the [`Shell`] that a handle points to; an error if its tag is not `H::TAG`.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));
@@ -83,14 +82,13 @@ pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::O
     Ok(object.clone())
 }
 
-/// Whether a handle is live, but its context belongs to the parent of this forked process.
+/// Whether a handle is live, but was created in the parent process before this process was forked.
 pub(super) fn is_inherited<H: Handle>(handle: *const H) -> bool {
     // SAFETY: as in `borrow`.
     shell(handle, "the handle").is_ok_and(|shell| unsafe { (*shell).object.context().check_process().is_err() })
 }
 
-/// Returns the object behind a handle that is an argument of a call on another object; an error unless both belong to
-/// one context.
+/// Returns the object behind `handle`, an argument of a call in `context`; an error if it belongs to another context.
 pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let object = borrow(handle, name)?;
     if Arc::ptr_eq(object.context(), context) {
@@ -100,7 +98,7 @@ pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, nam
     }
 }
 
-/// Adds a reference of the host.
+/// Adds a reference that the host holds.
 pub(super) fn retain<H: Handle>(handle: *mut H) -> Result<()> {
     let shell = shell(handle, "the handle")?;
     // SAFETY: the shell came from `Arc::into_raw` in `give` and is alive.
@@ -111,10 +109,10 @@ pub(super) fn retain<H: Handle>(handle: *mut H) -> Result<()> {
     Ok(())
 }
 
-/// Removes a reference of the host.
+/// Removes a reference that the host holds.
 pub(super) fn release<H: Handle>(handle: *mut H) -> Result<()> {
     let shell = shell(handle, "the handle")?;
-    // SAFETY: as above; this is the reference that the host gives back.
+    // SAFETY: as in `retain`; this is the reference that the host gives back.
     unsafe {
         // In a forked child there are no threads to join, and a lock that another thread held during the fork stays
         // locked. So the object is not freed.

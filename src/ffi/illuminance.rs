@@ -61,9 +61,9 @@ pub struct luxfer_illuminance_grid {
     pub struct_size: u32,
     /// Corner of the grid, in metres; default (0, 0, 0).
     pub origin: [f32; 3],
-    /// Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0).
+    /// First edge of the grid, a vector from origin in metres; it is divided into columns. Default (1, 0, 0).
     pub across: [f32; 3],
-    /// Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1).
+    /// Second edge of the grid, a vector from origin in metres; it is divided into rows. Default (0, 0, 1).
     pub down: [f32; 3],
     /// Normal of the side that receives the light; any length but 0; default (0, 1, 0).
     pub normal: [f32; 3],
@@ -83,7 +83,7 @@ versioned!(luxfer_illuminance_grid, [56], {
 });
 
 impl luxfer_illuminance_grid {
-    /// Returns origin, across, down and normal as vectors; an error if reserved is not 0.
+    /// Returns `origin`, `across`, `down` and `normal` as vectors; an error if `reserved` is not 0.
     pub(super) fn vectors(&self) -> Result<[Vec3; 4]> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("grid.reserved is {}; it must be 0", self.reserved)));
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     })
 }
 
-/// Starts a job that computes the illuminance on a mesh at texels of its first set of texture coordinates: columns
-/// along u, rows along v. The parameter back is 0 for the front side of the triangles (by their winding), 1 for the
-/// back side. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that computes the illuminance on a mesh at columns x rows texels, which divide u and v of its first
+/// set of texture coordinates. back is 0 for the front side of the triangles (by their winding) and 1 for the back
+/// side. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
 /// if a setting is out of range.

@@ -178,7 +178,8 @@ impl Pixels {
         (self.image().width, self.image().height)
     }
 
-    /// Returns the image alone. An image inside a stage's result is copied, because the result cannot be split.
+    /// Returns the image as an object of its own. An image inside a stage's result is copied, because the result
+    /// cannot be split.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),
@@ -290,14 +291,17 @@ pub unsafe extern "C" fn luxfer_image_create(
     })
 }
 
-/// Loads an image file and rotates it upright by its EXIF orientation; path is UTF-8. The formats are JPEG, PNG, WebP,
-/// TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR. With LUXFER_COLOUR_SRGB, for pictures, colours are
-/// converted to linear Rec.709 from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of
-/// PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). If the file states none,
-/// integer samples are taken as sRGB and floating-point samples as linear; luxfer_photo_metadata.colour tells which
-/// case applied. With LUXFER_COLOUR_LINEAR, for data such as masks and depth, samples are not converted. An OpenEXR
-/// picture has the size of its display window. Grey with alpha becomes RGBA, palettes and CMYK become RGB; colours are
-/// not multiplied by alpha. The caller releases *image. Any thread.
+/// Loads an image file and rotates the picture upright by its EXIF orientation; path is UTF-8. The caller releases
+/// *image. Any thread.
+///
+/// The formats are JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR (its display window).
+/// Grey with alpha becomes RGBA; palettes and CMYK become RGB; colours are not multiplied by alpha.
+///
+/// With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709 from the colour space that the file
+/// states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
+/// COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
+/// linear; luxfer_photo_metadata.colour tells which case applied. With LUXFER_COLOUR_LINEAR, for data such as masks
+/// and depth, samples are not converted.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
 /// the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
 /// raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
@@ -358,12 +362,15 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
     Ok(Pixels::own(context, photo.image, charge, photo.metadata))
 }
 
-/// Saves an image to a file; path is UTF-8, and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied
-/// by exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the
-/// file states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709;
-/// exposure is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner.
-/// Symbolic links are followed; devices, FIFOs and files with several names are written in place. All functions of
-/// this library save files in this way. Any thread.
+/// Saves an image to a file; path is UTF-8, and its extension chooses the format. Any thread.
+/// - .png: 1, 3 or 4 channels. The values are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
+///   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states.
+/// - .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709. exposure is not
+///   used.
+///
+/// All functions of this library write files as follows. An existing file is replaced only once the new one is
+/// complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs and files with several hard
+/// links are written in place.
 /// LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
 /// file cannot be written.
 #[unsafe(no_mangle)]

@@ -41,8 +41,8 @@ pub struct luxfer_importance_params {
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
-    /// relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this reason.
+    /// Stop when the relative half-width of the 95 % confidence interval of the light that the target would receive
+    /// from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -77,10 +77,10 @@ pub struct luxfer_importance_report {
     pub paths: u32,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of response.
+    /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
-    /// the cells had twice the width and height. The error is about a third of this change.
+    /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
+    /// comes from the size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 

@@ -37,8 +37,8 @@ pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fra
 /// Interval between two calls of the progress function by a waiting thread.
 const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
-/// The object behind a `luxfer_job` handle. It holds the context until the job's thread has ended. So neither that
-/// thread nor a worker of the pool drops the last reference to the pool, which would make it wait for itself.
+/// The object behind a `luxfer_job` handle. It keeps the context alive until the job's thread has ended; otherwise
+/// that thread or a worker of the pool could drop the last reference to the pool, and the pool would wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,
@@ -113,7 +113,7 @@ impl Job {
 impl Drop for Job {
     fn drop(&mut self) {
         self.shared.monitor.cancel();
-        // A function that runs as a job may release that job: the job's thread cannot wait for itself.
+        // A function that runs as a job may release that job, on the job's own thread, which cannot wait for itself.
         let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
         if let Some(thread) = lock(&self.thread).take().filter(is_other) {
             // The thread catches all panics, so it always ends well.
@@ -122,15 +122,15 @@ impl Drop for Job {
     }
 }
 
-/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
-/// call reports to the function progress, which may be NULL, and passes the pointer user to it. Any thread; several
-/// threads may wait for one job.
+/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
+/// During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
+/// thread; several threads may wait for one job.
 ///
 /// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
-/// message of this call.
+/// message of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the
+/// other job also cancels this job.
 /// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
-/// LUXFER_INVALID_OPERATION if the function of the job waits for its own job. If the function of another job
-/// (luxfer_job_start) waits for this job, a cancel request to the other job also cancels this job.
+/// LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,

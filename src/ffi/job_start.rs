@@ -1,7 +1,8 @@
 //! Functions of the caller as jobs
 //!
-//! Synchronous calls (files, warps, pictures of results) may take long for large inputs. luxfer_job_start runs any
-//! sequence of calls as a job, so that a user interface can show its progress and cancel it.
+//! Synchronous calls, such as loading a file, warping an image or getting an image of a result, may take long for
+//! large inputs. luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress
+//! and cancel it.
 
 use super::context::luxfer_context;
 use super::guard::{catch, enter};
@@ -25,12 +26,14 @@ struct User(*mut c_void);
 // SAFETY: luxfer_job_start says that the function runs on another thread; what it does there is the caller's concern.
 unsafe impl Send for User {}
 
-/// Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. The function
-/// receives the pointer user, and may call any function of the library. A cancel request to this job makes the
-/// function's calls in this context end with LUXFER_CANCELLED; a call that loads a file ends between two meshes or
-/// pictures. The request also cancels the jobs that the function waits for. The progress of this job is the progress
-/// of these calls and jobs, and never falls. If the function returns an error, the job gets the message of the last
-/// call that failed on its thread. The caller releases *job. Any thread.
+/// Starts a job that runs work, a function of the caller, on a thread of its own with 4 MiB of stack. The function
+/// receives the pointer user, and may call any function of the library. The progress of its calls in this context, and
+/// of the jobs that it waits for, is the progress of this job, which never falls. The caller releases *job. Any
+/// thread.
+///
+/// A cancel request to this job makes the function's calls in this context end with LUXFER_CANCELLED; a call that
+/// loads a file ends between two meshes or pictures. The request also cancels the jobs that the function waits for. If
+/// the function returns an error, the job gets the message of the last call that failed on its thread.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(

@@ -24,7 +24,7 @@ pub(super) enum Where {
 }
 
 impl StoredGoal {
-    /// Returns (mesh, triangle) for each triangle of the goal's surface; empty for a grid.
+    /// Returns the indices (mesh, triangle) of each triangle of the goal's surface; empty for a grid.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         match self.place {
             Where::Mesh(mesh) => {

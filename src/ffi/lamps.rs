@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
-//! is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
-//! light that the goal receives from each lamp, for all lamps at once, even for thousands.
+//! Finds powers for the lamps of an emission, within bounds, with which a scene comes nearest to several goals. A goal
+//! is a surface or a calculation grid that should receive a given light. One set of paths per goal measures the light
+//! from all lamps at once, even from thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -58,22 +58,21 @@ pub struct luxfer_lamps_params {
     /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
     /// coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
-    /// luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
+    /// 1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
+    /// luxfer_lamps_add_mesh. 0, the default: solve for the power only.
     pub free_colour: u32,
     /// Largest factor for the emission of a group, >= 0; default infinity.
     pub max_scale: f64,
     /// Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
     /// met, with large values the powers are nearly equal.
     pub regularisation: f64,
-    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
-    /// the goal's light is added to this tolerance.
+    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the goal's
+    /// light; default 0.01.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is known
-    /// to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0: do not
-    /// stop for this reason.
+    /// Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light from
+    /// all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
     pub target_error: f32,
     /// Stop tracing after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -111,7 +110,7 @@ pub(super) struct Inputs {
 
 pub(super) struct Output {
     pub scene: Arc<Scene>,
-    /// `None` if the punctual lights are the lamps.
+    /// Index of the emitting material whose regions are the lamps; `None` if the lamps are the punctual lights.
     pub material: Option<usize>,
     pub lamps: Lamps,
     pub group_of: Vec<u32>,
@@ -139,9 +138,9 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
-/// each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by the
-/// indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
+/// Sets the scene, and the emitting material whose lamps are solved for. The solution is a factor for the emission
+/// that each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by
+/// the indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_scene(

@@ -105,9 +105,9 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
 }
 
 /// Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
-/// and >= 0, in any order. At most 4096 factors are allowed; if count is 0, the drivers have no steps. The solution
-/// then gives each group one of these levels, chosen for all groups together so that the goals are met best. The
-/// half-widths of the powers then include the distance from the level to the power without steps. Any thread.
+/// and >= 0, in any order; at most 4096 factors are allowed. The solution then gives each group one of these levels,
+/// chosen for all groups together so that the goals are met best, and the half-widths of the powers include the
+/// distance from the level to the power without steps. If count is 0, the drivers have no steps. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(

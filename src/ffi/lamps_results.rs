@@ -54,7 +54,7 @@ pub struct luxfer_lamp {
     pub centre: [f64; 3],
     /// Factor for the lamp's emission, per channel, >= 0.
     pub scale: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of scale.
+    /// Half-widths of the 95 % confidence intervals of the field scale.
     pub half_width: [f64; 3],
 }
 
@@ -75,17 +75,17 @@ pub struct luxfer_lamps_goal {
     pub target: [f64; 3],
     /// Mean radiance of the goal's surface with the powers found, in cd/m² per channel.
     pub achieved: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of achieved.
+    /// Half-widths of the 95 % confidence intervals of the field achieved, in cd/m².
     pub half_width: [f64; 3],
     /// Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel.
     pub background: [f64; 3],
-    /// Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
-    /// of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
+    /// Target in lux: pi times the luminance of the field target. This field and the three fields below are set only
+    /// for goals of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,
-    /// Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the errors of
-    /// all channels had one sign.
+    /// Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if the
+    /// errors of all channels have the same sign.
     pub half_width_lux: f64,
     /// Illuminance from all light but the lamps, in lux.
     pub background_lux: f64,
@@ -117,7 +117,7 @@ pub struct luxfer_lamps_response {
     pub reserved: u32,
     /// Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of mean.
+    /// Half-widths of the 95 % confidence intervals of the field mean, in cd/m².
     pub half_width: [f64; 3],
 }
 
@@ -252,8 +252,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_reason(
     })
 }
 
-/// Gets the emission texture in which every lamp is multiplied by its scale; linear RGB. The caller releases *texture.
-/// Any thread.
+/// Gets the emission texture of the solution, in which every lamp is multiplied by its factor luxfer_lamp.scale;
+/// linear RGB. The caller releases *texture. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_texture(

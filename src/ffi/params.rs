@@ -11,10 +11,10 @@ use crate::error::{Error, Result};
 /// initialised.
 const LARGEST: usize = 4096;
 
-/// A versioned C struct.
+/// A C struct that exists in several versions.
 ///
 /// # Safety
-/// `repr(C)`, every bit pattern is valid, and the first field is `struct_size: u32`.
+/// The struct is `repr(C)`, every bit pattern of it is valid, and its first field is `struct_size: u32`.
 pub(super) unsafe trait Versioned: Copy {
     /// Name of the C type.
     const NAME: &'static str;
@@ -157,7 +157,7 @@ mod tests {
         second: u64,
     }
 
-    // SAFETY: plain integers.
+    // SAFETY: the fields are plain integers.
     unsafe impl Versioned for Sample {
         const NAME: &'static str = "sample";
         const SIZES: &'static [usize] = &[8, 16];
@@ -166,7 +166,7 @@ mod tests {
         }
     }
 
-    /// Memory of a caller, larger than any struct: `size` as the first word, then bytes 0xaa.
+    /// Memory of a caller, larger than any struct: `size` in the first four bytes, then bytes 0xaa.
     fn memory(size: u32) -> Vec<u8> {
         let mut bytes = vec![0xaa; 2 * LARGEST];
         bytes[..4].copy_from_slice(&size.to_ne_bytes());

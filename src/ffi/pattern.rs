@@ -12,12 +12,12 @@ pub type luxfer_pattern_scale = i32;
 /// The distance of the photo's camera from the plane with the lights. It is plane_distance of luxfer_transfer_params,
 /// or if that is 0, an estimate from the size of the lamps.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
-/// The length of a lamp: luxfer_pattern_params.length is the median of the longer sides of the photo's lamps.
+/// The length of the lamps: on the surface, luxfer_pattern_params.length is the median of their longer sides.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
-/// The spacing of the lamps: luxfer_pattern_params.length is the shorter period of their lattice or, without a
-/// lattice, the median distance from a lamp to its nearest neighbour.
+/// The spacing of the lamps: on the surface, luxfer_pattern_params.length is the shorter period of their lattice or,
+/// without a lattice, the median distance from a lamp to its nearest neighbour.
 pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
-/// The width of the surface: the surface is as many lamps wide as the plane in the photo.
+/// The width of the surface: as many lamps lie side by side on it as on the plane in the photo.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
 
 /// Layout of the light pattern on a surface; luxfer_surface gives the corner and the axes u and v of the surface. Fill

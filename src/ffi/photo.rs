@@ -23,9 +23,9 @@ pub const LUXFER_FILE_COLOUR_ASSUMED: luxfer_file_colour = 1;
 pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
 /// The file states another colour space. The colours were converted to linear Rec.709.
 pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
-/// A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
-/// inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be
-/// wrong. Export the photo as sRGB.
+/// The file states a colour space that the library cannot convert, such as a damaged profile, or has the inks of CMYK
+/// without a profile. The colours were read as if the file stated none, so saturated colours may be wrong. Warn the
+/// user, and ask for an export of the photo as sRGB.
 pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
 pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;
@@ -40,10 +40,10 @@ pub struct luxfer_photo_metadata {
     /// mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
     /// counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
     pub orientation: u32,
-    /// Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its aspect
-    /// ratio shows.
+    /// Focal length in pixels of the loaded photo; 0 if it is unknown, or if the aspect ratio shows that the photo was
+    /// cropped.
     pub focal: f64,
-    /// Standard deviation of focal, in pixels; 0 = unknown.
+    /// Standard deviation of the field focal, in pixels; 0 = unknown.
     pub focal_error: f64,
     /// F-number N of the aperture; 0 = unknown.
     pub f_number: f64,
@@ -56,10 +56,10 @@ pub struct luxfer_photo_metadata {
     /// brightness keep these tags.
     pub white_luminance: f64,
     /// Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-    /// standard output sensitivity instead.
+    /// standard output sensitivity and not a saturation-based speed.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case that the
-    /// ISO speed is a recommended exposure index.
+    /// Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
+    /// recommended exposure index.
     pub white_luminance_high: f64,
     /// How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value.
     pub colour: luxfer_file_colour,

@@ -39,8 +39,8 @@ pub struct luxfer_placement_params {
     pub starts: u32,
     /// Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5.
     pub min_offset: [f64; 2],
-    /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value are
-    /// equal, here and in the fields below, the value is fixed.
+    /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and max_offset
+    /// fix the offset; likewise for the fields below.
     pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub min_scale: [f64; 2],
@@ -111,10 +111,10 @@ pub struct luxfer_placement {
     pub rotation: f64,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of response.
+    /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
-    /// the cells had twice the width and height. The error is about a third of this change.
+    /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
+    /// comes from the size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 

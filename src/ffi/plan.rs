@@ -28,12 +28,13 @@ use crate::render;
 #[cfg(feature = "stylize")]
 use crate::stylize;
 
-/// A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create.
+/// A plan: the settings with which work reaches a given error, or ends within a given time. See luxfer_plan_create.
 pub struct luxfer_plan {
     _opaque: [u8; 0],
 }
 
-/// Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init.
+/// Goal of a plan, a time or an error: set exactly one of time_budget_ms and target_error. Fill it with
+/// luxfer_plan_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_plan_params {
@@ -74,8 +75,7 @@ impl luxfer_plan_params {
 pub struct luxfer_plan_report {
     /// sizeof(luxfer_plan_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// 1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
-    /// stylisation.
+    /// 1 for a plan of a transfer, which includes relighting; 0 for a plan of a rendering or a stylisation.
     pub relights: u32,
     /// Predicted seconds for all planned work.
     pub seconds: f64,
@@ -85,8 +85,8 @@ pub struct luxfer_plan_report {
     pub relight_seconds: f64,
     /// Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer.
     pub relight_error: f64,
-    /// Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in a plan
-    /// of a stylisation.
+    /// Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a plan of
+    /// a stylisation.
     pub render_seconds: f64,
     /// Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation.
     pub render_error: f64,
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn luxfer_plan_create(
     })
 }
 
-/// Starts a job that plans a rendering with the scene and the camera of the object render. The struct settings gives
-/// the size of the picture and the other settings that do not affect quality; NULL stands for the defaults. The struct
-/// params gives the goal. The caller releases *job. Any thread.
+/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
+/// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
 /// such camera.
@@ -197,10 +197,11 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 }
 
 /// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
-/// made. The struct settings holds the settings with which the transfer will be started; NULL stands for the defaults.
+/// made. settings is the struct with which the transfer will be started; NULL stands for the defaults. params gives
+/// the goal. The caller releases *job. Any thread.
+///
 /// After the job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and
-/// point the fields relight and render of the struct settings at them. The struct params gives the goal. The caller
-/// releases *job. Any thread.
+/// let the fields relight and render of settings point to them.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
 /// with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
@@ -249,9 +250,11 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
 }
 
 /// Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
-/// has chosen. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan
-/// sets the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So
-/// every run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
+/// has chosen. size is sizeof *params. Any thread.
+///
+/// If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan sets the number
+/// of paths, so every run gives an equal picture; it also sets time_budget_ms to a quarter more than these paths
+/// should take, which ends the rendering early only if the machine becomes slower.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(

@@ -14,15 +14,16 @@ use super::stylize::luxfer_stylize;
 use super::stylize_params::luxfer_stylize_params;
 use crate::plan;
 
-/// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of the object
-/// stylize. The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from the
-/// struct settings; NULL stands for the defaults. The struct params gives the goal, a time or an error. The error is
-/// the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and
-/// guides, whose values are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to
-/// it. The caller releases *job. Any thread.
+/// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
+/// The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings,
+/// where NULL stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the
+/// plan gives the settings that come nearest to it. The caller releases *job. Any thread.
+///
+/// The error is the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in
+/// colours and guides, whose values are in [0, 1].
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with the
-/// statuses of luxfer_stylize_start's job.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with any
+/// status with which a job of luxfer_stylize_start may end.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_stylize(
     plan: *mut luxfer_plan,

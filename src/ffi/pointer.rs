@@ -1,5 +1,5 @@
-//! Pointers of the caller other than handles and structs of settings: places for results, strings and arrays, at any
-//! alignment.
+//! Checked access to the caller's memory: places for results, strings and arrays, at any alignment. Handles and
+//! structs of settings have modules of their own.
 
 use crate::error::{Error, Result};
 use std::ffi::{CStr, CString, c_char};
@@ -74,7 +74,7 @@ pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed
     Ok(())
 }
 
-/// Converts a text of an object to a C string; zero bytes in the text are left out.
+/// Converts a text to a C string; zero bytes in the text are left out.
 pub(super) fn c_string(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().filter(|&byte| byte != 0).collect();
     CString::new(bytes).unwrap_or_default()
@@ -91,7 +91,7 @@ pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [
 /// Returns `len` bytes in the caller's memory, to be written.
 pub(super) fn bytes_mut<'a>(data: *mut u8, len: usize, name: &str) -> Result<&'a mut [u8]> {
     check_region(data, len, name)?;
-    // SAFETY: as above, and writable.
+    // SAFETY: as in `bytes`, and the caller guarantees that the memory is writable.
     Ok(unsafe { std::slice::from_raw_parts_mut(data, len) })
 }
 

@@ -86,7 +86,7 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
     })
 }
 
-/// Traces a ray and returns the fields of its nearest hit as words, in the order of `luxfer_hit`.
+/// Traces a ray and returns the fields of its nearest hit as 32-bit words, in the order of `luxfer_hit`.
 fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     let [ox, oy, oz, dx, dy, dz, t_max] = floats(ray);
     // Scale the direction by a power of two near its length, so that any length works.

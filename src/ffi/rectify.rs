@@ -37,14 +37,16 @@ pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 pub type luxfer_search = i32;
 /// Finds three orthogonal directions and the focal length together, then refines each direction by itself.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
-/// The paper's method: finds one vanishing point after the other, each from the lines that are left.
+/// The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
+/// earlier one.
 pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
 
 /// The distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
 pub type luxfer_metric = i32;
-/// The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity.
+/// The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
+/// finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// The measure as printed in the paper (Eq. 2), evaluated on the whole visible line.
+/// The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected segment.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// The source of a focal length: a LUXFER_FOCAL_ value.
@@ -202,14 +204,14 @@ pub struct luxfer_rectify_report {
     /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
     /// edges, and not corrected. NaN if the photo has too few lines.
     pub distortion: f64,
-    /// Standard deviation of distortion; NaN if distortion is NaN.
+    /// Standard deviation of the field distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
-    /// For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
-    /// estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point make
-    /// it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other axes
-    /// has no lines.
+    /// For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these axes is
+    /// estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or the
+    /// principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
+    /// orthogonal.
     pub squareness: [f64; 3],
-    /// Standard deviations of squareness; NaN where squareness is NaN.
+    /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
 }
 
@@ -287,8 +289,7 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// The photo in which the view was found, and the settings. The view is used again as long as the photo and the
-    /// settings are unchanged.
+    /// The photo in which the view was found, and the settings. A later job uses the view again if both are unchanged.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }

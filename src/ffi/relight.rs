@@ -28,7 +28,7 @@ pub struct luxfer_relight {
 pub type luxfer_quantity = i32;
 /// Light that the target surface reflects, its albedo included: the radiance that a photo shows.
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
-/// Light that arrives at the target surface, as if the surface were white.
+/// Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
 
 /// How the light of the target surface is compared with its target value: a LUXFER_FIT_ value.
@@ -36,9 +36,8 @@ pub type luxfer_fit = i32;
 /// By the mean over the target surface.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
-/// more, so the emission is dimmer than with LUXFER_FIT_MEAN. If there is no other light, it is dimmer by the factor 1
-/// / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives from
-/// the emission.
+/// more, so the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor
+/// 1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
@@ -131,7 +130,7 @@ pub struct luxfer_relight_report {
     pub paths: u32,
     /// Factor for the emission, per channel, >= 0.
     pub scale: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of scale.
+    /// Half-widths of the 95 % confidence intervals of the field scale.
     pub half_width: [f64; 3],
     /// Mean radiance of the target from the emission at scale 1, in cd/m² per channel.
     pub response: [f64; 3],
@@ -144,9 +143,8 @@ pub struct luxfer_relight_report {
     /// The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
     /// channels.
     pub error: f64,
-    /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the colour that
-    /// the target has and the colour that it should have is below this value, at the exposure that shows the target as
-    /// middle grey.
+    /// Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its actual
+    /// colour and the wanted colour is below this value, at the exposure that shows the target as middle grey.
     pub delta_e: f64,
 }
 
@@ -240,10 +238,9 @@ pub unsafe extern "C" fn luxfer_relight_create(
     })
 }
 
-/// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
-/// luxfer_scene_place_emission returns the index of the emitting material, and the index of the mesh with this
-/// material, which can serve as the target. The solution is a factor for the emission that the material has in the
-/// scene. Any thread.
+/// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. The
+/// solution is a factor for the emission that the material has in the scene. luxfer_scene_place_emission returns the
+/// index of such a material, and the index of a mesh that can serve as the target. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
@@ -308,7 +305,7 @@ impl Emitter {
         Ok(emitter)
     }
 
-    /// Returns (mesh, triangle) for each triangle of the target mesh.
+    /// Returns the indices (mesh, triangle) of each triangle of the target mesh.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         if self.material as usize >= scene.materials.len() {
             return Err(missing("material", self.material, scene.materials.len()));

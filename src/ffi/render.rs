@@ -31,18 +31,18 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the results of
-/// their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is up to eight times
-/// the sum of their variances.
+/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a block and
+/// share the results of their paths, so their errors are correlated: the variance of a sum over pixels is up to eight
+/// times the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
-/// show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
-/// luxfer_render_params.preview is not 0.
+/// The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs details that
+/// come from the light alone, such as soft shadows; luxfer_render_report.preview_bias estimates this error. The image
+/// exists only if luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -58,27 +58,29 @@ pub struct luxfer_render_params {
     /// Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the mean
     /// number of paths per pixel reaches this value.
     pub samples: u32,
-    /// Stop when the field error of luxfer_render_report falls to this value, >= 0. With this target, paths go to the
-    /// pixels where they reduce the error most. Default 0: no target.
+    /// Stop when luxfer_render_report.error is at most this value, >= 0. With this target, paths go to the pixels
+    /// where they reduce the error most. Default 0: no target.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Seed of the paths; default 1.
     pub seed: u64,
-    /// Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the
-    /// root mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by
-    /// that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19
-    /// times out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target.
-    /// Default 0: no target.
+    /// Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within 10 %
+    /// of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
+    /// pixel, even if it then misses the target.
+    ///
+    /// The relative error of a pixel is half the width of the 95 % confidence interval of its luminance, divided by
+    /// its luminance or by a tenth of the image's mean, whichever is larger. The relative error of a block is the root
+    /// mean square over its pixels.
     pub pixel_error: f32,
     /// Must be 0.
     pub reserved: u32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
-    /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0. With this target, paths
-    /// go to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
-    /// as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
+    /// Stop when luxfer_render_report.relative_error is at most this value, >= 0. With this target, paths go to the
+    /// pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much as in
+    /// bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 
@@ -131,8 +133,8 @@ pub struct luxfer_render_report {
     pub error: f64,
     /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// Estimated bias of the preview: the difference between its expected value and the true image, as root mean
-    /// square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
+    /// Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x 8
+    /// pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview.
     pub preview_bias: f64,
     /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
@@ -150,7 +152,7 @@ pub(super) struct Inputs {
     /// Camera that the caller has set; `None`: the first camera of the scene.
     camera: Option<Camera>,
     pub(super) outputs: Outputs,
-    /// Files of parts that the caller has added, to be merged.
+    /// Files with parts of this rendering, which the caller has added for a merge.
     pub(super) parts: Vec<parts::File>,
 }
 
@@ -252,7 +254,7 @@ pub unsafe extern "C" fn luxfer_render_start(
         stage.start(job, move |_, stage, job| {
             let world = shot.world(job.part(0.0, 0.05))?;
             render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
-                // If memory is short, do not publish this intermediate state.
+                // If memory is short, the job skips this intermediate image.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);
                 }
@@ -304,11 +306,13 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text, and how many lamps of the scene
-/// cannot be reached from the surfaces that the image shows, directly or by reflection: one sentence per line, as
-/// zero-terminated UTF-8, truncated to capacity bytes. The rendering learns this from its first paths; later paths
-/// hardly ever sample these lamps, which changes no mean. *needed, unless NULL, receives the capacity that the whole
-/// text needs. buffer may be NULL if capacity is 0. Any thread.
+/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
+/// lamps of the scene cannot be reached from the surfaces that the image shows, directly or by reflection. The
+/// rendering learns this from its first paths; later paths hardly ever sample these lamps, which does not change the
+/// expected image. Any thread.
+///
+/// The text has one sentence per line and is zero-terminated UTF-8, truncated to capacity bytes including the zero.
+/// *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if capacity is 0.
 /// LUXFER_NOT_READY before the first pass of a job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_requirements_text(

@@ -2,17 +2,24 @@
 //!
 //! Additional images (layers) from the same paths as the main image: light that light path expressions select, and
 //! properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
-//! runs or afterwards. First come the layers of the expressions, in the order in which they were added, then the AOVs
-//! in the order of their flags. The main image is equal to the bit with and without layers.
+//! runs or afterwards. The layers of expressions come first, in the order in which they were added, then the AOVs in
+//! the order of their flags. The main image is equal to the bit with and without layers.
 //!
-//! An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye
-//! (E), as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at
-//! the camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R
-//! (reflection), T (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy),
-//! S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..]
-//! [^..] * + ? {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or
-//! of its material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers
-//! them; light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment.
+//! A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
+//! | ( ) have their usual meaning. It has one of two forms.
+//!
+//! From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". D is a diffuse event, S
+//! is every other event.
+//!
+//! From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
+//! has a type and a scattering mode. The types are R (reflection), T (transmission) and V (volume, never occurs here).
+//! The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see
+//! luxfer_emitter_as.
+//!
+//! A label in quotes is a name: the name of a mesh or of its material; Name#0, Name#1, ... for the patches of its
+//! emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for the scene's punctual lights in
+//! their order; environment for the scene's environment.
+//!
 //! Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
 //! alone or with _direct or _indirect.
 
@@ -42,11 +49,11 @@ pub const LUXFER_AOV_NORMAL: u32 = 8;
 pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
 /// Albedo at normal incidence. Layer Albedo, channels R G B.
 pub const LUXFER_AOV_ALBEDO: u32 = 32;
-/// Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit. Layer
-/// IndexOB, channel X.
+/// Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer IndexOB, channel
+/// X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
-/// Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit.
-/// Layer IndexMA, channel X.
+/// Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer IndexMA,
+/// channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
 /// Share of the pixel that surfaces cover. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;
@@ -56,7 +63,8 @@ pub const LUXFER_AOV_LUMINANCE: u32 = 512;
 /// Letters that match emissive surfaces and the environment in expressions that start at the camera: a
 /// LUXFER_EMITTER_AS_ value.
 pub type luxfer_emitter_as = i32;
-/// Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default.
+/// Emissive surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light that is reflected
+/// diffusely. The default.
 pub const LUXFER_EMITTER_AS_BOTH: luxfer_emitter_as = 0;
 /// Emissive surfaces and the environment match L only.
 pub const LUXFER_EMITTER_AS_LIGHT: luxfer_emitter_as = 1;
@@ -203,10 +211,12 @@ pub unsafe extern "C" fn luxfer_render_get_layer(
     })
 }
 
-/// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
-/// LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
-/// For each layer of light, the attribute luxfer.lpe.NAME of the header holds its expression. path is UTF-8; an
-/// existing file is replaced only once the new one is complete. Any thread.
+/// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels; path is UTF-8. An existing
+/// file is replaced only once the new one is complete. Any thread.
+///
+/// The image has the channels R, G, B, and A if LUXFER_AOV_ALPHA is set. The channels of each layer are named
+/// layer.channel, as Blender and Nuke read them; the depth, Depth.Z, is also stored as Z. For each layer of light, the
+/// attribute luxfer.lpe.NAME of the header holds its expression.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_write_exr(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {

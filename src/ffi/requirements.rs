@@ -49,9 +49,9 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter. Light with more bounces than this makes up at most the share error of all light
-    /// that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
-    /// bound. For information only: no rendering ends paths at this number.
+    /// Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light with
+    /// more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For information
+    /// only: no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,
@@ -75,9 +75,9 @@ versioned!(luxfer_requirements, [40], {
     }
 });
 
-/// Gets the features that a scene requires of the renderer. The parameter error, in [0, 1), is the share of the
-/// scattered light that may be neglected when the field bounces is computed. The first call after a change of the
-/// scene prepares the scene for tracing. size is sizeof *requirements. Any thread.
+/// Gets the features that a scene requires of the renderer. error, in [0, 1), is the share of the scattered light that
+/// the count of bounces (luxfer_requirements.bounces) may neglect. The first call after a change of the scene prepares
+/// the scene for tracing. size is sizeof *requirements. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_requirements(

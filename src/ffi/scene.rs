@@ -123,7 +123,7 @@ impl Handle for luxfer_scene {
 }
 
 impl SceneObject {
-    /// Creates the object of a scene whose size is counted in the memory budget.
+    /// Creates the object of a scene and counts the size of the scene in the memory budget.
     pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
         let charges = vec![context.charge(cost(&scene))?];
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
@@ -256,7 +256,7 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+/// Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
 /// thread.
 /// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]

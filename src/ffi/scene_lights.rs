@@ -121,8 +121,8 @@ pub struct luxfer_luminaire_params {
     pub position: [f32; 3],
     /// Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down.
     pub axis: [f32; 3],
-    /// Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
-    /// default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
+    /// Direction of the half-plane C = 0; it must not be parallel to axis, and only its component perpendicular to
+    /// axis counts. Default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
     pub c0: [f32; 3],
     /// Linear RGB colour of the light, each channel in [0, 1e15] and not all 0; only the ratio of the channels counts;
     /// default (1, 1, 1).

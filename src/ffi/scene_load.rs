@@ -39,7 +39,7 @@ pub struct luxfer_scene_load_params {
 
 const SIZE: usize = 24;
 
-/// Lengths in metres that a unit may have: a micrometre to a thousand kilometres. [convention]
+/// Range of the length of a file's unit, in metres: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
 versioned!(luxfer_scene_load_params, [SIZE], {
@@ -84,9 +84,9 @@ pub unsafe extern "C" fn luxfer_scene_load(
     })
 }
 
-/// Loads a scene from a GLB or glTF file in memory of size bytes at data. If the scene file names other files, they
-/// are read from the folder base_path (UTF-8); if base_path is NULL, it must not name other files. Settings,
-/// ownership, threads and errors are as for luxfer_scene_load.
+/// Loads a scene from a GLB or glTF file in memory of size bytes at data. If this file names other files, they are
+/// read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others. Settings, ownership,
+/// threads and errors are as for luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
     context: *mut luxfer_context,

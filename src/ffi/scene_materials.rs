@@ -96,7 +96,7 @@ pub const LUXFER_TEXTURE_EMISSION: luxfer_texture_role = 3;
 pub type luxfer_wrap = i32;
 /// The texture repeats.
 pub const LUXFER_WRAP_REPEAT: luxfer_wrap = 0;
-/// The texels at the edge continue.
+/// Beyond the edge, the texel at the edge is repeated.
 pub const LUXFER_WRAP_CLAMP: luxfer_wrap = 1;
 /// The texture repeats, mirrored every second time.
 pub const LUXFER_WRAP_MIRROR: luxfer_wrap = 2;

@@ -159,7 +159,7 @@ fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
     scene.meshes.get(index as usize).ok_or_else(|| missing("mesh", index, scene.meshes.len()))
 }
 
-/// Copies `data`, elements of `numbers` values each, into the caller's array, which has room for `capacity` elements.
+/// Copies `data` into the caller's array, which has room for `capacity` elements; an element has `numbers` values.
 fn copy<T: bytemuck::NoUninit>(data: &[T], numbers: usize, place: *mut T, capacity: usize, name: &str) -> Result<()> {
     let needed = data.len() / numbers;
     if needed == 0 {

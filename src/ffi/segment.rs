@@ -135,7 +135,7 @@ pub struct luxfer_segment_report {
     pub negative_samples: u64,
     /// Number of samples of the positive class.
     pub positive_samples: u64,
-    /// Number of pixels that strokes of both classes cover; the later stroke counts.
+    /// Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke.
     pub contradictory_pixels: u64,
 }
 
@@ -185,9 +185,9 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     })
 }
 
-/// Restricts the segmentation to the pixels where the mask region is 1. The mask has 1 channel, values of 0 and 1, and
-/// the size of the features; for a segmentation of lights, it is the mask of the plane. region may be NULL: no
-/// restriction. Any thread.
+/// Restricts the segmentation to the pixels where region is 1. region is a mask with 1 channel, values of 0 and 1, and
+/// the size of the features; for a segmentation of lights, it is the mask of the plane. NULL: no restriction. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_region(
     segment: *mut luxfer_segment,

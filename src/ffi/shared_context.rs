@@ -9,8 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// The context keeps the last error message of each thread for at most this many threads, the threads that failed
-/// last.
+/// Number of threads whose last error message a context keeps: those that failed last.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.
@@ -28,7 +27,7 @@ pub(super) struct Context {
     process: u32,
 }
 
-/// The error message of a call, made in a forked child process, on an object that its parent process created.
+/// The error message for a call in a forked child process on an object that the parent process created.
 pub(super) const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
                          create a context and its objects in the child process";
 
@@ -122,7 +121,7 @@ impl Context {
     }
 }
 
-/// Guard of a thread that runs a function of the caller as a job: its drop ends the effect of `watch_thread`.
+/// Ends the effect of [`Context::watch_thread`] when it is dropped.
 pub(super) struct WatchedThread<'a>(&'a Context);
 
 impl Drop for WatchedThread<'_> {

@@ -22,8 +22,8 @@ use glam::DVec2;
 pub struct luxfer_sheet_params {
     /// sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init.
     pub struct_size: u32,
-    /// 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the value 1;
-    /// 0: no correction.
+    /// 1, the default: correct uneven lighting of the photo by the brightness of the white in the marks, so that paper
+    /// gets the value 1; 0: no correction.
     pub even_light: u32,
     /// Width of the paper in millimetres, in [60, 2000]; default 297.
     pub paper_width: f64,

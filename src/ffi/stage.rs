@@ -1,5 +1,5 @@
-//! The base of all stages. A stage has inputs that change only between jobs, runs one job at a time, and stores the
-//! result of a job that has succeeded.
+//! The base of all stages, which are objects that compute a result in a job. A stage has inputs that change only
+//! between jobs, runs one job at a time, and stores the result of a job that has succeeded.
 
 use super::context::Context;
 use super::guard::lock;
@@ -9,7 +9,7 @@ use super::pointer::Out;
 use crate::error::{Error, ErrorKind, Result};
 use std::sync::{Arc, Mutex};
 
-/// A stage with inputs `I` and a result `O`.
+/// A stage, such as a segmentation or a rendering: its jobs compute a result `O` from inputs `I`.
 pub(super) struct Stage<I, O> {
     context: Arc<Context>,
     state: Mutex<State<I, O>>,
@@ -56,7 +56,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         lock(&self.state).output = Some(Arc::new(output));
     }
 
-    /// Replaces a part of the result by a result of the caller; an error while a job runs.
+    /// Changes a part of the result, for example to use an image that the caller supplies; an error while a job runs.
     pub(super) fn replace(&self, change: impl FnOnce(&mut O)) -> Result<()>
     where
         O: Clone + Default,
@@ -80,7 +80,8 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
             state.busy = true;
             state.inputs.clone()
         };
-        // The claim on the stage ends with the job, and also if the job's thread cannot be started.
+        // The claim keeps the stage busy. It is dropped when the job ends, and also if the job's thread cannot be
+        // started.
         let claim = Claim(self.clone());
         let job = Job::start(&self.context, move |job| {
             let output = work(&inputs, &claim.0, job)?;

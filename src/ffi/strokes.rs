@@ -159,8 +159,8 @@ pub unsafe extern "C" fn luxfer_strokes_create(
 
 /// Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
 /// for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
-/// floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096].
-/// Where positive and negative strokes overlap, the later stroke counts. Any thread.
+/// floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
+/// pixel that several strokes cover belongs to the last one. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(
     strokes: *mut luxfer_strokes,

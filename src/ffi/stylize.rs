@@ -36,7 +36,8 @@ pub struct luxfer_stylize {
 pub type luxfer_guide_range = i32;
 /// Linear light >= 0, such as a rendering; its values are compared as they would look on a screen.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
-/// Data, such as normals, object codes and edges; the common range of source and target is scaled to [0, 1].
+/// Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
+/// to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
 /// Flag of luxfer_stylize_add_guides: add the normals.
@@ -46,8 +47,8 @@ pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
 /// Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are painted
 /// from objects of that material.
 pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
-/// Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other kinds of
-/// light. Use it for scenes in which glossy objects reflect light onto others.
+/// Flag of luxfer_stylize_add_guides: add a guide of the caustics, at the same exposure as the other guides of light.
+/// Use it for scenes in which glossy objects reflect light onto others.
 pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 
 #[derive(Clone, Default)]
@@ -104,7 +105,7 @@ impl Inputs {
     }
 }
 
-/// Adds a guide, or replaces the guide with that name.
+/// Adds a guide, or replaces the guide of the same name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
     let others = guides.iter().filter(|g| g.name != pair.name);
     let channels = others.map(|g| g.source.image().channels).sum::<usize>() + pair.source.image().channels;
@@ -156,12 +157,13 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the guide with that name. The image source shows the exemplar scene, and the image target
-/// shows the scene to paint. Both have the same number of channels, and all guides together have at most 60 channels.
-/// If target is NULL, source serves as the target too; use this for a picture of which one part is painted already
-/// (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
-/// All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
-/// pixels of a source with such values are not used. Any thread.
+/// Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
+/// target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
+/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
+/// [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+///
+/// All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
+/// target, values that are not finite count as 0; pixels of a source with such values are not used.
 /// LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guide(
@@ -182,11 +184,13 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the rendered guides of two scenes: the parameter source is for the exemplar scene, the parameter target for
-/// the scene to paint. The call adds the five guides of light LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a
-/// common exposure, under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1.
-/// For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or
-/// "materials", each with weight extra_weight, in [0, 1e6]. Any thread.
+/// Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
+/// paint. Any thread.
+///
+/// The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure,
+/// under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the
+/// LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or "materials", each with
+/// weight extra_weight, in [0, 1e6].
 /// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
 /// range.
 #[unsafe(no_mangle)]
@@ -263,9 +267,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
 }
 
 /// Sets the pixels of the target to paint: the pixels where mask is above 0.5. mask has 1 channel and the size of the
-/// guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from the image known (linear,
-/// with the number of channels of the artwork), and the new paint is fitted to them; if known is NULL, the other
-/// pixels are black. Any thread.
+/// guides' targets; if it is NULL, all pixels are painted. known is an image that shows the other pixels, linear, with
+/// the artwork's number of channels; the new paint is fitted to them. If known is NULL, the other pixels are black.
+/// Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     stylize: *mut luxfer_stylize,
@@ -282,11 +286,12 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     })
 }
 
-/// Makes each job start from the previous result, for the frames of an animation. The image motion has 2 channels and
-/// the size of the guides' targets. It holds for each pixel the offset to the position of its surface point in the
-/// previous frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves with
-/// the surfaces and stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from
-/// nothing. Any thread.
+/// Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
+/// moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. Any thread.
+///
+/// The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
+/// position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
+/// visible. If motion is NULL, each job starts from nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -336,11 +341,11 @@ pub unsafe extern "C" fn luxfer_stylize_start(
     })
 }
 
-/// Starts a job that updates the picture after a change of the artwork. The image artwork is the changed artwork, with
-/// the size and channels of the first artwork. The mask changed (1 channel) is above 0.5 where the artwork has new
-/// paint; the pixels of the picture that were painted from these places are painted again. The job takes a fraction of
+/// Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
+/// the size and channels of the old one. changed is a mask with 1 channel, above 0.5 where the new artwork differs
+/// from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
 /// the time of luxfer_stylize_start. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end
+/// LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
 /// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
 /// too.
 #[unsafe(no_mangle)]
@@ -369,11 +374,12 @@ pub unsafe extern "C" fn luxfer_stylize_update(
     })
 }
 
-/// Lets the library paint the rest of a half-painted picture. The artwork is the picture. The mask painted has 1
-/// channel and the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the
-/// scene of the picture, and their targets are NULL. The call is a shorthand: it sets the mask painted as the source
-/// mask, its inverse as the target mask, and the artwork as the image known of luxfer_stylize_set_target_mask. Any
-/// thread.
+/// Lets the library paint the rest of a half-painted picture, which is the artwork. painted is a mask with 1 channel
+/// and the artwork's size, above 0.5 where the picture is finished. Use guides whose sources show the scene of the
+/// picture, and whose targets are NULL. Any thread.
+///
+/// The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
+/// the inverse mask and the artwork.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

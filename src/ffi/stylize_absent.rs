@@ -20,8 +20,8 @@ pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: 
     enter(context, |_| left_out())
 }
 
-/// Defines functions without parameters: in the C calling convention the caller removes the arguments, so they can be
-/// ignored.
+/// Defines the functions without parameters: in the C calling convention the caller removes the arguments, so a
+/// function may ignore them.
 macro_rules! absent {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

@@ -51,10 +51,11 @@ pub type luxfer_stylize_vote = i32;
 pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
 /// The mean of the overlapping patches, weighted so that closer matches count more.
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
-/// The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork.
+/// Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour occurs in the
+/// artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
-/// The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork stay whole
-/// up to their seams.
+/// The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
+/// each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
@@ -75,26 +76,26 @@ pub struct luxfer_stylize_params {
     pub guide_weight: f32,
     /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6.
     pub levels: u32,
-    /// Rounds of matching and painting on the second finest level, in [1, 100]; default 6.
+    /// Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting.
     pub iterations: u32,
-    /// Rounds of matching and painting on the finest level, in [1, 100]; default 1.
+    /// Rounds (EM iterations) on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In LUXFER_STYLIZE_MODE_BUDGET
-    /// each target patch takes its nearest match in these rounds, without the error budget. In other modes these are
-    /// additional rounds of that mode.
+    /// Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
+    /// LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
+    /// In other modes these are additional rounds of that mode.
     pub polish: u32,
     /// Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1.
     pub sweeps: u32,
     /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
     /// default 0.9.
     pub coverage: f32,
-    /// Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6.
+    /// Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000]; default 6.
     pub passes: u32,
-    /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target patch
-    /// may continue the match of its neighbour, which leaves fewer seams.
+    /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
+    /// may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
-    /// Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
-    /// default 0.2.
+    /// Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It applies
+    /// to the sweeps after each matching; see settle.
     pub seam: f32,
     /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
     /// LUXFER_STYLIZE_VOTE_WEIGHTED.
@@ -107,23 +108,23 @@ pub struct luxfer_stylize_params {
     /// 1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default: free it.
     pub keep_for_update: u32,
     /// Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint changes
-    /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
-    /// luxfer_stylize_set_motion; without it, it has no effect.
+    /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. No effect without
+    /// luxfer_stylize_set_motion.
     pub coherence: f32,
-    /// Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
-    /// guides of light, in [0, 1]; 0, the default: not at all.
+    /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target's
+    /// light guides, in [0, 1]; 0, the default: not at all.
     pub match_appearance: f32,
     /// Seed of the search; default 1.
     pub seed: u64,
     /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
     /// factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
     pub coarse_guides: f32,
-    /// Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+    /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
-    /// Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser
-    /// et al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
-    /// distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
-    /// LUXFER_STYLIZE_MODE_NEAREST.
+    /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; 0
+    /// is LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a
+    /// patch of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
+    /// differences of channels in [0, 1] (Eq. 1).
     pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,

@@ -78,7 +78,7 @@ versioned!(luxfer_stylize_report, [72], {
 });
 
 impl luxfer_stylize_report {
-    /// The part of the report that only a finished run has.
+    /// Returns a report with the fields that only a finished run has; the other fields have their defaults.
     fn of(finished: &Finished) -> Self {
         Self {
             is_complete: 1,
@@ -94,7 +94,7 @@ impl luxfer_stylize_report {
     }
 }
 
-/// One round of matching and painting on a level.
+/// One round (EM iteration) on a level: matching, then voting.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_round {
@@ -116,8 +116,8 @@ pub struct luxfer_stylize_pass {
     pub struct_size: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
-    /// the sorted matching errors, where they begin to rise steeply.
+    /// Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which the
+    /// sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget.
     pub knee: f64,
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level; the numbers level and index start at 0. size is sizeof *round. Any thread.
+/// Describes a round (EM iteration) of a level; level and index are numbers from 0. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -218,8 +218,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a matching pass of a round; the numbers level, round and index start at 0. size is sizeof *pass. Any
-/// thread.
+/// Describes a matching pass of a round (EM iteration); level, round and index are numbers from 0. size is sizeof
+/// *pass. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]

@@ -258,10 +258,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
 }
 
 /// Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
-/// transfer never changes the scene; each job uses the scene as it is when the job starts. Of the planes of that
-/// object or material, the transfer takes the plane that faces most of the room. The parts of this plane, for example
-/// between the beams of a ceiling, share one pattern that continues from part to part. Triangles in other planes stay
-/// unchanged; light them by another transfer with its own pattern. Any thread.
+/// transfer never changes the scene; each job uses the scene as it is when the job starts. Any thread.
+///
+/// Of the planes of that object or material, the transfer takes the plane that faces most of the room. The parts of
+/// this plane, for example between the beams of a ceiling, share one pattern that continues from part to part.
+/// Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,
@@ -452,13 +453,12 @@ fn use_segmentation(
     }
 }
 
-/// Starts a job that runs the stages from the stage first to the stage last, both included; the parameters first and
-/// last are LUXFER_STAGE_ values. The stages before the stage first must have results. params may be NULL for the
-/// defaults. The caller releases *job. Any thread.
+/// Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included. All
+/// stages before these must have results. Stages that have ended keep their results even if the job fails. params may
+/// be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
-/// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
-/// jobs; the message names the stage. The job ends at once if the scene does not have the surface. Stages that have
-/// ended keep their results.
+/// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with any status with which a stage
+/// may end; the message names the stage. The job ends at once if the scene does not have the surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,

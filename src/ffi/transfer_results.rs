@@ -81,12 +81,12 @@ pub struct luxfer_transfer_report {
     pub lights_error: f64,
     /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
     pub unwarp_error: f64,
-    /// Field error of luxfer_emission_report: largest relative difference between texture and photo in three
-    /// statistics of their lamps.
+    /// luxfer_emission_report.error: largest relative difference between texture and photo in three statistics of
+    /// their lamps.
     pub emission_error: f64,
-    /// Field error of luxfer_relight_report: largest relative half-width of the solution's 95 % confidence intervals.
+    /// luxfer_relight_report.error: largest relative half-width of the solution's 95 % confidence intervals.
     pub relight_error: f64,
-    /// Field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its mean.
+    /// luxfer_render_report.error: root mean square of the rendering's standard errors, divided by its mean.
     pub render_error: f64,
     /// Length of a texel's side on the surface, in metres.
     pub texel_size: f64,
@@ -94,11 +94,12 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has the size
-    /// that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
+    /// Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as they
+    /// are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the texture.
     pub plane_distance: f64,
-    /// Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
-    /// lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
+    /// Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps, it is
+    /// about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings determine the
+    /// distance.
     pub plane_distance_error: f64,
     /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: the white_luminance of
     /// luxfer_photo_metadata if the photo's file states the exposure, else 159, the luminance of white paper in the

@@ -32,7 +32,7 @@ pub struct luxfer_warnings {
 
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
-/// The vanishing points do not determine the focal length, which was assumed; the severity is the relative standard
+/// The vanishing points do not determine the focal length, so it was assumed; the severity is the relative standard
 /// deviation of the focal length.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
@@ -45,9 +45,9 @@ pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
 /// There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
 /// confidence of the fit, which is below the limit.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
-/// Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted lamps; the
-/// severity is the area of these pixels and regions as a share of the mask and these regions together. The warning
-/// points to the pixel where one more stroke helps most.
+/// Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly resemble
+/// the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
+/// doubtful pixels together. The warning points to the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
 /// Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
 /// samples drawn from the strokes.
@@ -67,44 +67,44 @@ pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
 /// strongly magnified. The warning points to the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle
-/// between the plane and the viewing ray, and is below the limit. The warning points to the point with the smallest
-/// angle.
+/// The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
+/// ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
-/// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
+/// The statistics of the texture differ from those of the photo; the severity is luxfer_emission_report.error.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
 /// The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is below the
 /// limit.
 pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
-/// The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report.
+/// No lattice was found on which the lamps lie; the severity is luxfer_emission_report.error.
 pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 /// Colour channels do not meet their target; the severity is the number of these channels.
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
-/// The photo clips channels of the target colour; the values of these channels are then lower bounds; the severity is
-/// the number of these channels.
+/// The photo clips channels of the target colour, so the values of these channels are only lower bounds; the severity
+/// is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
-/// A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
-/// metres. It is below the limit if the scene is too small, else above it. The message names the likely unit.
+/// A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
+/// height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
+/// message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
 /// objects that have it; the severity is the number of these objects.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
-/// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
-/// that a pixel painted as light is brighter than a pixel painted as plane, and is below the limit. The warning points
+/// The painted lamps are hardly brighter than the plane: they are off, or face away. The severity is the probability
+/// that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit. The warning points
 /// to the darkest lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
-/// error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is
+/// luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
-/// A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
-/// the severity is the share of the mask that is expected to be wrong.
+/// A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive strokes for the
+/// lights. The severity is the expected share of wrong pixels.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
-/// A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
-/// the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
-/// large that floats have rounded them, it is the step of the rounding in metres.
+/// A scene lies far from the origin. There are two cases. If luxfer_scene_get_origin is not 0, positions are relative
+/// to that origin; the severity is its distance from the origin of the file in metres, and the limit is 0. Otherwise
+/// coordinates of vertices are so large that floats round them; the severity is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare does not rate
-/// them; the severity is their number, and the message lists the first ones with their positions.
+/// A scene has luminaires, which shine from points: they are invisible in renderings, and luxfer_image_get_glare does
+/// not rate them. The severity is their number; the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 
 /// A warning: a reason to doubt a result.
@@ -120,10 +120,11 @@ pub struct luxfer_warning {
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
-    /// The figure that caused the warning; the comment of each LUXFER_WARNING_ value says what it measures.
+    /// The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
+    /// measures.
     pub severity: f64,
-    /// The limit that the figure has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says that
-    /// the figure is below the limit.
+    /// The limit that the severity has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says
+    /// that the severity is below the limit.
     pub limit: f64,
     /// The place in the photo, x and y in pixels; 0 if the warning has no place.
     pub place: [f64; 2],
