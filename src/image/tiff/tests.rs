@@ -303,7 +303,7 @@ fn truncated_and_inconsistent_files_are_errors() {
             // The last bytes of a compressed strip may contain only the end mark, which is not needed.
             assert!(error.is_err() || cut + 6 > file.len() && compression != 1, "{compression} cut at {cut}");
         }
-        // Change every byte: the result is an error, or a picture that the file can contain.
+        // Change every byte: the result is an error, or a picture no larger than the file can hold.
         let plain = Picture { compression, size: [7, 5], ..Picture::new(3, 16, 1, 2) }.file();
         for at in 0..plain.len() {
             for value in [0, 1, 2, 5, 8, 32, 127, 255] {
