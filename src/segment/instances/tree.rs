@@ -56,8 +56,8 @@ impl Tree {
             }
         }
 
-        // From dark to bright, redirect parents to the pixel that represents a node: the node's first pixel in this
-        // order.
+        // Each node is represented by its darkest pixel, the first one in this order. From dark to bright, redirect
+        // each parent to the pixel that represents its node.
         for &p in &order {
             let up = parent[p as usize] as usize;
             if levels[parent[up] as usize] == levels[up] {
