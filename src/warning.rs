@@ -62,7 +62,8 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has point lights, spot lights or luminaires. Images cannot show them, because they have no surface.
+    /// Scene: it has point lights, spot lights or luminaires. Pictures cannot show them directly, because they have no
+    /// surface.
     NotInPicture = 26,
 }
 

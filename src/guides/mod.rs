@@ -140,7 +140,7 @@ fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     Ok(out)
 }
 
-/// Guides that [`pairs`] adds only on request.
+/// Selects the guides that [`pairs`] adds only on request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     pub normals: bool,
