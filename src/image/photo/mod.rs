@@ -31,8 +31,8 @@ const SAME_SHAPE: f64 = 0.01;
 const SATURATION: f64 = 78.0;
 
 /// The factor q of the lens. A surface of luminance L gives the focal-plane exposure q L t / N², with the exposure
-/// time t and the f-number N. The value holds for a lens of 90 % transmittance, 10° off its axis. [convention: ISO
-/// 12232:2019, annex A]
+/// time t and the f-number N. The value holds for a lens of 90 % transmittance, 10° off its axis.
+/// [convention: ISO 12232:2019, annex A]
 const LENS: f64 = 0.65;
 
 /// Range of the luminance of white, relative to its value if the ISO speed is saturation-based.

@@ -13,8 +13,8 @@ use std::ops::RangeInclusive;
 
 /// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*. [judged on
-/// 28 photos]
+/// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
+/// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
 /// Minimum contrast along a lamp's contour, relative to the median of the lamps under the strokes. It is below 1
 /// because distant lamps are small and blurred. [judged on 28 photos]
@@ -34,9 +34,9 @@ const LARGER: f64 = 1.6;
 /// Maximum factor by which the area of a lamp on the plane may be below the smallest, or above the largest, area of
 /// the lamps under the strokes. Bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// The aspect (length over width) of a lamp on the plane must be at least 1 / `ROUNDER` of the least, and at most
-/// `LONGER` times the largest aspect of the lamps under the strokes. Blur widens thin lamps, and lengthens distant
-/// lamps along the line of sight. [bench photos:tune]
+/// The aspect (length over width) of a lamp on the plane must lie between the least aspect of the lamps under the
+/// strokes divided by `ROUNDER`, and their largest aspect times `LONGER`. Blur widens thin lamps, and lengthens
+/// distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
