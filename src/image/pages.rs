@@ -8,8 +8,8 @@ use std::mem::MaybeUninit;
 /// Size in bytes of a huge page.
 pub(crate) const HUGE: usize = 2 << 20;
 
-/// Asks the system for huge pages for a buffer, except for the ends that do not fill one. This is only a hint, which
-/// has an effect on Linux alone.
+/// Asks the system for huge pages for a buffer, except at its ends, where no whole huge page fits. This is only a
+/// hint, and has an effect on Linux alone.
 pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     #[cfg(all(target_os = "linux", not(miri)))]
     {

@@ -44,8 +44,8 @@ const PROPOSED_ERROR: f64 = 0.18;
 /// Approximate number of ceiling pixels that replace a stroke on the ceiling. [convention]
 const EXAMPLES: usize = 1000;
 
-/// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box; `None` if they lie on
-/// more than one face or if there is no such room.
+/// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box. `None` if the room is
+/// not laid out as a box, or if the strokes lie on more than one face.
 pub fn of_strokes(input: &Input) -> Result<Option<Segmentation>> {
     laid_out(input).map(|normal| proposed(input, &face(input.features, normal)?)).transpose()
 }

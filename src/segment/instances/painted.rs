@@ -15,12 +15,13 @@ pub const MIN_AREA: f64 = 6.0;
 const MIN_COVER: f64 = 0.03;
 /// If a region is this many times as long as its stroke, its gain (score) is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
-/// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.
-/// [judged on 44 photos]
+/// Exponent with which the share of the stroke's pixels that a region holds enters the region's gain. (The gain is the
+/// score by which regions under a stroke compete.) Because the exponent is above 1, one region has a larger gain than
+/// its parts together, at equal contrast. [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
-/// Exponent of the purity in a region's gain. Purity is the share of positive pixels among the painted pixels of the
-/// region. The power all but rules out regions with many negative pixels. [judged on 28 photos]
+/// Exponent with which the purity of a region enters its gain. Purity is the share of positive pixels among the
+/// painted pixels of the region. The exponent all but rules out regions with many negative pixels.
+/// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
 /// Minimum contrast of a region, relative to the region with the sharpest contour under the same stroke. Regions below
 /// it are fragments. [judged on 28 photos]
