@@ -12,8 +12,7 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value to a linear value. The curve continues above 1 and is odd: the value -v gives minus the
-/// result of v.
+/// Decodes one sRGB value to a linear value. The curve continues above 1. It is odd: -v gives minus the result of v.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };

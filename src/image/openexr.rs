@@ -61,7 +61,7 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     Ok(meta.headers)
 }
 
-/// Decodes the first layer of a file whose headers have been checked, with all of its channels.
+/// Decodes all channels of the first layer of a file whose headers have been checked.
 pub(super) fn first_layer(
     bytes: &[u8],
     headers: &exr::meta::Headers,

@@ -1,4 +1,4 @@
-//! Reconstructs the image from a field by Algorithm 1 of StyLit: averages the pixels that overlapping matches place at
+//! Reconstructs an image from a field by Algorithm 1 of StyLit: averages the pixels that overlapping matches place at
 //! each position.
 
 use super::field::Field;

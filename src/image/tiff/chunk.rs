@@ -99,7 +99,8 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             }
             order
         }
-        // Floating point: the row stores all highest bytes first, then all next lower bytes and so on, as differences.
+        // Floating point: the row stores the highest bytes of all samples first, then the next lower bytes, and so on.
+        // Each byte is stored as the difference from the byte before it in the same channel.
         (Predictor::Float, size) => {
             for i in samples..row.len() {
                 row[i] = row[i].wrapping_add(row[i - samples]);

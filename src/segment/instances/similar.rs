@@ -16,11 +16,11 @@ const DIMMER: f64 = 4.0;
 /// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along a lamp's contour, relative to the median of the lamps under the strokes. It is below 1
-/// because distant lamps are small and blurred. [judged on 28 photos]
+/// Minimum contrast along a lamp's contour, relative to the median contrast of the lamps under the strokes. It is
+/// below 1 because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast to the ring of pixels around a lamp, relative to the median of the lamps under the strokes.
-/// [judged on 28 photos]
+/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps
+/// under the strokes. [judged on 28 photos]
 const RING: f64 = 0.5;
 /// Minimum ratio of a lamp's solidity (see `Regions::solidity`) to the least solidity of the lamps under the strokes.
 /// [judged on 28 photos]
@@ -48,9 +48,9 @@ const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [judged on 28 photos]
+/// At least this share of the ring of pixels around a lamp must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
-/// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
+/// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
 /// A region off the plane counts as a lamp only if it is like another lamp, under a stroke or on the plane: the
 /// region's area divided by the lamp's, and its aspect divided by the lamp's, must lie in these ranges. Blur enlarges
