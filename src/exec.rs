@@ -154,7 +154,8 @@ pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<Joi
     thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
 }
 
-/// Stack size of a thread in bytes (`STACK`), and an upper bound of the other memory that starting a thread takes.
+/// Stack size of a thread (`STACK`), and an upper bound of the other memory that starting a thread takes
+/// (`THREAD_OVERHEAD`), in bytes.
 const STACK: usize = 4 << 20;
 const THREAD_OVERHEAD: usize = 256 << 10;
 

@@ -10,8 +10,8 @@
 //!
 //! The process can still be aborted in three cases: another thread takes the memory right after the test by
 //! [`has_room`]; the system cannot serve the 48 bytes that the standard library requests from it directly when a
-//! thread starts or first fails in the library; or it cannot serve the allocations of the system's C library when a
-//! thread first calls this library.
+//! thread starts, or when a call of the library first fails on a thread; or it cannot serve the allocations of the
+//! system's C library when a thread first calls this library.
 //!
 //! Without the feature `reserve`, the program that links the library chooses the allocator.
 
@@ -93,7 +93,7 @@ pub unsafe fn system(layout: Layout, zeroed: bool) -> *mut u8 {
 /// The system's allocator, with the reserve as fallback.
 struct Allocator(Reserve);
 
-// SAFETY: memory belongs to the system or to the reserve, which recognises its own by address.
+// SAFETY: memory belongs to the system or to the reserve, which recognises its own blocks by their address.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: the caller guarantees what `System.alloc` requires of the layout.

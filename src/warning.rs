@@ -58,11 +58,11 @@ pub enum Code {
     DimLamps = 22,
     /// Emission: the texture differs more from the photo than a texture without light would.
     NoPattern = 23,
-    /// Mask: it is only a proposal, because no strokes were given.
+    /// Mask: it is only a proposal, because strokes that the segmentation needs were missing.
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has point lights, spot lights or luminaires. Images cannot show them, because they have no surface.
+    /// Scene: it has luminaires. Pictures do not show them, because a luminaire shines from a point.
     NotInPicture = 26,
 }
 

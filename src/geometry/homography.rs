@@ -143,8 +143,8 @@ mod tests {
         let [a, b, c, d] = quad;
         let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
         assert!(one_side(signs(quad)));
-        // If the images of the square's corners form a quadrilateral that intersects itself or is not convex, the
-        // corners lie on both sides of the horizon, the line that maps to infinity.
+        // If the target quadrilateral intersects itself or is not convex, the corners of the square lie on both sides
+        // of the horizon, the line that maps to infinity.
         let crossed = signs([a, b, d, c]);
         assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
         let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);

@@ -6,8 +6,8 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Neighbouring pixels whose normals differ by this (1 - cosine; about 40°) form an edge of full strength.
-/// [origin not recorded]
+/// Neighbouring pixels form an edge of full strength if 1 minus the cosine between their normals is at least this
+/// (about 40°). [origin not recorded]
 const FULL_CREASE: f32 = 0.25;
 /// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
 /// the depth. [origin not recorded]

@@ -140,7 +140,7 @@ fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     Ok(out)
 }
 
-/// Guides that [`pairs`] adds only on request.
+/// Selects the guides that [`pairs`] adds only on request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     pub normals: bool,
@@ -165,8 +165,8 @@ pub struct Pair {
     pub is_extra: bool,
 }
 
-/// Returns the guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over both
-/// full pictures becomes [`BRIGHT`].
+/// Returns the guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over the full
+/// pictures of both scenes becomes [`BRIGHT`].
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
     let exposure = exposure(&source.light[0], &target.light[0])?;
     let mut pairs = Vec::new();

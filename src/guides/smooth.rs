@@ -31,15 +31,15 @@ pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job
     Ok(current)
 }
 
-/// The surfaces on which the light falls.
+/// The normal and the material of the surface that each pixel shows.
 struct Surface<'a> {
     normals: &'a Image,
     material: &'a Image,
 }
 
 impl Surface<'_> {
-    /// Computes weighted means over 5 × 5 pixels that lie `step` pixels apart. `range_weight` computes the weight of a
-    /// pair of pixels from the brightness of both pixels in `guide`.
+    /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. `range_weight` computes the
+    /// factor of a weight that depends on the brightness of the two pixels in `guide`.
     fn average(
         &self,
         light: &Image,

@@ -147,7 +147,8 @@ impl Image {
         Ok(out)
     }
 
-    /// Checks that another image has the same width and height. The names describe both images in the error.
+    /// Checks that another image has the same width and height. `name` and `other_name` stand for the images in the
+    /// error message.
     pub fn check_same_size(&self, name: &str, other: &Self, other_name: &str) -> Result<()> {
         if (self.width, self.height) == (other.width, other.height) {
             return Ok(());

@@ -12,8 +12,7 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value to a linear value. The curve continues above 1 and is odd: the value -v gives minus the
-/// result of v.
+/// Decodes one sRGB value to a linear value. The curve continues above 1. It is odd: -v gives minus the result of v.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
@@ -70,9 +69,13 @@ const fn relative_row(row: usize) -> [f64; 3] {
 /// Any other value gives a finite number or NaN.
 #[inline(always)]
 fn cube_root(t: f64) -> f64 {
-    // Improve estimates r of `t^(-1/3)`, which needs no division: with the error e = 1 - t r³, the exact value is r (1
-    // - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …). The first estimate divides the bits of exponent and mantissa by
-    //   three and has |e| < 0.11; the second estimate has |e| < 6e-5.
+    // Improve estimates r of `t^(-1/3)`, because these steps need no division. With the error e = 1 - t r³, the exact
+    // value is
+    //
+    // `r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …)`.
+    //
+    // The first estimate divides the bits of exponent and mantissa by three and has |e| < 0.11; the second one has |e|
+    // < 6e-5.
     let single = t as f32;
     let third = (single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32;
     let r = f32::from_bits(1_419_900_000u32.wrapping_sub(third as u32));
@@ -83,8 +86,8 @@ fn cube_root(t: f64) -> f64 {
     t * r * r
 }
 
-/// CIEDE2000 difference between the linear colours `light` and `wanted`. Both are exposed so that `wanted` is a middle
-/// grey of luminance 0.18. The difference is 0 if `wanted` is black.
+/// CIEDE2000 difference between the linear colours `light` and `wanted`. Both are first scaled by the factor that
+/// gives `wanted` the luminance 0.18 (middle grey). The difference is 0 if `wanted` is black.
 pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     let luminance = f64::from(luminance(wanted.as_vec3()));
     if !(luminance > 0.0) {

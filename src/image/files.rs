@@ -24,7 +24,7 @@ pub fn check_regular(path: &Path) -> Result<()> {
     Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())))
 }
 
-/// Writes a whole file. After an error the old content remains, unless the file had to be written in place.
+/// Writes a whole file. After an error the old content remains, except if the file had to be written in place.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Target::new(path)?.write(bytes)
 }
@@ -168,13 +168,14 @@ fn flush(file: &File) -> io::Result<()> {
     }
 }
 
-/// Whether an error means that a folder, or a mount over a single file, refuses new files or a change of owner.
+/// Whether an error means that a file cannot be replaced by renaming: its folder accepts no new files, its owner
+/// cannot be kept, or it is a mount point.
 fn is_refusal(e: &io::Error) -> bool {
     use io::ErrorKind::{CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(e.kind(), CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
 }
 
-/// Writes a file in place, and truncates it if it is a regular file.
+/// Overwrites a file in place. A regular file is then cut to the new length.
 fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
     system::check_reader(path)?;
     let mut file = OpenOptions::new().write(true).open(path)?;
@@ -193,7 +194,8 @@ mod system {
     use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, fchown};
     use std::path::Path;
 
-    /// Whether a file has a single name and can be found by it. (Links in /proc may lead to a file without a name.)
+    /// Whether a file has only one name (hard link), and `file` is that name. (Links in /proc may lead to a file
+    /// without a name.)
     pub fn is_replaceable(file: &Path, old: &Metadata) -> bool {
         old.nlink() <= 1 && fs::metadata(file).is_ok_and(|found| found.is_file())
     }
@@ -288,7 +290,7 @@ mod tests {
         for mode in [0o600, 0o640, 0o755] {
             fs::write(&file, "old").unwrap();
             fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
-            // Only an administrator may change the owner of a file.
+            // Only an administrator may change the owner of a file, so this may fail.
             let given = std::os::unix::fs::chown(&file, Some(12_345), Some(54_321)).is_ok();
             let before = fs::metadata(&file).unwrap();
             write_file(&file, b"new").unwrap();

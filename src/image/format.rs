@@ -4,7 +4,7 @@ use super::{openexr, radiance};
 use crate::error::{Error, ErrorKind, Result};
 use image::ImageFormat;
 
-/// The picture formats that can be read, by the decoder that reads them.
+/// The picture formats that can be read, grouped by decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Exr,
@@ -38,7 +38,7 @@ const OTHERS: [(usize, &[u8], &str); 18] = [
 ];
 
 impl Format {
-    /// Detects the format of a file. For a known format that is not read, the error names it.
+    /// Detects the format of a file. If the format is known but cannot be read, the error names it.
     pub fn of(bytes: &[u8]) -> Result<Self> {
         let begins = |at: usize, with: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(with));
         if let Some((.., name)) = OTHERS.iter().find(|(at, with, _)| begins(*at, with)) {

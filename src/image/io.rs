@@ -220,8 +220,8 @@ mod tests {
         let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
-        // Find the offset table, which has one entry. The only tile follows it, beginning with its column, row and
-        // level in both directions. Change the level: the tile has one pixel at every level.
+        // Find the offset table, which has one entry. The only tile follows the table, and begins with its column, its
+        // row, and its resolution level along x and along y. Change the level along x, to one that also has one pixel.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

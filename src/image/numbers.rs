@@ -201,7 +201,7 @@ mod tests {
         })
         .unwrap();
         assert_eq!(seen, 19 * 13);
-        // The window appears at its position in the whole picture.
+        // Decoded as a picture, the file has the size of the whole picture, with the window at its position.
         let whole = decode_picture(&bytes, Encoding::Linear).unwrap();
         assert_eq!([whole.width, whole.height], head.whole);
         for (x, y) in (0..13).flat_map(|y| (0..19).map(move |x| (x, y))) {
@@ -220,7 +220,7 @@ mod tests {
         }
         let other = Head { numbers: 4, ..head.clone() };
         assert_eq!(decode(&bytes, &other, |_, _| ()).unwrap_err().kind, ErrorKind::Format);
-        // OpenEXR files without numbers, and with a named layer.
+        // An OpenEXR file without `f64` values is accepted, a file with a named layer is not.
         let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
         assert_eq!(Head::of(&headers(&plain).unwrap()).unwrap().numbers, 0);

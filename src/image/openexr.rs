@@ -61,7 +61,7 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     Ok(meta.headers)
 }
 
-/// Decodes the first layer of a file whose headers have been checked, with all of its channels.
+/// Decodes all channels of the first layer of a file whose headers have been checked.
 pub(super) fn first_layer(
     bytes: &[u8],
     headers: &exr::meta::Headers,
@@ -238,7 +238,7 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     Ok(out.into_inner())
 }
 
-/// Returns the chromaticities that written files state.
+/// Returns the chromaticities of Rec.709, which every written file states.
 fn rec709() -> attribute::Chromaticities {
     let point = |[x, y]: [f64; 2]| ex::Vec2(x as f32, y as f32);
     let [red, green, blue] = Chromaticities::REC709.primaries.map(point);
@@ -333,7 +333,7 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // The white of a picture in XYZ is D65, with or without a stated neutral: check the red that X gives.
+        // Red of a picture in XYZ whose only component is X. The white is D65, with or without a stated neutral.
         for neutral in [None, Some(point(0.3127, 0.3290))] {
             let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(attribute::Chromaticities {

@@ -8,8 +8,8 @@ use std::mem::MaybeUninit;
 /// Size in bytes of a huge page.
 pub(crate) const HUGE: usize = 2 << 20;
 
-/// Asks the system for huge pages for a buffer, except for the ends that do not fill one. This is only a hint, which
-/// has an effect on Linux alone.
+/// Asks the system for huge pages for a buffer, except at its ends, where no whole huge page fits. This is only a
+/// hint, and has an effect on Linux alone.
 pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     #[cfg(all(target_os = "linux", not(miri)))]
     {
@@ -26,13 +26,13 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     let _ = room;
 }
 
-/// Returns `len` zeros, or `None` if memory is short. Fresh memory from the system is zero, so the system clears each
-/// page only when a thread first writes to it.
+/// Returns `len` zeros, or `None` if memory is short. The system provides zeroed memory, and clears each page only
+/// when a thread first writes to it.
 pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
     let layout = Layout::array::<f32>(len).ok().filter(|layout| layout.size() > 0);
     let Some(layout) = layout else { return (len == 0).then(Vec::new) };
-    // SAFETY: the layout has a size. The allocation has room for `len` numbers with their alignment and belongs to
-    // nobody else; all bits are 0, which is a valid `f32`.
+    // SAFETY: the size of the layout is not 0. The allocation has room for `len` numbers with their alignment, and
+    // nothing else refers to it; all bits are 0, which is a valid `f32`.
     unsafe {
         let start = reserve::system(layout, true).cast::<f32>();
         if start.is_null() {

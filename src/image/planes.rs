@@ -24,7 +24,7 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
 }
 
 /// Like [`deinterleave`], but for a constant number of channels, at least four, so that offsets are compile-time
-/// constants. Stores `of(channel, values)` in place of every four values of a channel.
+/// constants. The function `of(channel, values)` converts four values of a channel at a time.
 #[inline(always)]
 pub fn deinterleave_of<const C: usize, const N: usize>(
     pixels: &[f32],

@@ -90,8 +90,8 @@ pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     let mut wide = Image::new(image.width, image.height, c)?;
     exec::for_rows(&mut wide.data, image.row_len(), job.part(0.0, 0.5), |y, out| {
         let source = image.row(y);
-        // Compute the interior of a row tap by tap, which vectorises, and its borders pixel by pixel. Both sum the
-        // taps in the same order.
+        // Compute the interior of a row tap by tap, which vectorises, and the ends of the row pixel by pixel. Both sum
+        // the taps in the same order.
         let border = (radius as usize * c).min(out.len());
         let inside = border..(out.len() - border).max(border);
         for (k, w) in kernel.iter().enumerate() {

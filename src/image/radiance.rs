@@ -96,7 +96,7 @@ fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     Ok([number(rows)?, number(columns)?, orientation])
 }
 
-/// The statements of the header about the meaning of the values.
+/// The lines of the header that say how the stored values encode colours.
 struct Colour {
     /// Factor by which the values of the scene were multiplied before they were stored.
     factor: DVec3,

@@ -68,8 +68,8 @@ fn check_chunks(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Checks the first frame of a GIF on behalf of its decoder, which allocates memory for a frame of any size, however
-/// small the screen.
+/// Checks that the first frame of a GIF lies within the screen. The decoder does not check this, and allocates memory
+/// for a frame of any size.
 fn check_frame(bytes: &[u8]) -> Result<()> {
     let screen = |at: usize| Some(usize::from(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?)));
     let sizes = gif_frame(bytes).zip(screen(6)).zip(screen(8));

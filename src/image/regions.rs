@@ -6,8 +6,8 @@ use crate::error::Result;
 /// The 8-connected regions of lit pixels: pixels with a colour channel above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regions {
-    /// For each pixel, 0 if it is dark, or 1 plus the number of its region. Regions are numbered by their first pixel
-    /// in row-major order.
+    /// For each pixel, 0 if it is dark, or 1 plus the index of its region. Regions are indexed in the row-major order
+    /// of their first pixels.
     pub labels: Vec<u32>,
     pub count: usize,
 }

@@ -103,7 +103,7 @@ impl Layout {
         y * self.row_stride + x * self.pixel_stride
     }
 
-    /// Whether a channel is sRGB-encoded: alpha is not.
+    /// Whether a channel is sRGB-encoded. Alpha never is.
     fn is_encoded(&self, channel: usize) -> bool {
         self.colour_space == ColourSpace::Srgb && channel < 3 && !(self.channels == 2 && channel == 1)
     }

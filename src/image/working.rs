@@ -1,5 +1,5 @@
-//! Bounds the memory for reading a picture file, in addition to the resulting picture. Memory budgets count these
-//! bytes while the file is read.
+//! Upper bounds of the memory that reading a picture file needs in addition to the resulting picture. The caller's
+//! memory budget is charged with these bytes while the file is read.
 
 use super::containers::png_chunks;
 use super::file_colour::{self, icc};
@@ -9,8 +9,8 @@ use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
-/// Returns an upper bound of the working memory in bytes, from the headers alone. No codec runs, and at most a colour
-/// profile is allocated, which is freed again.
+/// Returns an upper bound of the working memory in bytes, from the headers alone. No codec runs. At most the colour
+/// profile is unpacked into memory, which is freed again.
 pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     let format = Format::of(bytes)?;
     let pixels = match format {

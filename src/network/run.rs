@@ -6,8 +6,8 @@ use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// Maximum number of bytes that all values take at a time, without the network's own weights. The temporary memory of
-/// a node may take as much again.
+/// Maximum number of bytes of all values that exist at the same time during a run, without the network's own weights.
+/// The temporary memory of a node may take as much again.
 pub const MAX_BYTES: usize = 1 << 30;
 
 impl Network {

@@ -111,8 +111,8 @@ fn products_of_stacks_of_matrices() {
         let (x, w) = (x.as_floats().unwrap(), w.as_floats().unwrap());
         close(&got, &out, |i| {
             let (matrix, row, column) = (i / columns / rows, i / columns % rows, i % columns);
-            // Broadcast the stacks of matrices: those of `a` repeat along its axis of size 1, those of `b` along the
-            // outermost axis.
+            // Broadcast the stacks of matrices: the matrices of `a` repeat along its axis of size 1, the matrices of
+            // `b` along the outermost axis.
             let (m, n) = match a.len() {
                 4 if a[1] == 1 => (matrix / 3, matrix % 3),
                 _ => (matrix, 0),

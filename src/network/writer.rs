@@ -66,7 +66,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Starts a network with an input of the given shape; a size of 0 is left open.
+    /// Starts a network with an input of the given shape; 0 stands for any size along an axis.
     pub fn new(opset: i64, shape: &[i64]) -> Self {
         Self { graph: Message::default().message(11, &value("x", shape)), opset }
     }

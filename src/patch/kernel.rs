@@ -32,8 +32,8 @@ impl Kernel {
         assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
         match self.0 {
             Level::Baseline => portable(a, b, run, rows, limit),
-            // SAFETY: the processor supports its level and all levels below, and the assertion above keeps every load
-            // inside its slice. (Rows are short: wider registers with masked ends are slower.)
+            // SAFETY: the processor supports the detected level and all levels below, and the assertion above keeps
+            // every load inside its slice. (Rows are short: wider registers with masked ends are slower.)
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { avx2(a, b, run, rows, limit) },
         }

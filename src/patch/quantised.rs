@@ -42,7 +42,7 @@ impl QuantisedImage {
     }
 }
 
-/// Converts a value in `[0, 1]` of a channel to an integer, scaled by the weight of the channel.
+/// Converts a value in `[0, 1]` of a channel to an integer, scaled by the square root of the channel's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiser {
     scale: f32,

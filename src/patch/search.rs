@@ -106,7 +106,7 @@ impl Search<'_> {
     }
 
     /// Improves the matches of the patches for which `active` holds, by propagation and random search. Without usage
-    /// penalties, no distance rises.
+    /// penalties, a match is replaced only by a closer one.
     pub fn sweep(
         &self,
         field: &mut Field,
@@ -329,7 +329,7 @@ impl Best {
         }
         let (px, py) = (px as usize, py as usize);
         let at = pack(px, py);
-        // Skip a match already measured; a hint has not been measured yet.
+        // Skip the current match, because its distance is known, unless it is a hint, whose distance is not.
         if (at == self.at && self.error != u32::MAX) || !search.allowed.contains(px, py) {
             return;
         }

@@ -112,8 +112,8 @@ fn widest(means: &Means, members: &[u32]) -> usize {
 }
 
 impl Search<'_> {
-    /// Compares each active patch with up to `tries` allowed patches, beginning with the nearest ones in tree order;
-    /// no distance rises.
+    /// Compares each active patch with up to `tries` allowed patches, beginning with the patches nearest in tree
+    /// order. A match is replaced only by a closer one.
     pub fn look_up(
         &self,
         field: &mut Field,

@@ -1,4 +1,4 @@
-//! Reconstructs the image from a field by Algorithm 1 of StyLit: averages the pixels that overlapping matches place at
+//! Reconstructs an image from a field by Algorithm 1 of StyLit: averages the pixels that overlapping matches place at
 //! each position.
 
 use super::field::Field;
@@ -22,9 +22,10 @@ pub enum Vote {
     Majority,
 }
 
-/// A distinct exemplar pixel placed at a position, with its votes.
+/// An exemplar pixel that at least one patch places at the target pixel, with its votes.
 struct Ballot {
-    /// Packed source position minus packed target position, wrapping: equal for patches that continue each other.
+    /// Packed position of the source minus packed position of the target, wrapping. It is equal for patches that
+    /// continue each other.
     offset: u32,
     count: usize,
     weight: f64,

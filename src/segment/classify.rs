@@ -68,15 +68,15 @@ impl Blank {
 struct Judge<'a> {
     /// The image channel of each column of the samples.
     channels: &'a [usize],
-    /// Whether `channels` are all channels of an image with [`CHANNELS`] channels.
+    /// Whether the image has [`CHANNELS`] channels and `channels` lists all of them.
     is_usual: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
     /// Indices into `channels` of the features in the logit, in the order of its terms.
     deciding: Vec<usize>,
-    /// For each class, the squared distance from the ellipsoid around its samples: at most 1 inside. It uses all of
-    /// `channels`.
+    /// For each class, a quadratic form of all `channels` that is at most 1 inside the ellipsoid around the class's
+    /// samples, and larger outside.
     seen: [Form; 2],
     /// Calibration factors on the logit: for pixels like the painted ones, and for pixels unlike them.
     calibration: [f32; 2],

@@ -1,6 +1,7 @@
 //! Dilates masks by a radius, through the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012).
-//! Example: the mask of the lights is dilated by the radius of their bloom, and the ceiling outside it has a
-//! trustworthy colour.
+//!
+//! Example: if the mask of the lights is dilated by the radius of their bloom, the colour of the ceiling outside the
+//! mask can be trusted.
 
 use crate::error::{Result, check_range};
 use crate::exec;

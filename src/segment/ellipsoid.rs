@@ -82,8 +82,8 @@ impl Ellipsoid {
     }
 }
 
-/// Computes how far pixels lie outside the nearest ellipsoid, and returns the mean over all pixels: 0 inside, `1 -
-/// e^(1 - distance)` outside. The distance from the centre is measured so that it is 1 on the ellipsoid.
+/// Returns the mean over all pixels of how far a pixel lies outside the nearest ellipsoid: 0 inside, `1 - e^(1 - d)`
+/// outside, where the distance d from the centre is 1 on the ellipsoid.
 pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
     let mut sum = 0.0;
     for (rows, block) in pixels.blocks() {

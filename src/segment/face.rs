@@ -20,9 +20,10 @@ const AGREEMENT: f64 = 0.9;
 /// normals of a depth map do not. [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// The normal of the face that the positive strokes lie on, in a room laid out as a box; otherwise `None`. The
-/// classifier must not use position in such a room: within a face, position does not separate the classes, and a
-/// classifier that uses it would cut off parts of the face that no stroke has touched.
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box; otherwise `None`.
+///
+/// If there is such a normal, the classifier must not use position: within a face, position does not separate the
+/// classes, and a classifier that uses it would cut off parts of the face that no stroke has touched.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
@@ -43,8 +44,8 @@ const PROPOSED_ERROR: f64 = 0.18;
 /// Approximate number of ceiling pixels that replace a stroke on the ceiling. [convention]
 const EXAMPLES: usize = 1000;
 
-/// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box; `None` if they lie on
-/// more than one face or if there is no such room.
+/// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box. `None` if the room is
+/// not laid out as a box, or if the strokes lie on more than one face.
 pub fn of_strokes(input: &Input) -> Result<Option<Segmentation>> {
     laid_out(input).map(|normal| proposed(input, &face(input.features, normal)?)).transpose()
 }
@@ -114,7 +115,8 @@ pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     Ok(())
 }
 
-/// The distance of a face from the camera: the mean of `position · normal` over the pixels with this normal.
+/// The signed distance of a face from the camera: the mean of `position · normal` over the pixels with this normal. It
+/// is negative, because the normal points into the room.
 pub fn offset(features: &Image, normal: Vec3) -> f32 {
     let pixels = features.data.chunks_exact(features.channels);
     let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);
@@ -143,8 +145,8 @@ fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
 }
 
-/// The common normal of the given pixels. `None` if fewer than the share [`AGREEMENT`] of the pixels have this normal.
-/// `cosine` is the minimum cosine between the common normal and the normal of a pixel that has it.
+/// The common normal of the given pixels. `None` unless at least the share [`AGREEMENT`] of the pixels agree with it:
+/// the cosine between their own normal and the common one is at least `cosine`.
 fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
     if features.channels != CHANNELS {
         return None;

@@ -13,8 +13,8 @@ pub struct Input<'a> {
     pub features: &'a Image,
     pub strokes: &'a [Stroke],
     /// Mask of the pixels to classify: 1 inside, 0 outside; `None` means the whole image. In the second phase it is
-    /// the plane's mask. Outside it the confidence is 0, except on lamps that straddle its border. Strokes outside it
-    /// still count as examples.
+    /// the plane's mask. Outside the mask the confidence is 0, except on lamps that straddle the mask's border.
+    /// Strokes outside the mask still count as examples.
     pub region: Option<&'a Image>,
 }
 

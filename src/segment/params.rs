@@ -14,8 +14,8 @@ pub struct Params {
     /// the samples, in `[1e-9, 1e3]`.
     pub ridge: f64,
     pub seed: u64,
-    /// Half-width of the windows of the edge-aware filter, in pixels, in `[0, 1024]`; 0 turns the filter off. Its
-    /// guide image is the first three channels of the features.
+    /// Half-width of the windows of the edge-aware filter, in pixels, in `[0, 1024]`; 0 turns the filter off. The
+    /// filter's guide image is the first three channels of the features.
     pub refine_radius: usize,
     /// Differences in the guide image below this value are smoothed over; larger ones count as edges. In units of the
     /// guide (CIELAB units for colour), in `[1e-3, 1e6]`.

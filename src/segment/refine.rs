@@ -1,11 +1,13 @@
 //! Edge-aware refinement: the guided filter makes the probabilities follow the edges of the photo (He, Sun and Tang
 //! 2013, "Guided Image Filtering"). The guide image consists of the first three features, which are the colour.
 //!
-//! In the window around each pixel, an affine function of colour is fitted to the probability, `p ≈ a · I + b`. A
-//! penalty keeps `a` small where colour varies by less than the tolerance. The refined probability of a pixel is the
-//! mean over the fits of all windows that contain the pixel. Sums over windows are running sums, so the time does not
-//! depend on the radius. Rows are processed in bands of fixed height, each with margins above and below. A task
-//! therefore needs memory for one band only, and the bits of the result do not depend on the number of threads.
+//! In the window around each pixel, an affine function of the colour I is fitted to the probability, `p ≈ a · I + b`.
+//! A penalty keeps `a` small where colour varies by less than the tolerance. The refined probability of a pixel is the
+//! mean over the fits of all windows that contain the pixel.
+//!
+//! Sums over windows are running sums, so the time does not depend on the radius. Rows are processed in bands of fixed
+//! height, each with margins above and below. A task therefore needs memory for one band only, and the bits of the
+//! result do not depend on the number of threads.
 
 use crate::error::Result;
 use crate::exec;
@@ -17,9 +19,10 @@ use std::ops::Range;
 /// Number of rows in a band.
 const BAND: usize = 64;
 
-/// Weighted sums over the pixels of a window. Elements: 1, I (3), p, I p (3), upper triangle of I Iᵀ (6), unused (2).
+/// Weighted sums over the pixels of a window, for the guide colour I and the probability p. Elements: 1, I (3), p, I p
+/// (3), upper triangle of I Iᵀ (6), unused (2).
 type Moments = [f64; 16];
-/// Weighted sums of the fits over a window. Elements: 1, a (3), b, unused (3).
+/// Weighted sums of the fits `a · I + b` over a window. Elements: 1, a (3), b, unused (3).
 type Fits = [f64; 8];
 
 /// The input and the settings of the filter.

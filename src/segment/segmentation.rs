@@ -19,8 +19,8 @@ pub struct Segmentation {
     pub mask: Image,
     /// Probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out strokes.
     pub confidence: Image,
-    /// Distance of a pixel's features from the features of all strokes, mapped to `[0, 1]`: 0 if the samples of a
-    /// class cover them. Another stroke helps most where this value is high.
+    /// Distance of a pixel's features from the features of all strokes, mapped to `[0, 1]`: 0 if they lie among the
+    /// samples of a class. Another stroke helps most where this value is high.
     pub unseen: Image,
     /// Expected share of wrong pixels, in `[0, 1]`, from cross-validation. It is a weighted mean of two errors: on
     /// held-out parts of strokes, for pixels like the painted ones, and on held-out whole strokes, for pixels unlike

@@ -18,8 +18,8 @@ use crate::job::Job;
 
 /// Maximum number of folds. If there are more strokes, a fold holds several strokes.
 const FOLDS: usize = 8;
-/// Cross-validation fits models to about this number of samples per class at most, which is enough to compare two
-/// models.
+/// Approximate maximum number of samples per class in the fits of cross-validation. So many samples suffice to compare
+/// two models.
 const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
@@ -37,9 +37,11 @@ pub struct Chosen {
     pub standard: Standard,
     /// Weights of the terms (see `standardise::terms`), before calibration.
     pub weights: Vec<f64>,
-    /// Result of holding out parts of strokes. It applies to pixels whose features are like those of the strokes.
+    /// Result of cross-validation that holds out parts of strokes. It applies to pixels whose features are like those
+    /// of the strokes.
     pub familiar: Trust,
-    /// Result of holding out whole strokes. It applies to pixels whose features are unlike those of the strokes.
+    /// Result of cross-validation that holds out whole strokes. It applies to pixels whose features are unlike those
+    /// of the strokes.
     pub unfamiliar: Trust,
     /// For each class, the ellipsoid around its samples in the space of all standardised features.
     pub seen: [Ellipsoid; 2],
@@ -89,15 +91,16 @@ struct Trial<'a> {
     by_part: Vec<usize>,
     /// Fold of each sample, if whole strokes are held out.
     by_stroke: Vec<usize>,
-    /// Indices of the samples to which models are fitted for comparison.
+    /// Indices of the subset of samples to which all candidates are fitted.
     few: Vec<usize>,
     ridge: f64,
 }
 
-/// Chooses the model and the features with the lowest expected loss over the whole image. Pixels like the painted ones
-/// count with the log loss on held-out parts of strokes, all other pixels with the log loss on held-out whole strokes.
-/// Each term of a model adds a price of one over the number of samples (Akaike's criterion), so that the simpler of
-/// two equally good models wins.
+/// Chooses the model and the features with the lowest expected loss over the whole image.
+///
+/// The expected loss of pixels like the painted ones is the log loss on held-out parts of strokes; that of all other
+/// pixels is the log loss on held-out whole strokes. Each term of a model adds a price of one over the number of
+/// samples (Akaike's criterion), so that the simpler of two equally good models wins.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);
@@ -190,7 +193,7 @@ impl Trial<'_> {
     }
 }
 
-/// The step between the samples of a class that belong to `Trial::few`: every sample whose index it divides.
+/// `Trial::few` holds every n-th sample of a class; returns n.
 fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }

@@ -64,8 +64,8 @@ pub fn term_count(model: Model, d: usize) -> usize {
     }
 }
 
-/// Computes the terms of a model of the given columns: the standardised features, for a quadratic model their products
-/// `x_i x_j` with `i <= j`, and the constant 1.
+/// Computes the terms of a model on the given columns: the standardised features; for a quadratic model, also their
+/// products `x_i x_j` with `i <= j`; and the constant 1.
 pub fn terms(model: Model, features: &Table, columns: &[usize]) -> Result<Table> {
     let mut terms = Table::new(features.rows, term_count(model, columns.len()))?;
     for ((rows, x), (_, to)) in features.blocks().zip(terms.blocks_mut()) {

@@ -352,8 +352,7 @@ fn channels_are_chosen_unless_they_are_given() {
     let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
     let chosen = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     assert!(SUBSETS.contains(&chosen.channels), "{:#b}", chosen.channels);
-    // No given subset does much better than the chosen one. Given channels are used; bits beyond the last channel are
-    // ignored.
+    // No subset that the caller gives does much better than the chosen one. Bits beyond the last channel are ignored.
     for subset in SUBSETS {
         let params = Params { channels: subset | 1 << 20, ..Params::default() };
         let given = segment(&features, &plane_strokes(), None, &params).unwrap();

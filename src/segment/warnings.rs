@@ -11,11 +11,11 @@ use glam::DVec2;
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
-/// A warning is given if more pixels than this lie under strokes of both classes, as a multiple of the number of
-/// samples. [judged on 38 photos]
+/// A warning is given if the number of pixels under strokes of both classes, divided by the number of samples, exceeds
+/// this. [judged on 38 photos]
 const MAX_CONTRADICTORY: f64 = 0.05;
-/// A warning is given if more stroke pixels than this lie outside the photo, as a multiple of the number of samples.
-/// [judged on 38 photos]
+/// A warning is given if the number of stroke pixels outside the photo, divided by the number of samples, exceeds
+/// this. [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
 /// A warning is given if the expected error of the mask exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
@@ -57,7 +57,7 @@ impl Segmentation {
         self.is_learnt() && self.model.is_none()
     }
 
-    /// The `unseen` value of a pixel that belongs to the mask, or that may belong to a lamp; 0 for other pixels.
+    /// How doubtful a pixel is: its value in `unseen` if it belongs to the mask or may belong to a lamp, else 0.
     fn doubt(&self, pixel: usize) -> f32 {
         if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
     }
@@ -136,7 +136,7 @@ impl Segmentation {
         pixels as f64 / (self.samples[0] + self.samples[1]).max(1) as f64
     }
 
-    /// Warns if the mask contradicts many pixels of the given strokes, from which it was made.
+    /// Warns if the mask contradicts many pixels of the strokes from which it was made.
     pub fn missed<'a>(&self, strokes: impl Iterator<Item = &'a Stroke>) -> Option<Warning> {
         let is_missed = |stroke: &Stroke, p: u32| {
             self.mask.data.get(p as usize).is_some_and(|mask| (*mask > 0.5) != stroke.positive)

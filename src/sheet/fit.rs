@@ -63,7 +63,7 @@ fn too_few(count: usize) -> Error {
     ))
 }
 
-/// Returns the larger distance between opposite corner marks in the photo, in pixels.
+/// Returns the larger of the two distances between opposite corner marks in the photo, in pixels.
 fn extent(page: &Page, map: &Homography) -> f64 {
     let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(page.marks[m]));
     a.distance(c).max(b.distance(d))

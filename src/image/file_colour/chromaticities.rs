@@ -55,13 +55,14 @@ impl Chromaticities {
         Some(Self { primaries, white })
     }
 
-    /// Returns the matrix to linear Rec.709 that maps white to white; `None` if the primaries are collinear.
+    /// Returns the matrix from linear colours in these primaries to linear Rec.709. It maps white to white. `None` if
+    /// the primaries are collinear.
     pub fn to_rec709(self) -> Option<DMat3> {
         self.to_rec709_from_white(self.white)
     }
 
-    /// Returns the matrix to linear Rec.709 that maps the chromaticity `white` to white, even if the colour (1, 1, 1)
-    /// has another chromaticity.
+    /// Returns the matrix from linear colours in these primaries to linear Rec.709. It maps colours of the
+    /// chromaticity `white` to white, even if (1, 1, 1) has another chromaticity.
     pub fn to_rec709_from_white(self, white: [f64; 2]) -> Option<DMat3> {
         let target = Self::REC709;
         let matrix = target.to_xyz()?.inverse() * adaptation(xyz(white)?, xyz(target.white)?) * self.to_xyz()?;

@@ -40,7 +40,7 @@ impl Conversion {
         Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
     }
 
-    /// Returns the conversion of sRGB integers.
+    /// Returns the conversion from sRGB-encoded samples.
     pub fn srgb() -> Result<Self> {
         let curve = Curve::srgb()?;
         Ok(Self::new([curve.clone(), curve.clone(), curve], DMat3::IDENTITY))
@@ -90,8 +90,8 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Limits the components of a converted colour from below, so that the conversion makes none of them negative. The
-/// bound is 0, or the lowest component of the file's colour if that is already negative. NaN stays NaN.
+/// Clamps each component of a converted colour to at least 0, or to the lowest component of the file's colour if that
+/// is negative. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)

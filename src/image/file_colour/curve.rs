@@ -12,7 +12,8 @@ const NODES: usize = 65_536;
 /// curve in tables of 1024 values of 16 bits, with errors of 1e-4 near black. [rounding]
 const SAME: f32 = 4e-4;
 
-/// A transfer curve sampled on `[0, 1]`. It continues linearly above 1, and negative codes give negated values.
+/// A transfer curve sampled on `[0, 1]`. Above 1 the curve continues linearly. The value of a negative code -v is
+/// minus the value of v.
 #[derive(Clone)]
 pub struct Curve(Arc<Vec<f32>>);
 

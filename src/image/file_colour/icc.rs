@@ -18,8 +18,8 @@ use std::borrow::Cow;
 
 pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
-/// Maximum total length of a profile's tags, relative to the length of the profile. Tags may share data: for example,
-/// three curves, three rendering intents and both directions may use the same data. [convention]
+/// Maximum total length of a profile's tags, relative to the length of the profile. The total may exceed the length of
+/// the profile, because tags may share data (such as one curve for three channels). [convention]
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;
@@ -80,7 +80,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     memory::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
-    // The curves of a profile end at 1, so a profile states a high dynamic range by code points.
+    // The curves of a profile end at 1, so a profile for high dynamic range names its transfer function by a code
+    // point instead (the `cicp` tag).
     if let Some(codes) = &profile.cicp
         && let Some(space) = hdr(codes)?
     {

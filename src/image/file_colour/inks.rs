@@ -146,8 +146,8 @@ fn curve(samples: &[f32], at: f32) -> f32 {
 fn xyz(lab: Vec3) -> Vec3 {
     let y = (lab.x + 16.0) / 116.0;
     let root = Vec3::new(y + lab.y / 500.0, y, y - lab.z / 200.0);
-    // For small values, the curve of CIELAB is a straight line of slope 108 / 841 instead of a cube. [convention: CIE
-    // 15:2018, 8.2.1]
+    // For small values, the curve of CIELAB is a straight line of slope 108 / 841 instead of a cube.
+    // [convention: CIE 15:2018, 8.2.1]
     let linear = (root - 4.0 / 29.0) * (108.0 / 841.0);
     D50 * Vec3::select(root.cmpgt(Vec3::splat(6.0 / 29.0)), root * root * root, linear)
 }

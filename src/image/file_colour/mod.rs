@@ -95,14 +95,14 @@ pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
     })
 }
 
-/// Returns the space of a BMP without an embedded profile that can be read.
+/// Returns the colour space of a BMP that holds no readable profile.
 fn bmp(bytes: &[u8]) -> Space {
     match bmp_space(bytes).map(|(kind, _)| kind) {
         Some(kind) if kind == *b"sRGB" => Space::Native,
         // The profile is in another file, or it is cut off.
         Some(kind) if kind == *b"LINK" || kind == *b"MBED" => Space::Unusable,
-        // The header names the operating system's default colour space, or it gives the primaries, which most writers
-        // leave at 0.
+        // The header names the operating system's default colour space, or gives primaries, which are ignored because
+        // most writers leave them at 0.
         _ => Space::Unstated,
     }
 }

@@ -20,8 +20,8 @@ pub enum FileColour {
     Stated = 2,
     /// The file states another space, from which its colours were converted.
     Converted = 3,
-    /// The file states a space that cannot be converted, or holds inks without a profile. It was read as if it stated
-    /// nothing.
+    /// The file states a space that cannot be converted, or holds inks without a profile. Its colours were read as if
+    /// the file stated nothing.
     Unconverted = 4,
     /// The caller asked for the stored numbers without conversion.
     Data = 5,
@@ -40,13 +40,13 @@ pub(in crate::image) enum Space {
 }
 
 impl Space {
-    /// Returns the space whose linear colours `matrix` converts to linear Rec.709.
+    /// Returns the linear colour space from which `matrix` converts to linear Rec.709.
     pub fn linear(matrix: DMat3) -> Self {
         if is_identity(matrix) { Self::Native } else { Self::Other(Conversion::linear(matrix)) }
     }
 }
 
-/// The colour space that the EXIF metadata state.
+/// The colour space that the EXIF metadata of a file state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExifColour {
     #[default]
@@ -56,7 +56,7 @@ pub enum ExifColour {
 }
 
 impl ExifColour {
-    /// Converts the statement of the EXIF metadata to a space.
+    /// Returns the colour space that the EXIF metadata state.
     pub(super) fn space(self) -> Result<Space> {
         match self {
             Self::Unstated => Ok(Space::Unstated),

@@ -42,7 +42,7 @@ pub struct Exif {
     pub focal_35: Option<f64>,
     /// Focal length of the lens in millimetres.
     pub focal: Option<f64>,
-    /// Pixels per millimetre of the sensor, at the size in `recorded`.
+    /// Pixels per millimetre of the sensor, for a picture of the size `recorded`.
     pub density: Option<f64>,
     /// Width and height in pixels that the camera recorded.
     pub recorded: Option<[f64; 2]>,

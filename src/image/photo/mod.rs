@@ -26,12 +26,13 @@ const AGREEMENT: f64 = 0.1;
 /// than this value. It allows for the rounding of the sides when a photo is resized. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates.
-/// [convention: ISO 12232:2019, 6.2]
+/// An ISO speed based on saturation is this number in lx s, divided by the focal-plane exposure that just saturates
+/// the sensor. [convention: ISO 12232:2019, 6.2]
 const SATURATION: f64 = 78.0;
 
-/// The factor q: the focal-plane exposure is q L t / N² for a luminance L, an exposure time t and an f-number N. The
-/// value holds for a lens of 90 % transmittance, 10° off its axis. [convention: ISO 12232:2019, annex A]
+/// The factor q of the lens. A surface of luminance L gives the focal-plane exposure q L t / N², with the exposure
+/// time t and the f-number N. The value holds for a lens of 90 % transmittance, 10° off its axis.
+/// [convention: ISO 12232:2019, annex A]
 const LENS: f64 = 0.65;
 
 /// Range of the luminance of white, relative to its value if the ISO speed is saturation-based.
@@ -86,8 +87,8 @@ impl PhotoMetadata {
         self.focal.map(|focal| [focal, FOCAL_ERROR * focal])
     }
 
-    /// Returns the luminance that became the pixel value 1. It follows from the exposure that just saturates, for the
-    /// ISO speed S: L = 78 N² / (q t S).
+    /// Returns the luminance that became the pixel value 1: L = 78 N² / (q t S), the luminance that just saturates at
+    /// the ISO speed S, the f-number N and the exposure time t. The constant `LENS` is q.
     pub fn white_luminance(&self) -> Option<Luminance> {
         let (n, t, s) = (self.f_number?, self.exposure_time?, self.iso?);
         let expected = SATURATION * n * n / (LENS * t * s);

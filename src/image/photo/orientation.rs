@@ -1,4 +1,4 @@
-//! The orientation in which a photo is stored, and how it is turned upright while it is read.
+//! Turns a photo upright, by the orientation that its file states, while the photo is read.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -14,7 +14,7 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// The stored rows run downwards, the stored columns to the right.
+    /// The file stores the picture upright: its first row is the top row, its first column the leftmost one.
     pub const UPRIGHT: Self = Self(1);
 
     pub fn new(code: u64) -> Option<Self> {
@@ -39,7 +39,7 @@ impl Orientation {
 /// An upright image whose pixels are written in the order in which the file stores them.
 pub struct Upright {
     pub image: Image,
-    /// Index of the first sample of the pixel that the file stores first, and the changes of this index from one
+    /// `start` is the index in `image.data` of the file's first pixel; `steps` are the changes of this index from one
     /// column, and from one row, of the file to the next.
     start: isize,
     steps: [isize; 2],
@@ -51,8 +51,8 @@ impl Upright {
         let is_transposed = orientation.is_transposed();
         let image =
             if is_transposed { Image::new(height, width, channels)? } else { Image::new(width, height, channels)? };
-        // Along each axis of the upright picture, step forwards from its first column or row, or backwards from its
-        // last.
+        // Along each axis of the upright picture, write from its first column or row forwards, or, if the axis is
+        // mirrored, from its last one backwards.
         let ahead = [channels, image.row_len()];
         let ends = [image.width - 1, image.height - 1];
         let (mut start, mut steps) = (0, [0; 2]);

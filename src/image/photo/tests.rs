@@ -190,7 +190,7 @@ fn the_luminance_of_white_follows_from_the_exposure() {
         some.remove(missing);
         assert_eq!(metadata(&some).white_luminance(), None);
     }
-    // Logarithms instead of numbers, and a speed too large for 16 bits.
+    // Shutter speed and aperture as logarithms instead of numbers, and an ISO speed too large for 16 bits.
     let logarithms = [
         short(big, 0x8827, 65_535),
         (0x8832, LONG, writers(big).2(102_400)),

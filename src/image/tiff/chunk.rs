@@ -31,8 +31,8 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
     Err(Error::format(format!("the TIFF's pixels are damaged ({compression:?}): {needed} bytes were expected")))
 }
 
-/// Decompresses PackBits, runs of literal or of equal bytes (TIFF 6.0, section 9); returns the number of bytes
-/// written.
+/// Decompresses PackBits, which consists of runs of literal bytes and runs of equal bytes (TIFF 6.0, section 9).
+/// Returns the number of bytes written.
 fn packbits(mut stored: &[u8], out: &mut [u8]) -> usize {
     let mut at = 0;
     while let Some((&head, rest)) = stored.split_first().filter(|_| at < out.len()) {
@@ -99,7 +99,8 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             }
             order
         }
-        // Floating point: the row stores all highest bytes first, then all next lower bytes and so on, as differences.
+        // Floating point: the row stores the highest bytes of all samples first, then the next lower bytes, and so on.
+        // Each byte is stored as the difference from the byte before it in the same channel.
         (Predictor::Float, size) => {
             for i in samples..row.len() {
                 row[i] = row[i].wrapping_add(row[i - samples]);

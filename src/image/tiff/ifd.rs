@@ -49,7 +49,7 @@ impl<'a> Ifds<'a> {
         self.directory(self.order.u32(*self.bytes.get(4..)?.first_chunk()?))
     }
 
-    /// Returns the directory at an offset, with those of its entries that lie within the bytes.
+    /// Returns the directory at an offset. Entries that lie beyond the end of the block are dropped.
     pub fn directory(self, offset: u32) -> Option<Directory<'a>> {
         let (count, entries) = self.bytes.get(offset as usize..)?.split_first_chunk()?;
         let (entries, _) = entries.as_chunks();

@@ -32,8 +32,7 @@ mod tag {
 /// Maximum number of stored samples per pixel, including samples that are not colours; no photo has more. [convention]
 const MAX_SAMPLES: u64 = 16;
 
-/// Tiles up to this width in pixels are accepted in any picture. Wider tiles must not be wider than the picture.
-/// [convention]
+/// A tile wider than this many pixels is accepted only if the picture is at least as wide as the tile. [convention]
 const MAX_TILE: usize = 4096;
 
 /// The number format of a sample.
@@ -122,7 +121,8 @@ pub struct Layout<'a> {
     pub alpha: Option<Alpha>,
     pub compression: Compression,
     pub predictor: Predictor,
-    /// Number of samples per pixel in a chunk: all of them, or one if each sample has its own chunks.
+    /// Number of samples per pixel in a chunk: all samples of the pixel, or 1 if the file stores each sample in chunks
+    /// of its own (planar).
     pub samples: usize,
     planes: usize,
     /// Width and height in pixels of a chunk as stored.
@@ -314,7 +314,7 @@ fn integer(directory: &Directory, tag: u16, name: &str) -> Result<Option<u64>> {
     directory.field(tag).map(|f| f.integer(0).ok_or_else(unreadable)).transpose()
 }
 
-/// Refuses the raw files of cameras. They are TIFF files too, whose first picture is a thumbnail.
+/// Refuses the raw files of cameras, which are TIFF files whose first picture is only a thumbnail.
 fn check_is_picture(directory: &Directory) -> Result<()> {
     let is_thumbnail = directory.integer(tag::NEW_SUBFILE_TYPE).unwrap_or(0) & 1 != 0;
     if is_thumbnail || directory.field(tag::DNG_VERSION).is_some() {

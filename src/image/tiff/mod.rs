@@ -72,8 +72,8 @@ pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Imag
     read(&layout, order, layout.colours(), orientation)
 }
 
-/// Reads the samples of the first picture, decompressed but still with their transfer function (not linear). Inks are
-/// converted to RGB unless `channels` is 4.
+/// Reads and decompresses the samples of the first picture. The result stays encoded (not linear). Inks are converted
+/// to RGB unless `channels` is 4.
 fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
     memory::check_unpacking()?;
     let mut out = Upright::new(layout.width, layout.height, channels, orientation)?;
@@ -90,8 +90,8 @@ fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation
     Ok(out.image)
 }
 
-/// Writes the samples of one row of a chunk to their positions in the image, still with their transfer function:
-/// colours first, alpha last.
+/// Writes the samples of one row of a chunk to their pixels in the image. The samples stay encoded (not linear); alpha
+/// goes to the last channel.
 fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
     let stored = layout.samples;
     let value = |i: usize| sample(row, i, layout.depth, order);

@@ -303,7 +303,7 @@ fn truncated_and_inconsistent_files_are_errors() {
             // The last bytes of a compressed strip may contain only the end mark, which is not needed.
             assert!(error.is_err() || cut + 6 > file.len() && compression != 1, "{compression} cut at {cut}");
         }
-        // Change every byte: the result is an error, or a picture that the file can contain.
+        // Change every byte: the result is an error, or a picture no larger than the file can hold.
         let plain = Picture { compression, size: [7, 5], ..Picture::new(3, 16, 1, 2) }.file();
         for at in 0..plain.len() {
             for value in [0, 1, 2, 5, 8, 32, 127, 255] {
@@ -345,7 +345,7 @@ fn unsupported_features_are_named() {
         let error = probe(&picture.file()).unwrap_err();
         assert!(error.kind == ErrorKind::Unsupported && error.message.contains(name), "{error}");
     }
-    // Change the value of the compression tag, since the writer of this test supports no other compression.
+    // Overwrite the value of the compression tag, because this test cannot compress in these ways.
     let mut file = plain.file();
     assert_eq!(file[46..48], bytes(259));
     for (code, name) in [(7, "JPEG"), (4, "fax"), (50_000, "Zstandard")] {

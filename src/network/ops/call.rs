@@ -1,4 +1,4 @@
-//! What an operator needs to run: the inputs of its node, and the node's attributes.
+//! The arguments with which an operator runs: the inputs of its node, and the node's attributes.
 
 use super::super::read::{Attribute, unsupported};
 use super::super::tensor::{MemoryBudget, Tensor};

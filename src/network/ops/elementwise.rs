@@ -324,8 +324,8 @@ impl Spread {
         Ok(Self { shape, strides })
     }
 
-    /// Returns the index of the tensor's element at which row `row` starts. A row runs along the last axis of the
-    /// common shape.
+    /// Returns the index of the element at which row `row` of a tensor starts. A row runs along the last axis of the
+    /// common shape; `tensor` is the index of the tensor.
     fn start(&self, tensor: usize, mut row: usize) -> usize {
         let outer = self.shape.len().saturating_sub(1);
         let mut start = 0;

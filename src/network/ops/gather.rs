@@ -59,8 +59,8 @@ impl Rows<'_> {
         let outer = self.to.len().saturating_sub(1);
         let length = self.to.last().copied().unwrap_or(1);
         exec::for_rows(out, length, call.job, |row, out| {
-            // Find where this row's source starts, from the last axis before the row to the first. `None` if an index
-            // maps to no input.
+            // Compute where the source of this row starts: add up the offsets along the outer axes, from the innermost
+            // of them outwards. `None` if an index maps to no input.
             let (mut start, mut rest) = (Some(0), row);
             let mut stride = self.from.last().copied().unwrap_or(1);
             for axis in (0..outer).rev() {

@@ -126,8 +126,8 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(shape, out))
 }
 
-/// Pairs the matrices of two stacks by broadcasting. Returns the shape of the resulting stack and, for each of its
-/// matrices, the index of the matrix in either stack.
+/// Pairs the matrices of two stacks by broadcasting. Returns the shape of the resulting stack and, for each input
+/// stack, the index of the matrix that goes into each product.
 fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>; 2])> {
     let numbered = |shape: &[usize]| -> Result<Tensor> {
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))

@@ -1,5 +1,5 @@
-//! Computes the area of the room's surface that each pixel shows. Measured on this surface, lamps of one kind have
-//! equal areas and equal shapes at any distance from the camera.
+//! Computes the area on a face of the room that each pixel shows. Measured on the face, lamps of one kind have equal
+//! areas and equal shapes at any distance from the camera.
 
 use crate::error::Result;
 use crate::exec;
@@ -9,8 +9,9 @@ use crate::job::Job;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// The part of a face of the room that each pixel shows, in the unit of the positions. The face is extended beyond its
-/// edges: a pixel that shows another face counts with the part of the extension that its ray meets.
+/// The part of a face of the room that each pixel shows. Lengths have the unit of the positions in the features. The
+/// face is extended beyond its edges: a pixel that shows another face counts with the part of the extension that its
+/// ray meets.
 pub struct Footprint {
     /// Area that each pixel shows; infinite where the pixel's ray does not meet the face.
     pub area: Vec<f32>,
@@ -24,9 +25,9 @@ pub struct Footprint {
 const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
-    /// Computes the footprints of all pixels on the face with the given normal and distance along its normal. The area
-    /// is the cross product of the position differences along rows and columns. The coordinates run along the two room
-    /// axes that are farthest from the normal.
+    /// Computes the footprints of all pixels on a face with the given normal and signed distance from the camera
+    /// (`face::offset`). The area of a pixel is the length of the cross product of the position differences along its
+    /// row and its column. The coordinates run along the two room axes that are farthest from the normal.
     pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
         // The point where the ray through a pixel meets the face or its extension.

@@ -42,7 +42,7 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// This share of the strokes' pixels, the darkest ones, is ignored when the least brightness of the lamps is
+/// Share of the strokes' pixels, the darkest ones, that is ignored when the least brightness of the lamps is
 /// determined, because hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]
@@ -57,7 +57,7 @@ const DEPTH: f32 = 0.4;
 /// surface. [judged on 44 photos]
 const MIN_CONTRAST: f64 = 3.0;
 
-/// Expected share of wrong pixels in a lamp with a stroke, and in one without. [judged on 28 photos]
+/// Expected share of wrong pixels in a lamp under a stroke, and in a lamp without a stroke. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
 /// Finds the lamps under the positive strokes, and regions that look like them. The first three channels of the
@@ -90,7 +90,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
-    // In a room laid out as a box, measure the regions on the surface of the room.
+    // If the room was laid out as a box, measure the regions on the face that holds the lamps, too.
     let normal = match unpainted {
         Some(plane) => face::laid_out_under(input.features, plane),
         None => face::laid_out(input),

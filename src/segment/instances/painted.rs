@@ -13,14 +13,15 @@ pub const MIN_AREA: f64 = 6.0;
 /// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
 /// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// The gain (score) of a region this many times as long as its stroke is halved. [judged on 28 photos]
+/// If a region is this many times as long as its stroke, its gain (score) is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
-/// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.
-/// [judged on 44 photos]
+/// Exponent with which the share of the stroke's pixels that a region holds enters the region's gain. (The gain is the
+/// score by which regions under a stroke compete.) Because the exponent is above 1, one region has a larger gain than
+/// its parts together, at equal contrast. [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
-/// Exponent of the purity in a region's gain. Purity is the share of positive pixels among the painted pixels of the
-/// region. The power all but rules out regions with many negative pixels. [judged on 28 photos]
+/// Exponent with which the purity of a region enters its gain. Purity is the share of positive pixels among the
+/// painted pixels of the region. The exponent all but rules out regions with many negative pixels.
+/// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
 /// Minimum contrast of a region, relative to the region with the sharpest contour under the same stroke. Regions below
 /// it are fragments. [judged on 28 photos]
@@ -31,7 +32,7 @@ pub struct Paint<'a> {
     pub width: usize,
     /// Pixels of each positive stroke.
     pub positive: &'a [Vec<u32>],
-    /// Number of pixels under negative strokes in each node.
+    /// For each node, the number of its pixels under negative strokes.
     pub negatives: &'a [f64],
 }
 
@@ -95,7 +96,8 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
     }
     nodes.iter().for_each(|&n| covered[n as usize] = 0.0);
 
-    // From the root to the leaves, choose the first node on each path that passed this test.
+    // From the root to the leaves, choose on each path the first node that gains at least as much as the nodes inside
+    // it.
     let mut chosen = Vec::new();
     let mut is_within = vec![false; nodes.len()];
     for (k, &node) in nodes.iter().enumerate() {

@@ -22,7 +22,7 @@ const MIN_RING: f64 = 10.0;
 const MIN_SOLIDITY: f64 = 0.75;
 /// Maximum share of the plane that a lamp may cover. [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
-/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [bench photos:nostrokes]
+/// At least this share of the ring of pixels around a lamp must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
 /// Minimum worth of a lamp (contrast along its contour times a power of its area), relative to the lamp of highest
 /// worth. [bench photos:nostrokes]

@@ -24,7 +24,7 @@ const MAX_LEVEL: f32 = 1023.0;
 pub struct Brightness {
     pub width: usize,
     pub height: usize,
-    /// CIELAB, as in the features.
+    /// CIELAB after the exposure has been scaled (see [`Self::new`]).
     pub lab: Vec<[f32; 3]>,
     /// L* after a slight blur.
     pub smooth: Image,
@@ -34,7 +34,7 @@ pub struct Brightness {
     pub gradient: Vec<f32>,
 }
 
-/// L* below this value is linear in luminance, with this slope (luminance 0 to 1). [convention: CIE 15]
+/// Below `LINEAR_L`, L* is `SLOPE` times the luminance (0 to 1). [convention: CIE 15]
 const LINEAR_L: f32 = 8.0;
 const SLOPE: f32 = 24389.0 / 27.0;
 
@@ -55,7 +55,8 @@ pub fn level(l: f32) -> f32 {
 }
 
 impl Brightness {
-    /// Scales the photo's exposure so that an L* of `white` becomes 100, and computes its brightness.
+    /// Scales the photo's exposure so that an L* of `white` becomes 100, and computes the brightness and colour of all
+    /// pixels.
     pub fn new(features: &Image, white: f32, job: Job) -> Result<Self> {
         let gain = 1.0 / luminance(white);
         let (width, height) = (features.width, features.height);
@@ -87,11 +88,11 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node of the component tree, measured on the surface of the room: each pixel is
-/// weighted by the area that it shows.
+/// Sums over the pixels of each node of the component tree. Each pixel is weighted by the area of the room's face that
+/// it shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
-    /// Number of pixels that show the face itself, not its extension beyond the edges.
+    /// For each node, the number of its pixels that show the face itself, not its extension beyond the edges.
     pub on_face: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
@@ -135,8 +136,8 @@ impl OnSurface {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in a row parallel to a side of the face of the room: their centres, measured across the
-    /// row, differ by at most `share` times the width of the wider node.
+    /// Whether two nodes lie in a row parallel to a side of the room's face: the difference between their centres
+    /// across the row is at most `share` times the width of the wider node.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);
@@ -150,7 +151,8 @@ impl OnSurface {
         near(&self.u, &self.uu) || near(&self.v, &self.vv)
     }
 
-    /// Aspect of a node on the surface: the ratio of the axes of the ellipse with equal second moments, at least 1.
+    /// Aspect of a node, measured on the face of the room: the ratio of the axes of the ellipse with the node's second
+    /// moments, at least 1.
     pub fn aspect(&self, node: usize) -> f64 {
         let area = self.area[node].max(f64::MIN_POSITIVE);
         let mean = |sums: &[f64]| sums[node] / area;
@@ -173,7 +175,7 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
 pub struct Regions {
     /// Area of each node in pixels.
     pub area: Vec<f64>,
-    /// Sums on the surface of the room; `None` if the room has no box layout.
+    /// Sums measured on a face of the room instead of in pixels; `None` if the room has no box layout.
     pub surface: Option<OnSurface>,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -266,7 +268,7 @@ impl Regions {
         [self.x[node] / self.area[node], self.y[node] / self.area[node]]
     }
 
-    /// Lengths of the axes of the ellipse with equal second moments, in pixels, the long axis first.
+    /// Lengths in pixels of the axes of the ellipse with the node's second moments, the long axis first.
     pub fn axes(&self, node: usize) -> [f64; 2] {
         let area = self.area[node];
         let [u, v] = self.centre(node);
@@ -275,8 +277,8 @@ impl Regions {
         ellipse([xx, yy, xy], 1.0 / 12.0)
     }
 
-    /// Area divided by the area of the ellipse with equal second moments: 1 for an ellipse, 0.95 for a rectangle, less
-    /// for a ring or a branched shape.
+    /// Area divided by the area of the ellipse with the node's second moments: 1 for an ellipse, 0.95 for a rectangle,
+    /// less for a ring or a branched shape.
     pub fn solidity(&self, node: usize) -> f64 {
         let [long, short] = self.axes(node);
         self.area[node] / (std::f64::consts::FRAC_PI_4 * long * short)

@@ -13,46 +13,48 @@ use std::ops::RangeInclusive;
 
 /// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// Maximum distance of a lamp's colour from that of the nearest lamp under a stroke, in a* and b*.
+/// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along a lamp's contour, relative to the median of the lamps under the strokes. It is below 1
-/// because distant lamps are small and blurred. [judged on 28 photos]
+/// Minimum contrast along a lamp's contour, relative to the median contrast of the lamps under the strokes. It is
+/// below 1 because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast to the ring of pixels around a lamp, relative to the median of the lamps under the strokes.
-/// [judged on 28 photos]
+/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps
+/// under the strokes. [judged on 28 photos]
 const RING: f64 = 0.5;
-/// Minimum solidity (see `Regions::solidity`), relative to the least solid lamp under a stroke. [judged on 28 photos]
-const SOLIDITY: f64 = 0.85;
-/// Minimum area, relative to the smallest lamp under a stroke: at three times the distance, a lamp in a ceiling is a
-/// third as wide and, foreshortened, a ninth as high. [convention]
-const SMALLER: f64 = 1.0 / 27.0;
-/// Maximum area in pixels, relative to the largest lamp under a stroke, if the room has no box layout.
+/// Minimum ratio of a lamp's solidity (see `Regions::solidity`) to the least solidity of the lamps under the strokes.
 /// [judged on 28 photos]
+const SOLIDITY: f64 = 0.85;
+/// Minimum ratio of a lamp's area in pixels to the area of the smallest lamp under a stroke. At three times the
+/// distance, a lamp in a ceiling is a third as wide and, foreshortened, a ninth as high. [convention]
+const SMALLER: f64 = 1.0 / 27.0;
+/// Maximum ratio of a lamp's area in pixels to the area of the largest lamp under a stroke. It applies only if the
+/// room has no box layout. [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
-/// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
+/// Maximum factor by which the area of a lamp on the plane may be below the smallest, or above the largest, area of
+/// the lamps under the strokes. Bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// The aspect (length over width) of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of
-/// the lamps under the strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and
-/// lengthens distant lamps along the line of sight. [bench photos:tune]
+/// The aspect (length over width) of a lamp on the plane must lie between the least aspect of the lamps under the
+/// strokes divided by `ROUNDER`, and their largest aspect times `LONGER`. Blur widens thin lamps, and lengthens
+/// distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// The limits of area and shape on the plane are derived from those lamps under the strokes that have at least this
-/// share of the pixels of the largest one. [judged on 44 photos]
+/// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
+/// area and aspect on the plane do not depend on it. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth in pixels, relative to the broadest lamp under a stroke, if the room has no box layout.
-/// [judged on 28 photos]
+/// Maximum ratio of a lamp's breadth in pixels to the breadth of the broadest lamp under a stroke. It applies only if
+/// the room has no box layout. [judged on 28 photos]
 const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Minimum share of the ring of pixels around a lamp that must lie on the plane. [judged on 28 photos]
+/// At least this share of the ring of pixels around a lamp must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
-/// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
+/// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// A region off the plane counts as a lamp only if the ratio of its area to that of a lamp under a stroke or on the
-/// plane, and the ratio of their aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
+/// A region off the plane counts as a lamp only if it is like another lamp, under a stroke or on the plane: the
+/// region's area divided by the lamp's, and its aspect divided by the lamp's, must lie in these ranges. Blur enlarges
+/// distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
@@ -64,8 +66,8 @@ const ROUND: f64 = 1.25;
 /// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
 /// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
-/// tried first. [judged on 44 photos]
+/// Exponent of the area in the order in which candidates are tried. Of nested regions with almost equally sharp
+/// contours, the largest is tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
 /// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of 1.
 /// [judged on 28 photos]
@@ -94,7 +96,7 @@ pub struct Similar {
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// Limits on the surface of the room; `None` if the room has no box layout.
+    /// Limits on the area and the aspect, measured on a face of the room; `None` if the room has no box layout.
     surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
@@ -102,8 +104,8 @@ struct Model {
     colours: Vec<[f64; 3]>,
     /// Median colours of the rings of pixels around the lamps under the strokes.
     rings: Vec<[f64; 3]>,
-    /// Minimum contrast along the contour, and minimum contrast to the ring, for a lamp so large that blur does not
-    /// reduce them.
+    /// Minimum contrast along the contour and minimum contrast to the ring. Both hold for lamps so large that blur
+    /// does not reduce their contrast; for smaller lamps they are lowered.
     contour: f64,
     ring: f64,
 }
@@ -117,7 +119,7 @@ impl Model {
     }
 }
 
-/// Ranges `[min, max]` of the area and the aspect of lamps on the surface of the room.
+/// Ranges `[min, max]` of the area and the aspect of lamps, measured on a face of the room.
 struct OnSurface {
     area: [f64; 2],
     aspect: [f64; 2],
@@ -128,7 +130,7 @@ pub struct Search<'a> {
     pub regions: &'a Regions,
     pub photo: &'a Brightness,
     pub plane: Option<&'a Image>,
-    /// Number of pixels under negative strokes in each node.
+    /// For each node, the number of its pixels under negative strokes.
     pub negatives: &'a [f64],
 }
 
@@ -177,7 +179,8 @@ impl Search<'_> {
     }
 
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
-    /// strokes, the sharpest contours first. Nodes that contain a lamp under a stroke or lie inside one are left out.
+    /// strokes, in descending order of contour contrast times a small power of the area. Nodes that contain a lamp
+    /// under a stroke or lie inside one are left out.
     fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;

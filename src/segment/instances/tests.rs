@@ -26,7 +26,7 @@ fn features() -> Image {
     features_with(&LAMPS)
 }
 
-/// The features with other lamps. The ceiling faces the camera, so all its pixels show equal areas.
+/// Like [`features`], but with the given lamps. The ceiling faces the camera, so all its pixels show equal areas.
 fn features_with(lamps: &[[usize; 4]]) -> Image {
     let mut image = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
     for (i, pixel) in image.data.chunks_exact_mut(CHANNELS).enumerate() {

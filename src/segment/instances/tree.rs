@@ -1,6 +1,6 @@
 //! The component tree of a photo's brightness (Salembier et al. 1998), built by union-find (Berger et al. 2007). Its
-//! nodes are the connected regions of pixels at or above each level. The parent of a region is the region that it
-//! grows into at the next lower level.
+//! nodes are, for each brightness level, the connected regions of pixels at or above that level. The parent of a
+//! region is the region that contains it at the next lower level.
 //!
 //! Nodes are numbered from the root, parents before children. The root is the whole image.
 
@@ -56,8 +56,8 @@ impl Tree {
             }
         }
 
-        // From dark to bright, redirect parents to the pixel that represents a node: the node's first pixel in this
-        // order.
+        // Each node is represented by its darkest pixel, the first one in this order. From dark to bright, redirect
+        // each parent to the pixel that represents its node.
         for &p in &order {
             let up = parent[p as usize] as usize;
             if levels[parent[up] as usize] == levels[up] {

@@ -10,8 +10,8 @@ use crate::error::{Error, Result, check_range};
 use crate::image::{Image, make_room, try_collect};
 use glam::DVec2;
 
-/// Quantile of L* under the positive light strokes. Pixels of plane strokes that are at least as bright count as lamp.
-/// The quantile ignores the darkest quarter, because hurried strokes run over the edges of lamps.
+/// Pixels of plane strokes count as lamp if they are at least as bright as this quantile of L* under the positive
+/// light strokes. The quantile ignores the darkest quarter, because hurried strokes run over the edges of lamps.
 /// [judged on 36 photos]
 const LIT: f64 = 0.25;
 
