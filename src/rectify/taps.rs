@@ -79,12 +79,12 @@ fn sharpening(t: f32) -> [f32; TAPS] {
     [first, last - 2.0 * first, first - 2.0 * last, last]
 }
 
-/// The filter that a run of pixels uses.
+/// The filter of a run of pixels: bicubic interpolation, the mean over the footprint, or a blend of both.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
-    /// Cubic weights alone: no footprint of the run is larger than one source pixel.
+    /// Bicubic interpolation (Catmull-Rom), if no footprint of the run is larger than one source pixel.
     Cubic,
-    /// Overlap weights plus the faded sharpening terms of the cubic.
+    /// The mean over the footprint plus the sharpening terms of the cubic, which fade out as the footprint grows.
     Fading,
     Overlap,
 }

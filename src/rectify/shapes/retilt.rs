@@ -1,4 +1,4 @@
-//! Computes the view in which the plane has the tilt at which its lamps are alike.
+//! Corrects a view so that its plane has the tilt that was found from the lamps.
 
 use super::likeness::{self, Shape};
 use super::tilt::{Found, Tilt};
@@ -20,8 +20,8 @@ const ROTATIONS: usize = 360;
 const MIN_SUPPORT: usize = 3;
 
 impl View {
-    /// Returns the view with the plane tilted as found, and rotated about its normal so that most lines run along the
-    /// axes.
+    /// Returns the view whose plane has the tilt in `found`. The axes are rotated about the plane's normal so that
+    /// most lines run along them.
     pub(super) fn retilted(&self, found: &Found, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
         let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();

@@ -1,4 +1,4 @@
-//! Searches for the tilt of a plane at which the lamp shapes on the plane are alike.
+//! Searches for the tilt of a plane with which the lamp shapes on the plane have equal size and form.
 
 use super::likeness::{self, Shape};
 use crate::error::Result;
