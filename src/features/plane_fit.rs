@@ -11,8 +11,8 @@ use std::ops::Range;
 /// 1e-15. [rounding]
 const SINGULAR: f64 = 1e-12;
 
-/// The regression planes of a row, each relative to its own pixel: `w ≈ value + dx i + dy j`, and the mean squared
-/// residual, infinite where there is no plane.
+/// The regression planes around the pixels of a row: `w ≈ value + dx i + dy j`, where `i` and `j` are the offsets in
+/// columns and rows from the pixel. `residual` is the mean squared residual, infinite where there is no plane.
 #[derive(Clone, Copy)]
 pub struct FitRow<'a> {
     pub value: &'a [f32],
