@@ -12,7 +12,7 @@ use crate::render::{self, World};
 use crate::transfer::{LitScene, Stage, Transfer};
 use std::sync::Arc;
 
-/// The planned last two stages of a transfer.
+/// Settings and expectations of the last two stages of a transfer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     pub relight: relight::Params,
