@@ -84,13 +84,14 @@ pub(super) fn retrieve(
         }
     }
 
-    // Match the remaining patches by ordinary retrieval. Start from their matches in the previous iteration and from
-    // the matches of neighbouring patches.
+    // Match each remaining target patch to its nearest exemplar patch. Start from the matches of the previous
+    // iteration and of neighbouring patches.
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
     nearest.forward(&search, &mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
-    // Let patches continue their neighbours' matches where those fit better, with the cost of seams included.
+    // Settle: let target patches continue their neighbours' matches where this lowers the error, including the cost of
+    // seams.
     let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {
         search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
@@ -99,9 +100,9 @@ pub(super) fn retrieve(
     Ok(passes)
 }
 
-/// Assigns target patches to exemplar patches in order of rising error until the sum of their errors reaches the
+/// Assigns target patches to exemplar patches in order of rising error, until the sum of the errors reaches the
 /// budget. Returns the share of the exemplar patches whose error lies left of the knee of the sorted errors, and the
-/// number of assignments.
+/// number of target patches assigned.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);
