@@ -78,7 +78,7 @@ impl Evidence {
     pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
-        // Limit the weight of a segment to that of a segment a quarter as long as the photo's diagonal.
+        // Let the weight of a segment grow with its length only up to a quarter of the photo's diagonal.
         let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
         let mut used: Vec<(f64, usize, [DVec3; 3])> =
             try_collect(room.segments.iter().filter_map(|(segment, axis)| {
@@ -119,15 +119,15 @@ impl Evidence {
         self.segments.len()
     }
 
-    /// Returns the agreement of the segments with a box: at most 1 if no segment lies on a seam, otherwise at most `1
-    /// + SEAM`.
+    /// Returns the agreement of the segments with a box. It is at most 1 if no segment lies on a seam, and at most 1 +
+    /// `SEAM` otherwise.
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
         let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
     /// Returns candidate distances of one side (left, right, ceiling or floor), sorted by decreasing support. With the
-    /// side at such a distance, a segment is an edge of the back wall.
+    /// side at one of these distances, a detected segment is an edge of the back wall.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.

@@ -208,8 +208,8 @@ mod tests {
         let fov_y = 1.0f64;
         let params = Params { fov_y, threshold: 1000.0 };
         let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
-        // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is ω = 4 asin(a² / (1 +
-        // a²)), where a is half its side at distance 1.
+        // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is `ω = 4 asin(a² / (1 +
+        // a²))`, where `a` is half the lamp's side on the image plane at distance 1.
         let a = 0.1 * (fov_y / 2.0).tan();
         let omega = 4.0 * (a * a / (1.0 + a * a)).asin();
         let [source] = rating.sources[..] else { panic!("{:?}", rating.sources) };

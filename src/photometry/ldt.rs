@@ -302,7 +302,7 @@ mod tests {
         }
     }
 
-    /// The length of EULUMDAT runs along C90, that of IES along C0.
+    /// EULUMDAT states the length along C90, IES along C0.
     #[test]
     fn the_opening_keeps_its_orientation_in_both_formats() {
         use crate::photometry::ies;

@@ -22,7 +22,7 @@ pub struct Lighting {
     pub solving: Expected,
     /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,
-    /// Expected time and error of both stages together. The error is that of the resulting picture.
+    /// Expected time and error of both stages together. The error is the expected error of the resulting picture.
     pub whole: Expected,
 }
 

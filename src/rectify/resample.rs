@@ -18,8 +18,8 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of parts of a footprint. Footprints that need more parts use a coarser pyramid level. The coarsest
-/// level has no such alternative: there, the number of parts is limited to this value along x and along y.
+/// Maximum number of parts of a footprint. Footprints that need more parts use a coarser pyramid level. On the
+/// coarsest level, this is the maximum number of parts along x and the maximum number along y.
 const MAX_PARTS: usize = 16;
 
 /// Number of rows per band, the unit of work. The first row of each band is examined to find the number of pyramid
@@ -69,7 +69,7 @@ struct Map {
     /// The homography from output pixels to source pixels, column by column.
     to_source: [f64; 9],
     /// Sign of the third homogeneous coordinate of points in front of the camera. The centre of the output image is
-    /// assumed to be such a point.
+    /// assumed to be in front of the camera.
     front: f64,
     /// Size of the source (`size`), and width of the output image (`width`), in pixels.
     size: [f64; 2],

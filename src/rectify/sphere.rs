@@ -27,9 +27,9 @@ const COINCIDENT: f64 = 1e-18;
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Number of segments that count as one independent observation, because the errors of segments are correlated: those
-/// of both sides of a bar, of the pieces of one edge and of rows of equal objects. Calibrated on photos with exactly
-/// known cameras, like the next constants. [bench vp]
+/// Number of segments that count as one independent observation. The errors of segments are correlated if the segments
+/// are the two sides of a bar, pieces of one edge, or edges in a row of equal objects. Calibrated on photos with
+/// exactly known cameras, like the next constants. [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
 /// Settings of the estimate of the endpoint noise. The biweight cuts off residuals beyond its limit, so the remaining
@@ -218,8 +218,8 @@ struct Row {
     base_weight: f64,
     weight: f64,
     /// Variance of the sine if the endpoints have noise of unit variance. It is the variance of the segment's
-    /// direction plus that of the direction from the segment's midpoint to the vanishing point; the second term
-    /// matters for segments near the point.
+    /// direction plus the variance of the direction from the segment's midpoint to the vanishing point; the second
+    /// term matters for segments near the point.
     variance: f64,
     /// Variance of the line's residual if the endpoints have noise of unit variance. Residuals are scaled such that
     /// lines with a residual above 1 are rejected.
@@ -275,8 +275,8 @@ struct Covariance {
 fn endpoint_noise(rows: &[Row]) -> f64 {
     let count = rows.len() as f64;
     let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
-    // A direction has two degrees of freedom, fitted to independent observations: subtract the number of segments that
-    // correspond to two observations.
+    // The fit of a direction uses up two degrees of freedom, that is, two independent observations: subtract the
+    // number of segments to which they correspond.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
     // Correct for the residuals that the biweight's limit cuts off.

@@ -31,7 +31,7 @@ pub struct Taps {
     /// Index of the first of the four rows of taps (`line`), and of the first column of taps in each row (`column`).
     pub line: [i32; RUN],
     pub column: [[i32; RUN]; TAPS],
-    /// Offset of each row's first sample in the image data; valid if the row lies inside the image.
+    /// Index in the image data of the first sample in each row of taps; valid if the row lies inside the image.
     pub start: [[usize; RUN]; TAPS],
     /// The filter weights. Without shear the filter is separable: `down` holds the weights of the rows, and `across`
     /// holds the weights of the columns, which are equal in all rows. If `is_sheared`, `across` holds the weights of

@@ -138,7 +138,8 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
 }
 
 /// Returns how much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that
-/// they are alike. Infinite if the camera sees a shape beyond the plane's horizon or at too small an angle.
+/// they have equal size and form. Infinite if the camera sees a shape beyond the plane's horizon or at too small an
+/// angle.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
     least_cost(shapes, normal, focal, 1)
 }

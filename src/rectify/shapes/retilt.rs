@@ -47,8 +47,8 @@ impl View {
             let support = members.iter().filter(|member| **member == Some(axis)).count();
             let mut covariance = found.covariance;
             if direction.dot(normal).abs() < FRAC_1_SQRT_2 {
-                // The covariance of a direction within the plane is that of the normal plus that of the rotation about
-                // the normal, which the lines along the direction determine.
+                // Covariance of a direction within the plane: the covariance of the normal plus the covariance of the
+                // rotation about the normal. The lines along the direction determine this rotation.
                 let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
                 covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
             }

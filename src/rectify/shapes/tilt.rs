@@ -100,7 +100,7 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
     // Find the best focal length for every direction, then refine the tilts with the least cost. Refining a single
-    // tilt is not enough: if all shapes are elongated alike, the cost has several minima.
+    // tilt is not enough: if all shapes are elongated in the same direction, the cost has several minima.
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
