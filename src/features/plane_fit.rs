@@ -1,6 +1,9 @@
-//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums. The sums over the part of a
-//! column inside the window are updated from row to row; the sums over all columns of a window are differences of
-//! prefix sums. The sums are `f64`, because the differences cancel.
+//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums:
+//!
+//! 1. The sums over the part of each column inside the window are updated from row to row.
+//! 2. The sums over a whole window are differences of prefix sums over the columns.
+//!
+//! All sums are `f64`, because differences of prefix sums cancel leading digits.
 
 use crate::image::Image;
 use crate::simd::widest;

@@ -200,9 +200,9 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
 /// Marks the pixels that are visible and whose taps all lie inside the source (`is_inside`).
 #[inline(always)]
 fn mark_inside(footprints: &Footprints, source: &Image, taps: &mut Taps) {
-    // The first column grows or shrinks monotonically from row to row, so checking the first row and the last
-    // suffices. A load of three channels reads past the fourth pixel; in the last row of the image, this read must
-    // stay inside the data.
+    // From row to row, the index of the first column only grows or only shrinks, so checking the first and the last
+    // row suffices. A load of three channels reads beyond the fourth pixel; in the last row of the image, these
+    // samples must lie inside the data too.
     let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
     let beyond = if source.channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {

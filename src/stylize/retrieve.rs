@@ -1,11 +1,15 @@
 //! Reversed retrieval under an error budget (StyLit, §3.3).
 //!
-//! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
-//! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
-//! budget is spent. If two exemplar patches want the same target, the one with the smaller error takes it (the first,
-//! if equal). In the next pass, all exemplar patches are available again for the remaining targets. The passes end
-//! when enough of the target is covered or when a pass gains next to nothing; then each remaining target patch
-//! searches for its nearest exemplar patch instead.
+//! Each pass has three steps:
+//!
+//! 1. Every exemplar patch searches for its nearest target patch among the free target patches.
+//! 2. The errors of these matches determine a budget.
+//! 3. In order of rising error, the exemplar patches take their targets until the budget is spent. If two exemplar
+//!    patches want the same target, the one with the smaller error takes it (the first, if equal).
+//!
+//! In the next pass, all exemplar patches are available again for the remaining targets. The passes end when enough of
+//! the target is covered or when a pass gains next to nothing. Then each remaining target patch searches for its
+//! nearest exemplar patch instead.
 //!
 //! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
 //! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
