@@ -99,7 +99,7 @@ const TAGGED: &[&str] = &[
 ];
 
 /// Maximum number of constants in these modules that have the tag `[origin not recorded]`. It may only be lowered.
-const UNRECORDED: usize = 98;
+const UNRECORDED: usize = 93;
 
 /// Maximum number of lines of a file.
 const MAX_LINES: usize = 600;

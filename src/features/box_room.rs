@@ -119,8 +119,8 @@ impl Layout {
         (Self { sides: sides.map(|side| side / back), ..*self }, growth)
     }
 
-    /// Returns the face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the
-    /// face.
+    /// Returns the face seen along a direction in the axes of `facing_axes`, and the inverse of the ray parameter at
+    /// the face.
     pub fn hit(&self, ray: DVec3) -> (Face, f64) {
         faces(&self.sides, ray)[0]
     }

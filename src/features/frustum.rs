@@ -2,14 +2,15 @@
 //!
 //! `P(t, b, l, r, f, n)` is the standard projection matrix. Its screen depth is affine in *inverse* depth: with `d_s =
 //! 0` on the near plane and 1 on the far plane (normalised device depth `2 d_s - 1`), `1/z = 1/n + d_s (1/f - 1/n)`.
-//! Hence an inverse depth such as that of MiDaS, normalised to `[0, 1]`, equals `1 - d_s`, and points beyond the far
-//! plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
+//! Hence the inverse depth from a network such as MiDaS, normalised to `[0, 1]`, equals `1 - d_s`, and points beyond
+//! the far plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
 
 use crate::error::{Error, Result};
 use crate::geometry::Perspective;
 use glam::{Vec2, Vec3};
 
-/// A view frustum in camera space (x right, y down, z forward); the bounds are those of the near plane.
+/// A view frustum in camera space (x right, y down, z forward). `left`, `right`, `top` and `bottom` are bounds on the
+/// near plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     pub left: f32,

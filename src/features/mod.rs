@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | 0-2 | CIELAB of the photo (D65, display white = 1) | L* in `[0, 100]` for display-referred photos |
 //! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near, 1 on the far plane | `[-far/near, far / (far - near)]` |
-//! | 4-6 | position by Eq. 1, in units of the frustum; in room axes if the room is known | finite |
+//! | 4-6 | position by Eq. 1, in the unit of length of `near`; in room axes if the room is known | finite |
 //! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
 //!
 //! Axes are x right, y down, z forward: camera axes, or the room's axes if the room is known ([`RoomView`]). If the
@@ -59,8 +59,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Features {
     /// [`CHANNELS`] channels of the photo's size; finite everywhere.
     pub image: Image,
-    /// Confidence in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, 0.5 from a
-    /// network, below 1 for the built-in layout, 0.05 for the neutral prior.
+    /// Confidence in the depth of each pixel, in `[0, 1]`: 1 where the caller's depth map has a value, 0 in the holes
+    /// of this map, 0.5 for depth from a network, below 1 for the built-in layout, 0.05 for the neutral prior.
     pub depth_confidence: Image,
     pub depth_source: DepthSource,
     /// The box room from which the depth was computed, if any.

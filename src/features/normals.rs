@@ -34,7 +34,7 @@ struct Best {
     dy: [f32; TILE],
 }
 
-/// The windows at one offset from the pixels of a tile, and their plane fits.
+/// The plane fits of the windows that lie at one of the offsets [`SHIFTS`] from the pixels of a tile.
 #[derive(Clone, Copy)]
 struct Windows<'a> {
     fits: FitRow<'a>,

@@ -1,6 +1,9 @@
-//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums. The sums over the part of a
-//! column inside the window are updated from row to row; the sums over all columns of a window are differences of
-//! prefix sums. The sums are `f64`, because the differences cancel.
+//! Fits regression planes of inverse depth in windows around all pixels, by sliding sums:
+//!
+//! 1. The sums over the part of each column inside the window are updated from row to row.
+//! 2. The sums over a whole window are differences of prefix sums over the columns.
+//!
+//! All sums are `f64`, because differences of prefix sums cancel leading digits.
 
 use crate::image::Image;
 use crate::simd::widest;
@@ -11,8 +14,8 @@ use std::ops::Range;
 /// 1e-15. [rounding]
 const SINGULAR: f64 = 1e-12;
 
-/// The regression planes of a row, each relative to its own pixel: `w ≈ value + dx i + dy j`, and the mean squared
-/// residual, infinite where there is no plane.
+/// The regression planes around the pixels of a row: `w ≈ value + dx i + dy j`, where `i` and `j` are the offsets in
+/// columns and rows from the pixel. `residual` is the mean squared residual, infinite where there is no plane.
 #[derive(Clone, Copy)]
 pub struct FitRow<'a> {
     pub value: &'a [f32],

@@ -23,8 +23,8 @@ const SEAM: f64 = 2.0;
 /// share. [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
-/// this face too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes
-/// on the wrong face wins only if the lines rule out nearly all others. [origin not recorded]
+/// this face too (`ELSEWHERE`). Both exceed the differences that lines usually make between boxes: strokes win unless
+/// the lines exclude nearly all boxes that agree with them. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Number of partial sums that are computed in parallel. It is fixed, so that the order of additions does not depend
@@ -40,8 +40,8 @@ struct RoomSegment {
     weight: f64,
 }
 
-/// Sample points of segments along one axis: the absolute coordinates of their rays along this axis (`own`) and along
-/// the two other axes (`p`, `q`).
+/// Sample points of the segments that run along one room axis: the absolute coordinates of their rays along this axis
+/// (`own`) and along the two other axes (`p`, `q`).
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,
@@ -54,7 +54,7 @@ struct Points {
 /// of a quadrant depends only on these two sides of the box.
 #[derive(Default)]
 pub struct Quadrant {
-    /// Sample points of the segments along each axis.
+    /// For each room axis, the sample points of the segments that run along it.
     points: [Points; 3],
     /// For each stroke sample, the absolute coordinates of its ray, and the sample's weight in the score of the face
     /// that the ray hits.
@@ -66,7 +66,7 @@ pub struct Evidence {
     segments: Vec<RoomSegment>,
     /// The upper left, upper right, lower left and lower right quarter of the view.
     pub quadrants: [Quadrant; 4],
-    /// Whether any stroke lies on the plane.
+    /// Whether the user marked a plane, that is, whether any stroke is positive.
     pub has_plane: bool,
 }
 
@@ -78,7 +78,7 @@ impl Evidence {
     pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
-        // Limit the weight of very long segments.
+        // Let the weight of a segment grow with its length only up to a quarter of the photo's diagonal.
         let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
         let mut used: Vec<(f64, usize, [DVec3; 3])> =
             try_collect(room.segments.iter().filter_map(|(segment, axis)| {
@@ -119,14 +119,15 @@ impl Evidence {
         self.segments.len()
     }
 
-    /// Returns the agreement of the segments with a box: at most 1 if none lies on a seam, and `1 + SEAM` if all do.
+    /// Returns the agreement of the segments with a box. It is at most 1 if no segment lies on a seam, and at most 1 +
+    /// `SEAM` otherwise.
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
         let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns candidate distances of one side (left, right, ceiling, floor), at each of which a segment would be an
-    /// edge of the back wall. They are sorted by decreasing support.
+    /// Returns candidate distances of one side (left, right, ceiling or floor), sorted by decreasing support. With the
+    /// side at one of these distances, a detected segment is an edge of the back wall.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
@@ -171,9 +172,9 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// Returns for each face of the room on which the user may have painted the plane (the side wall; the ceiling or
-    /// floor; the back wall) the total weight of the stroke samples on the face. Samples of strokes elsewhere have
-    /// negative weights.
+    /// Returns the total weight of the stroke samples on each of the three faces of the quadrant: the side wall, the
+    /// ceiling or floor, and the back wall. Samples of strokes on the user's plane count positively, samples of other
+    /// strokes negatively.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
         for (size, weight) in &self.stroke_samples {
@@ -202,9 +203,9 @@ impl Points {
 }
 
 widest! {
-/// Returns the weighted agreement of sample points of segments along an axis. `inverse` holds the inverse distances of
-/// the faces perpendicular to this axis and to the two others; the ray hits the face with the largest inverse
-/// parameter.
+/// Returns the weighted agreement of the sample points of the segments that run along one axis. `inverse` holds the
+/// inverse distances of the faces perpendicular to this axis and to the two other axes. A ray hits the face for which
+/// the product of coordinate and inverse distance is largest.
 fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3]) -> f64 {
     let mut sums = [0.0; LANES];
     let others = p.chunks_exact(LANES).zip(q.chunks_exact(LANES));
@@ -212,7 +213,8 @@ fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3
         for lane in 0..LANES {
             let (own, p, q) = (own[lane] * inverse[0], p[lane] * inverse[1], q[lane] * inverse[2]);
             let (first, second) = if p > q { (p, q) } else { (q, p) };
-            // On a seam the ray meets the two nearest faces together, and the seam runs along the third axis.
+            // A ray to a seam meets two faces at nearly the same distance. The seam is parallel to the segments if
+            // these faces are perpendicular to the axes of `p` and `q`.
             let off = (first - second) / (first * SEAM_WIDTH);
             let near = 1.0 - off * off;
             let seam = if second >= own && near > 0.0 { SEAM * near } else { 0.0 };

@@ -34,11 +34,11 @@ const PEAKS: usize = 24;
 /// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
-/// Boxes are compared along a grid of rays: number of rays along each side of the photo.
+/// Number of rays along each side of the photo in the grid of rays along which boxes are compared.
 const RAYS: usize = 9;
 /// `STARTS`: maximum number of boxes that are refined. `REFINEMENTS`: ratio of neighbouring values of a side in each
-/// of the two refinements. `VALUES_EITHER_SIDE`: number of values tried on either side of the current value. [origin
-/// not recorded]
+/// of the two refinements. `VALUES_EITHER_SIDE`: number of values tried on either side of the current value.
+/// [origin not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;

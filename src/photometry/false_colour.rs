@@ -154,7 +154,7 @@ impl Range {
     fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.minimum) / (self.maximum - self.minimum),
-            // Values up to 0 have no logarithm: show them with the darkest colour.
+            // Values of at most 0 have no logarithm: show them with the darkest colour.
             Scale::Logarithmic if value <= 0.0 => 0.0,
             Scale::Logarithmic => (value / self.minimum).ln() / (self.maximum / self.minimum).ln(),
         };
@@ -259,8 +259,8 @@ fn text(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// In CIELAB, which was not used to design the scale, lightness also increases nearly uniformly and no two
-    /// neighbours are equal.
+    /// Lightness also increases nearly uniformly in CIELAB, which was not used to design the scale, and no two
+    /// neighbouring colours are equal.
     #[test]
     fn colours_are_in_perceptual_order() {
         let lightness: Vec<f32> = (0..=32).map(|i| colour::linear_to_lab(colour_of(f64::from(i) / 32.0)).x).collect();

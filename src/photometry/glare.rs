@@ -82,7 +82,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     Ok(Rating { ugr, background, threshold, sources })
 }
 
-/// Returns five times the mean luminance of the image over its solid angle.
+/// Returns five times the mean luminance of the image, weighted by the solid angles of its pixels.
 fn default_threshold(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
     let (light, angle) = (0..pixels).fold((0.0, 0.0), |(light, angle), i| {
         let (_, omega) = view.pixel(i);
@@ -185,7 +185,7 @@ pub fn position_index(direction: DVec3) -> f64 {
         let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
         (first + second).exp()
     } else {
-        // Iwata and Tokura 1997: a function of the distance from the line of sight over the distance ahead.
+        // Iwata and Tokura 1997: a function of the ratio of the distance from the line of sight to the distance ahead.
         let ratio = side.hypot(up) / ahead.max(1e-9);
         let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
         (1.0 + factor * ratio).min(16.0)
@@ -208,8 +208,8 @@ mod tests {
         let fov_y = 1.0f64;
         let params = Params { fov_y, threshold: 1000.0 };
         let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
-        // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is ω = 4 asin(a² / (1 +
-        // a²)), where a is half its side at distance 1.
+        // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is `ω = 4 asin(a² / (1 +
+        // a²))`, where `a` is half the lamp's side on the image plane at distance 1.
         let a = 0.1 * (fov_y / 2.0).tan();
         let omega = 4.0 * (a * a / (1.0 + a * a)).asin();
         let [source] = rating.sources[..] else { panic!("{:?}", rating.sources) };

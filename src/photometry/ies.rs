@@ -235,7 +235,7 @@ mod tests {
             let again = read(write(&l).unwrap().as_bytes()).unwrap();
             assert_eq!(again, l);
         }
-        // A file with tilt data, which are skipped, and with other line breaks.
+        // The tilt data of a file are skipped, and lines may be broken at other places.
         let tilted = QUARTER
             .replace("TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 0.5")
             .replace("0 45 90\n0 45 90", "0\n45 90 0\n45 90");

@@ -70,7 +70,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
 
-    // Read the sizes in millimetres of the housing, which are not used, and of the luminous area.
+    // Read the sizes in millimetres: first those of the housing, which are not used, then those of the luminous area.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
     let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
@@ -132,7 +132,8 @@ fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) ->
     Ok(first)
 }
 
-/// Returns the angles and the intensities of all planes of the circle. By symmetry, each plane equals a stored plane.
+/// Returns the angles and the intensities of all C planes of the full circle, each a copy of the stored plane that
+/// equals it by symmetry.
 fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let single = symmetry == 1;
     let planes = angles.len();
@@ -301,7 +302,7 @@ mod tests {
         }
     }
 
-    /// The length of EULUMDAT runs along C90, that of IES along C0.
+    /// EULUMDAT states the length along C90, IES along C0.
     #[test]
     fn the_opening_keeps_its_orientation_in_both_formats() {
         use crate::photometry::ies;

@@ -73,8 +73,8 @@ impl Opening {
         (sides.iter().all(|s| s.is_finite()) && sides.iter().any(|s| *s > 0.0)).then_some(opening)
     }
 
-    /// Returns the faces that a distant observer in a unit direction sees. Together their projections cover the
-    /// projection of the opening exactly once.
+    /// Returns the flat faces that a distant observer in a unit direction sees. Their projections cover the projection
+    /// of the opening without gaps or overlap.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
             Self::Box(size) => (0..3)
@@ -124,15 +124,14 @@ fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec
     let (u, v) = (direction.dot(first), direction.dot(second));
     let across = u.hypot(v);
     if length > 0.0 && across > 0.0 {
-        // Compute the width of the elliptic cross section perpendicular to `direction`, and its point nearest to the
-        // observer.
+        // Compute the width of the elliptic cross section as seen along `direction`, and the point of the ellipse
+        // nearest to the observer.
         let (u, v) = (u / across, v / across);
         let width = (a * v).hypot(b * u);
         let reach = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
         let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * reach);
         let tangent = second * u - first * v;
-        // The rectangle has this width and contains the axis; move it along `direction` to the near side of the
-        // cylinder.
+        // Place a rectangle of this width, parallel to the axis, on the near side of the cylinder.
         let centre = (first * u + second * v) * nearest.dot(first * u + second * v);
         faces.push(Face { centre, sides: [tangent * width, along * length], is_round: false });
     }

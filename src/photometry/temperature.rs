@@ -12,8 +12,8 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
-/// Number of steps of the initial scan, equal in mired. Within any two neighbouring steps the distance to the locus
-/// has a single minimum.
+/// Number of steps of the initial scan, all of the same size in mired. Within any two neighbouring steps, the distance
+/// to the locus has a single minimum.
 const SCAN: usize = 96;
 /// Number of golden-section steps, after which the interval has shrunk to rounding error.
 const SECTIONS: usize = 60;

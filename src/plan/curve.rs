@@ -18,8 +18,9 @@ pub(super) struct Curve {
 /// the maximum for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth
 /// functions"). [paper: Owen 1997]
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation: in the long run, edges dominate the error, and there scrambled nets gain
-/// less. [origin not recorded]
+/// Maximum exponent of the extrapolation. In the long run, edges dominate the error. For an edge across one sampling
+/// dimension, only the stratum that contains the edge contributes to the error, so the squared error falls as the
+/// square of the number of samples. [convention: exponent of a stratified step function]
 const MAX_EXTRAPOLATED: f64 = 2.0;
 
 /// Factor by which an allocation step lengthens the time of a stage. [convention]

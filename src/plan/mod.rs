@@ -10,9 +10,9 @@
 //! stylisation is tried with settings from quick to careful at reduced resolution (`stylisation`).
 //!
 //! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
-//! [`crate::render::Film::error`]. An error of the emission's solution scales all light of the picture by a common
-//! factor; its contribution is its relative standard error times the picture's contrast, which is the root mean square
-//! divided by the mean. The error of a stylisation is the square root of its energy (StyLit, Eq. 3).
+//! [`crate::render::Film::error`]. An error of the emission's strength scales the emission's light in the picture by a
+//! common factor. Its contribution is the relative standard error of the strength times the picture's contrast (root
+//! mean square divided by mean). The error of a stylisation is the square root of its energy (StyLit, Eq. 3).
 //!
 //! Assumption: the machine later performs as it does now, with the same number of threads, and is otherwise idle while
 //! the plan is made.

@@ -63,10 +63,11 @@ impl Picture {
         self.pixels * paths * self.pilot.seconds_per_path.max(1e-12)
     }
 
-    /// Returns the expected error with uniform sampling. The curve is valid if the paths of each replication (point
-    /// sequence) of a pixel form one whole net, that is, if their number is a power of two. Other numbers of paths
-    /// combine several nets, whose errors are treated as independent. More paths may therefore even increase the
-    /// error: a few paths beyond a whole net contribute little but their own error.
+    /// Returns the expected error after `paths` paths per pixel with uniform sampling.
+    ///
+    /// The paths of each replication (point sequence of a pixel) form nets whose sizes are powers of two. The curve
+    /// holds for a single net. Other numbers of paths combine several nets, whose errors are treated as independent,
+    /// so a few paths beyond a whole net may even increase the error.
     fn error(&self, paths: u32) -> f64 {
         let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
         let square = |points: f64| replications * curve.square(self.seconds(replications * points));

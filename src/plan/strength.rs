@@ -33,9 +33,9 @@ pub(super) struct Strength {
 }
 
 impl Strength {
-    /// Runs the trials for an emitting material and the triangles of the target. After the first trial, the target
-    /// radiance is that which the emission and all other light currently produce; without other light, any target
-    /// gives the same relative error.
+    /// Runs the trials for an emitting material and the triangles of the target. All trials but the first solve for
+    /// the radiance that the target currently has. If the emission is the only light, the relative error does not
+    /// depend on the radiance solved for.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,
@@ -77,8 +77,8 @@ impl Strength {
         )
     }
 
-    /// Returns how much a solution contributes to the error of a picture, given the relative half-width of the
-    /// solution's confidence interval.
+    /// Returns how much a solution contributes to the error of a picture of the given contrast, from the relative
+    /// half-width of the solution's confidence interval.
     pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }

@@ -12,7 +12,7 @@ use crate::render::{self, World};
 use crate::transfer::{LitScene, Stage, Transfer};
 use std::sync::Arc;
 
-/// The planned last two stages of a transfer.
+/// Settings and expectations of the last two stages of a transfer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     pub relight: relight::Params,
@@ -22,7 +22,7 @@ pub struct Lighting {
     pub solving: Expected,
     /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,
-    /// Expected time and error of both stages together. The error is that of the resulting picture.
+    /// Expected time and error of both stages together. The error is the expected error of the resulting picture.
     pub whole: Expected,
 }
 

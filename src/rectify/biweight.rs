@@ -1,11 +1,11 @@
 //! Expected values of Tukey's biweight for normally distributed residuals, from which the covariance of a vanishing
-//! point is computed. Residuals are divided by the limit of the biweight, beyond which it gives no weight; the means
-//! are over the residuals below 1.
+//! point is computed. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0, so the means
+//! are over residuals below 1.
 
 use std::sync::LazyLock;
 
-/// Means over those residuals `r` of a normal distribution of known variance for which `|r| < 1`. All three means tend
-/// to 1 as the variance tends to 0, and fall as it grows.
+/// Means over normally distributed residuals `r` of known variance, where only residuals with `|r| < 1` count. All
+/// three means tend to 1 as the variance tends to 0, and fall as it grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
     /// Mean of `r²`, divided by the variance.
@@ -16,7 +16,8 @@ pub struct Biweight {
     pub influence: f64,
 }
 
-/// Number of intervals of the lookup table, which are uniform in `d / (1 + d)` for a standard deviation `d`.
+/// Number of intervals of the lookup table. Its entries are spaced uniformly in `d / (1 + d)`, where `d` is the
+/// standard deviation of the residuals.
 const INTERVALS: usize = 64;
 
 /// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated. `STEPS`: number of integration

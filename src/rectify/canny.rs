@@ -6,7 +6,8 @@ use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
 /// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: every pixel of an edge must reach
-/// `WEAK`, and at least one pixel of each edge must reach `STRONG`. [origin not recorded]
+/// `WEAK`, and at least one pixel of each edge must reach `STRONG`. Their ratio is between two and three, as Canny
+/// recommends. [origin not recorded]
 const WEAK: f32 = 0.015;
 const STRONG: f32 = 0.04;
 

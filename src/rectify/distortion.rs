@@ -15,8 +15,8 @@ use glam::DVec2;
 /// Radial distortion of a lens, expressed as displacement in the corners of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// Outward displacement of a corner of the image as a share of its distance from the centre, which is k of the
-    /// model; negative for barrel distortion.
+    /// The coefficient k of the model: the outward displacement of a corner of the image, as a share of the corner's
+    /// distance from the centre. It is negative for barrel distortion.
     pub corner: f64,
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
@@ -34,8 +34,8 @@ const SEARCH_WIDTH: i32 = 4;
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of lines; with fewer lines there is no estimate.
 const MIN_LINES: usize = 12;
-/// The part of an edge's position error, in pixels, that its residuals do not show; its square is added to their
-/// variance. [origin not recorded]
+/// Error of an edge's position, in pixels, that the residuals of the fitted parabola do not show. Its square is added
+/// to the variance of the residuals. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
 /// A segment is ignored if the root mean square residual of its edge about the fitted parabola is above this, in
 /// pixels. [origin not recorded]
@@ -43,11 +43,11 @@ const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
 /// Assumed number of detected segments per physical line, for example both sides of a frame or the pieces of one line.
-/// The errors of such segments are not independent. [origin not recorded]
+/// Segments of one line have dependent errors. [origin not recorded]
 const SEGMENTS_PER_LINE: f64 = 2.0;
-/// Error caused by the deviation of real lenses from the model. It is the root mean square of the estimates over views
-/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching.
-/// [bench: `tests/real_rectify.rs`]
+/// Standard deviation of `Distortion::corner` caused by the deviation of real lenses from the model. It is the root
+/// mean square of the estimates over views cut out of panoramas: such views have no lens distortion apart from errors
+/// of stitching. Only views whose lines agree count. [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -62,7 +62,7 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
 /// The estimate of k from one line, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
-    /// Estimate of k that neglects the term `3 k d² / R²` of the curvature.
+    /// Estimate of k without the correction for the term `3 k d² / R²` of the curvature.
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
@@ -71,8 +71,8 @@ struct LineEstimate {
 }
 
 impl LineEstimate {
-    /// Returns the estimate of k in which the term `3 k d² / R²` of the curvature is evaluated at `nearly`, an
-    /// approximate value of k.
+    /// Returns the line's estimate of k, corrected for the term `3 k d² / R²` of the curvature. In this term, k is
+    /// replaced by its approximate value `nearly`.
     fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
@@ -178,8 +178,8 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
-/// One step of the M-estimate: the mean over the lines within the biweight limit around `corner`, with a standard
-/// deviation derived from their scatter.
+/// Returns the result of one step of the M-estimate: the mean over the lines within the biweight's limit around
+/// `corner`, with a standard deviation derived from their scatter.
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);

@@ -25,7 +25,7 @@ impl Expected {
         }
     }
 
-    /// Returns the prior with a focal length that is longer by the given number of standard deviations.
+    /// Returns the prior with the logarithm of its focal length increased by the given number of standard deviations.
     pub fn moved(self, deviations: f64) -> Self {
         Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
     }

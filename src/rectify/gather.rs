@@ -7,7 +7,7 @@ use crate::image::Image;
 use crate::simd::Level;
 use glam::Vec4;
 
-/// The sum for each pixel of a run: up to three channels; the remaining lanes are undefined.
+/// The sum of the weighted taps of each pixel of a run, with up to three channels. The remaining lanes are undefined.
 pub type Sums = [Vec4; RUN];
 
 /// Adds the weighted taps of each pixel to the sums. If the image has one or three channels, sums all channels;

@@ -19,8 +19,8 @@ const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Penalty of a focal length that deviates by one standard deviation from the prior, as a share of the total weight of
-/// lines. A triplet with this focal length is preferred only if it explains that much more weight.
+/// Penalty of a triplet whose focal length deviates from the prior by one standard deviation, as a share of the total
+/// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length.
 /// [origin not recorded]
 const FOCAL_COST: f64 = 0.004;
 

@@ -10,19 +10,25 @@
 //! ```
 //!
 //! [`Params::printed`] selects the paper's method as printed: gradient-restricted Hough lines and successive RANSAC
-//! groups. The default differs from it where measurements favoured another choice. The default uses segments with end
-//! points instead of infinite lines. It searches for three orthogonal directions jointly with the unknown focal
-//! length, then refines each direction on the sphere with its own lines. The paper maps a rectangle of any aspect
-//! ratio onto the quadrilateral; here the focal length gives the plane its true aspect ratio.
+//! groups. The default differs where measurements favoured another choice:
 //!
-//! Known weaknesses. The reported standard deviations assume five segments per independent observation and an error
-//! floor of 0.2°, both calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the
-//! reported error, as expected, but one in fourteen exceeds twice the reported error. Lines found on a floor by chance
-//! can displace a direction that few lines support; the reported error of the direction does not show this. Short
-//! segments share a bias of about 0.01 rad on re-projected photos; its cause is unknown. Where lines are few and noisy
-//! for their length, the reported errors of directions are up to an eighth too small: the mean square of the ratio of
-//! true to reported error is 1.3 with 14 lines per axis and a pixel of noise, and 1.0 to 1.15 with more lines or less
-//! noise.
+//! - It uses segments with end points instead of infinite lines.
+//! - It searches for three orthogonal directions jointly with the unknown focal length, then refines each direction on
+//!   the sphere with its own lines.
+//! - It uses the focal length to give the unwarped plane its true aspect ratio, whereas the paper maps a rectangle of
+//!   any aspect ratio onto the quadrilateral.
+//!
+//! Known weaknesses:
+//!
+//! - The reported standard deviations assume five segments per independent observation and an error floor of 0.2°,
+//!   both calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the reported
+//!   error, as expected, but one in fourteen exceeds twice the reported error.
+//! - Lines found on a floor by chance can displace a direction that few lines support; the reported error of the
+//!   direction does not show this.
+//! - Short segments share a bias of about 0.01 rad on re-projected photos; its cause is unknown.
+//! - Where lines are few and noisy for their length, the reported errors of directions are up to an eighth too small:
+//!   the mean square of the ratio of true to reported error is 1.3 with 14 lines per axis and a pixel of noise, and
+//!   1.0 to 1.15 with more lines or less noise.
 //!
 //! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
 //! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and

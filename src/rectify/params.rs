@@ -70,7 +70,7 @@ impl Default for Params {
 }
 
 impl Params {
-    /// The paper's method as printed.
+    /// Returns the settings of the paper's method as printed ("Lighting Style Transfer", §5).
     pub fn printed() -> Self {
         Self {
             detector: LineDetector::Hough,

@@ -85,8 +85,8 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
     Ok(plane)
 }
 
-/// Returns the plane of two axes on the side of the camera where most of the pixels lie. Its coordinates are rotated
-/// and flipped so that they run right and down in the photo.
+/// Returns the plane parallel to two axes, on the side of the camera where most of the pixels lie. The plane's
+/// coordinates are ordered and flipped so that they run right and down in the photo.
 fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Plane {
     let normal = perspective.axes.col(3 - i - j);
     let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
@@ -133,7 +133,8 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let share_ahead = ahead / pixels.len() as f64;
         let one_sided = (2.0 * share_ahead - 1.0).abs();
         let lines = 1.0 - share[third] + share[i].min(share[j]);
-        // The vertical axis points down, and every ray from the camera to the ceiling points up.
+        // Favour a ceiling. The vertical axis points down, so the mask is on a ceiling if nearly all its rays point
+        // against this axis.
         let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };

@@ -18,8 +18,8 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of parts of a footprint; footprints that need more parts use a coarser pyramid level. On the
-/// coarsest level, this is the maximum number of parts along each side.
+/// Maximum number of parts of a footprint. Footprints that need more parts use a coarser pyramid level. On the
+/// coarsest level, this is the maximum number of parts along x and the maximum number along y.
 const MAX_PARTS: usize = 16;
 
 /// Number of rows per band, the unit of work. The first row of each band is examined to find the number of pyramid
@@ -66,10 +66,10 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
 
 /// The map from output pixels to the source image.
 struct Map {
-    /// The homography from pixels to the source, column by column.
+    /// The homography from output pixels to source pixels, column by column.
     to_source: [f64; 9],
-    /// The sign of the third coordinate in front of the camera: the sign at the image centre, which is assumed to be
-    /// visible.
+    /// Sign of the third homogeneous coordinate of points in front of the camera. The centre of the output image is
+    /// assumed to be in front of the camera.
     front: f64,
     /// Size of the source (`size`), and width of the output image (`width`), in pixels.
     size: [f64; 2],
@@ -90,7 +90,7 @@ widest! {
 }
 
 widest! {
-    /// Fills whole rows from `first_row` on.
+    /// Computes the output rows from `first_row` on.
     fn fill(instructions: Level, levels: &[&Image], map: &Map, first_row: usize, rows: &mut [f32]) {
         let channels = levels[0].channels;
         let (mut footprints, mut taps, mut sums) = (Footprints::EMPTY, Taps::EMPTY, [Vec4::ZERO; RUN]);
@@ -124,8 +124,8 @@ struct Sampling {
     parts: [usize; 2],
 }
 
-/// Chooses the finest pyramid level on which the taps cover the shortest side and at most [`MAX_PARTS`] parts cover
-/// every footprint. `None` if no pixel is visible.
+/// Chooses the finest pyramid level on which the shortest side of the footprints fits into the taps, and no footprint
+/// needs more than [`MAX_PARTS`] parts. `None` if no pixel is visible.
 #[inline(always)]
 fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;

@@ -27,17 +27,20 @@ const COINCIDENT: f64 = 1e-18;
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Number of segments that count as one independent observation, because the errors of segments are correlated: those
-/// of both sides of a bar, of the pieces of one edge and of rows of equal objects. Calibrated on photos with exactly
-/// known cameras, like the next constants. [bench vp]
+/// Number of segments that count as one independent observation. The errors of segments are correlated if the segments
+/// are the two sides of a bar, pieces of one edge, or edges in a row of equal objects. Calibrated on photos with
+/// exactly known cameras, like the next constants. [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
-/// Settings of the estimate of the endpoint noise. Residuals beyond the biweight's limit are cut off, so the other
-/// residuals show only a share of the noise variance. This share depends on the noise: `NOISE_ROUNDS` rounds estimate
-/// the share and the noise in turn. `MIN_SHOWN` is the minimum of the share, and `MIN_SLOPE` the minimum of the
-/// biweight's expected slope. Below these minima, the noise exceeds the limit and cannot be estimated. `MIN_SLOPE` is
-/// the smallest value that loses no vanishing point of the development sets, in which short lines are more precise
-/// than their residuals suggest. [bench vp]
+/// Settings of the estimate of the endpoint noise. The biweight cuts off residuals beyond its limit, so the remaining
+/// residuals show only a share of the noise variance, and this share depends on the noise itself. [bench vp]
+///
+/// - `NOISE_ROUNDS`: number of rounds, each of which estimates first the share and then the noise.
+/// - `MIN_SHOWN`: minimum of the share.
+/// - `MIN_SLOPE`: minimum of the biweight's expected slope. It is the smallest value that loses no vanishing point of
+///   the development sets, in which short lines are more precise than their residuals suggest.
+///
+/// Below these minima, the noise exceeds the limit and cannot be estimated.
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
@@ -214,11 +217,12 @@ struct Row {
     /// Weight of the line at zero residual (`base_weight`), and after multiplication by the biweight (`weight`).
     base_weight: f64,
     weight: f64,
-    /// Variance of the sine under unit endpoint noise: the variance of the segment's direction, plus the variance of
-    /// the direction from the segment's midpoint to the vanishing point, which matters for segments near the point.
+    /// Variance of the sine if the endpoints have noise of unit variance. It is the variance of the segment's
+    /// direction plus the variance of the direction from the segment's midpoint to the vanishing point; the second
+    /// term matters for segments near the point.
     variance: f64,
-    /// Variance, under unit endpoint noise, of the line's residual. The residual is scaled so that lines whose
-    /// residual is above 1 are rejected.
+    /// Variance of the line's residual if the endpoints have noise of unit variance. Residuals are scaled such that
+    /// lines with a residual above 1 are rejected.
     residual_variance: f64,
     sine: f64,
 }
@@ -232,8 +236,8 @@ fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     }
     let (l, half) = (weighted.line.line, weighted.line.half);
     let nearness = (half * p.z / distance).powi(2);
-    // If endpoint noise were the only error, the stiffness would be the right weight. The additional factor, the root
-    // of the length, favours long segments, because they are rarely false detections.
+    // Weight the line by its stiffness, which would be right if endpoint noise were the only error. The additional
+    // factor, the root of the length, favours long segments, because they are rarely false detections.
     let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {
@@ -263,7 +267,7 @@ fn smallest_eigenvector(
 struct Covariance {
     /// Covariance of the direction, including correlation between lines and the common error [`STRAIGHTNESS`].
     of_direction: DMat3,
-    /// Trace of the inverse normal matrix in the tangent plane.
+    /// Trace of the inverse of the lines' normal matrix in the tangent plane.
     inverse_trace: f64,
 }
 
@@ -271,8 +275,8 @@ struct Covariance {
 fn endpoint_noise(rows: &[Row]) -> f64 {
     let count = rows.len() as f64;
     let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
-    // A direction has two degrees of freedom, fitted to independent observations: subtract the number of segments that
-    // correspond to two observations.
+    // The fit of a direction uses up two degrees of freedom, that is, two independent observations: subtract the
+    // number of segments to which they correspond.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
     // Correct for the residuals that the biweight's limit cuts off.
@@ -285,11 +289,13 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
     noise
 }
 
-/// Computes the covariance by the sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust
-/// Statistics", 1981, §6.3), with `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g`
-/// its gradient. ψ′ and ψ² are replaced by their expectations under independent endpoint noise of the estimated size:
-/// the sample values of few lines vary too much, and the lines of largest weight have the smallest residuals because
-/// of their weight.
+/// Computes the covariance by the sandwich formula `A⁻¹ B A⁻¹` of an M-estimator (Huber, "Robust Statistics", 1981,
+/// §6.3), in the tangent plane: `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g`
+/// its gradient.
+///
+/// ψ′ and ψ² are replaced by their expectations under independent endpoint noise of the estimated size. Their sample
+/// values would vary too much if there are few lines, and lines of large weight have small residuals merely because
+/// they pull the estimate towards them.
 fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Covariance> {
     let (e1, e2) = direction.any_orthonormal_pair();
     let rows: Vec<Row> = lines.iter().filter_map(|e| row(e, direction, focal)).collect();

@@ -31,7 +31,7 @@ pub struct Taps {
     /// Index of the first of the four rows of taps (`line`), and of the first column of taps in each row (`column`).
     pub line: [i32; RUN],
     pub column: [[i32; RUN]; TAPS],
-    /// Offset of each row's first sample in the image data; valid if the row lies inside the image.
+    /// Index in the image data of the first sample in each row of taps; valid if the row lies inside the image.
     pub start: [[usize; RUN]; TAPS],
     /// The filter weights. Without shear the filter is separable: `down` holds the weights of the rows, and `across`
     /// holds the weights of the columns, which are equal in all rows. If `is_sheared`, `across` holds the weights of
@@ -79,12 +79,12 @@ fn sharpening(t: f32) -> [f32; TAPS] {
     [first, last - 2.0 * first, first - 2.0 * last, last]
 }
 
-/// The filter that a run of pixels uses.
+/// The filter of a run of pixels: bicubic interpolation, the mean over the footprint, or a blend of both.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
-    /// Cubic weights alone: no footprint of the run is larger than one source pixel.
+    /// Bicubic interpolation (Catmull-Rom), if no footprint of the run is larger than one source pixel.
     Cubic,
-    /// Overlap weights plus the faded sharpening terms of the cubic.
+    /// The mean over the footprint plus the sharpening terms of the cubic, which fade out as the footprint grows.
     Fading,
     Overlap,
 }
@@ -200,9 +200,9 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
 /// Marks the pixels that are visible and whose taps all lie inside the source (`is_inside`).
 #[inline(always)]
 fn mark_inside(footprints: &Footprints, source: &Image, taps: &mut Taps) {
-    // The first column grows or shrinks monotonically from row to row, so checking the first row and the last
-    // suffices. A load of three channels reads past the fourth pixel; in the last row of the image, this read must
-    // stay inside the data.
+    // From row to row, the index of the first column only grows or only shrinks, so checking the first and the last
+    // row suffices. A load of three channels reads beyond the fourth pixel; in the last row of the image, these
+    // samples must lie inside the data too.
     let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
     let beyond = if source.channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {

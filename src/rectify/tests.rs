@@ -326,7 +326,7 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
         }
     }
     assert!(agree.1 > 10_000.0 && agree.0 > 0.95 * agree.1, "{agree:?}");
-    // The homography computed from the corners, as in the paper, is the same map.
+    // The paper computes the homography from the four corners, which yields the same map.
     let rectangle = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
     let paper = Homography::from_corners(rectangle, flat.corners).unwrap();
     let p = DVec2::new(0.3 * w, 0.7 * h);

@@ -33,8 +33,8 @@ pub struct VanishingPoint {
     pub support: usize,
     /// Standard deviation of the point's direction in camera space, in radians.
     pub error: f64,
-    /// Covariance of the point's direction in camera space, in radians squared; its trace is the square of `error`. If
-    /// the lines meet far away, the direction is known better across the lines than along them.
+    /// Covariance of the point's direction in camera space, in radians squared; its trace is the square of `error`.
+    /// For a point far outside the image, the uncertainty along the lines is larger than the uncertainty across them.
     pub covariance: DMat3,
 }
 
@@ -49,9 +49,10 @@ pub struct Vanishing {
     /// For each point, the direction in camera space estimated from its own lines, without priors on right angles, for
     /// a camera with the focal length `focal`.
     pub(super) free: Vec<Refined>,
-    /// Focal length, in pixels, with which the directions were estimated: the given one, if any. Otherwise the
-    /// Manhattan search chooses the focal length for which the points are most nearly orthogonal (a weak guess if only
-    /// one point is finite), and the successive search uses the usual focal length.
+    /// Focal length, in pixels, with which the directions were estimated: the given one, if any.
+    ///
+    /// Otherwise, the Manhattan search takes the focal length for which the points are most nearly orthogonal, a weak
+    /// guess if only one point is finite. The successive search takes the usual focal length.
     pub focal: f64,
 }
 

@@ -25,8 +25,8 @@ const SIGNIFICANT: f64 = 3.0;
 
 /// Above this magnification of the photo, the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
-/// A plane raises a warning if more than this share of it is magnified by more than `SHARP_MAGNIFICATION`. [judged on
-/// 38 photos]
+/// A plane raises a warning if more than this share of it is magnified by more than `SHARP_MAGNIFICATION`.
+/// [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
 /// A plane raises a warning if the sine of the angle between the plane and the viewing ray, as a median over the
 /// plane, is below this. [judged on 38 photos]

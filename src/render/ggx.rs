@@ -85,7 +85,7 @@ pub struct AlbedoTable {
     averages: Vec<Vec2>,
 }
 
-/// Number of table entries along each axis. [origin not recorded]
+/// Number of table entries along each axis. [convention: Cycles has tables of the same size for the albedo of GGX]
 const SIDE: usize = 32;
 
 impl AlbedoTable {

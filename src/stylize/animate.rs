@@ -19,9 +19,10 @@ use crate::rng::Rng;
 /// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
-/// Advects the field (the matches) of the previous frame into this frame: `motion` gives the position of a patch's
-/// centre in the previous frame, and the patch takes the match found there. `motion` has the resolution of the guides;
-/// this function halves `motion` if the problem has half that resolution (`halved` is not 0).
+/// Advects the field (the matches) of the previous frame into this frame: `motion` gives the displacement of a patch's
+/// centre to its position in the previous frame, and the patch takes the match found there. `motion` has the
+/// resolution of the guides; this function halves `motion` if the problem has half that resolution (`halved` is not
+/// 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
@@ -46,9 +47,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     Ok(field)
 }
 
-/// Computes the distances of the advected matches, and selects the patches that keep their match. A patch keeps its
-/// match if the error is within the budget (left of the knee of the sorted errors), unless the patch lies in a block
-/// that is chosen for new matches.
+/// Computes the distances of the advected matches, and returns which target patches keep their match: the patches
+/// whose error lies left of the knee of the sorted errors, except in blocks that are chosen for new matches.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;

@@ -110,8 +110,8 @@ pub fn budget(errors: &[u32]) -> Budget {
             ((i as f64 + 0.5) / n as f64, f64::from(errors[i]) / f64::from(worst))
         })
         .collect();
-    // At its knee, a hyperbola through (1, 1) lies (1 - √(1/b))² below the diagonal. So a curve that never runs below
-    // the diagonal has no knee.
+    // A curve that never runs below the diagonal has no knee: the knee of a hyperbola through (1, 1) lies below the
+    // diagonal, by the square of `1 - √(1/b)`.
     let knee = farthest_below_diagonal(&points).map(|farthest| {
         let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= MIN_EXPLAINED);
         hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)

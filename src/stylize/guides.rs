@@ -121,7 +121,7 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
     }
 }
 
-/// Replaces non-finite samples by 0. Returns for each pixel whether it had such a sample.
+/// Replaces non-finite samples by 0. Returns for each pixel whether it had a non-finite sample.
 fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     let (channels, row_len) = (image.channels, image.row_len());
     let mut broken = try_vec(image.width * image.height, false)?;

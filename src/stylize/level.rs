@@ -192,7 +192,7 @@ pub(super) struct Level<'a> {
     pub allowed: Domain,
     pub wanted: Domain,
     colours: Vec<Quantiser>,
-    /// Squared difference of the quantised values of two samples that differ by 1, at weight 1.
+    /// Squared difference, in quantised units, of two samples that differ by 1 and have weight 1.
     unit: f64,
     pub kernel: Kernel,
     pub seed: u64,
@@ -258,8 +258,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns the integer distance of two patches whose weighted squared difference (StyLit, Eq. 1, channels in
-    /// `[0, 1]`) is 1 in every pixel.
+    /// Returns the distance, in quantised units, of two patches for which the weighted squared difference of StyLit's
+    /// Eq. 1, with channels in `[0, 1]`, is 1 in every pixel.
     pub fn unit(&self) -> f64 {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }

@@ -74,7 +74,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
-        // Release the coarser levels, which are done.
+        // Take the problem of this level out of the list, so that its memory is released after this level.
         let popped = if l > 0 { coarser.pop() } else { None };
         let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);

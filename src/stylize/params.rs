@@ -82,9 +82,9 @@ pub struct Params {
     pub coarse_iterations: usize,
     /// EM iterations on the finest level, in `[1, 100]`.
     pub finest_iterations: usize,
-    /// Further EM iterations on the finest level, in `[0, 100]`. In `Mode::Budget` they start from the result under
-    /// the budget, and each patch takes its nearest match (Wexler et al. 2007); the paper has 0. In other modes they
-    /// are further iterations of the mode itself.
+    /// Further EM iterations on the finest level, in `[0, 100]`; the paper has none. In `Mode::Budget`, they start
+    /// from the result under the budget and let each target patch take its nearest exemplar patch (Wexler et al.
+    /// 2007). In the other iterative modes, they only add to `finest_iterations`.
     pub polish: usize,
     /// PatchMatch sweeps per retrieval, in `[1, 100]`.
     pub sweeps: usize,
@@ -96,8 +96,8 @@ pub struct Params {
     /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
     /// continued match is closer than the patch's own match. With 0, the paper's assignment is unchanged.
     pub settle: usize,
-    /// Cost of a seam, that is, of two neighbouring patches whose matches do not continue each other, during the
-    /// sweeps of `settle`; as a share of the mean error, in `[0, 100]`.
+    /// Cost of a seam in the sweeps of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between two
+    /// neighbouring target patches whose matches are not neighbours in the exemplar.
     pub seam: f32,
     pub vote: Vote,
     /// The vote that forms the final picture from the final field.
@@ -150,7 +150,8 @@ impl Default for Params {
 }
 
 impl Params {
-    /// The paper's settings: the assignment under the budget unchanged, plain averages, six iterations and sweeps.
+    /// The paper's settings: six iterations and sweeps, plain averages, and no propagation after the assignment under
+    /// the budget (`settle` = 0).
     pub fn paper() -> Self {
         Self {
             coarse_guides: 1.0,

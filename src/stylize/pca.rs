@@ -68,7 +68,8 @@ fn covariance(guides: &Channels, roots: &[f64]) -> Vec<f64> {
     covariance
 }
 
-/// Projects an image onto the first `count` components; `vectors` are rows of length `roots.len()`.
+/// Projects the weighted channels of an image onto the first `count` components. `vectors` holds the components as
+/// rows; `roots` holds the square roots of the channels' weights.
 fn project(image: &Image, vectors: &[f64], roots: &[f64], count: usize, job: Job) -> Result<Image> {
     let n = roots.len();
     let mut out = Image::new(image.width, image.height, count)?;

@@ -41,7 +41,7 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The matches and the images from which a picture encoded for display was painted.
+/// The sources of a picture: the matches, and the images from which the matched patches were painted.
 pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,

@@ -9,9 +9,8 @@ use crate::image::Image;
 use crate::job::Job;
 use std::time::Duration;
 
-/// Maximum number of pixels in a pilot run, counted in the exemplar or the target, whichever is smaller. The smaller
-/// image counts because a small exemplar has few patches: its energies at low resolutions would predict the energies
-/// at higher resolutions poorly.
+/// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. A small exemplar would have
+/// too few patches at a low resolution: the energies there would predict the final energy poorly.
 const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
@@ -43,7 +42,7 @@ pub struct PilotRuns<'a> {
     near: Vec<Option<Prediction>>,
     /// Measurements of all settings at the next lower resolution.
     middle: Vec<Prediction>,
-    /// Predicted energy of the reference settings.
+    /// Predicted energy of the reference settings at full resolution.
     energy: f64,
 }
 
@@ -123,11 +122,12 @@ impl<'a> PilotRuns<'a> {
 
     /// Predicts time and energy of settings at the full resolution.
     ///
-    /// Time grows linearly with the number of pixels. With slowly converging settings it grows by a slightly higher
-    /// power, which is estimated from the two higher pilot resolutions. Energy falls as pixels become smaller, because
-    /// neighbouring pixels of paint and guides differ less. From one resolution to the next it falls by a factor; the
-    /// logarithm of this factor decays, and is extrapolated from the pilot runs. The ratio of the energies of two
-    /// settings hardly depends on the resolution.
+    /// - Time grows linearly with the number of pixels, or by a slightly higher power if the settings converge slowly.
+    ///   The power is estimated from the two higher pilot resolutions.
+    /// - Energy falls as pixels become smaller, because neighbouring pixels of paint and guides differ less. The
+    ///   factor by which it falls from one resolution to the next approaches 1 and is extrapolated from the pilot runs
+    ///   of the reference settings.
+    /// - The ratio of the energies of two settings hardly depends on the resolution.
     pub fn predict(&self, settings: usize) -> Prediction {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);

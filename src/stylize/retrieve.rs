@@ -1,11 +1,15 @@
 //! Reversed retrieval under an error budget (StyLit, §3.3).
 //!
-//! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
-//! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
-//! budget is spent. If two exemplar patches want the same target, the one with the smaller error takes it (the first,
-//! if equal). In the next pass, all exemplar patches are available again for the remaining targets. The passes end
-//! when enough of the target is covered or when a pass gains next to nothing; then each remaining target patch
-//! searches for its nearest exemplar patch instead.
+//! Each pass has three steps:
+//!
+//! 1. Every exemplar patch searches for its nearest target patch among the free target patches.
+//! 2. The errors of these matches determine a budget.
+//! 3. In order of rising error, the exemplar patches take their targets until the budget is spent. If two exemplar
+//!    patches want the same target, the one with the smaller error takes it (the first, if equal).
+//!
+//! In the next pass, all exemplar patches are available again for the remaining targets. The passes end when enough of
+//! the target is covered or when a pass gains next to nothing. Then each remaining target patch searches for its
+//! nearest exemplar patch instead.
 //!
 //! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
 //! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
@@ -84,13 +88,14 @@ pub(super) fn retrieve(
         }
     }
 
-    // Match the remaining patches by ordinary retrieval. Start from their matches in the previous iteration and from
-    // the matches of neighbouring patches.
+    // Match each remaining target patch to its nearest exemplar patch. Start from the matches of the previous
+    // iteration and of neighbouring patches.
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
     nearest.forward(&search, &mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
-    // Let patches continue their neighbours' matches where those fit better, with the cost of seams included.
+    // Settle: let target patches continue their neighbours' matches where this lowers the error, including the cost of
+    // seams.
     let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {
         search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
@@ -99,9 +104,9 @@ pub(super) fn retrieve(
     Ok(passes)
 }
 
-/// Assigns target patches to exemplar patches in order of rising error until the sum of their errors reaches the
+/// Assigns target patches to exemplar patches in order of rising error, until the sum of the errors reaches the
 /// budget. Returns the share of the exemplar patches whose error lies left of the knee of the sorted errors, and the
-/// number of assignments.
+/// number of target patches assigned.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);

@@ -116,7 +116,7 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
 }
 
 /// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. Uniform usage must fill a part
-/// of it with other paint; the budget reuses the highlight.
+/// of the highlight with other paint; the budget reuses the exemplar's highlight.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
@@ -171,8 +171,8 @@ fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     let usage = runs.each_ref().map(|run| run.report.usage);
     assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
     assert!(usage[3].used > 0.95, "{usage:?}");
-    // The penalty costs similarity, which the energy reports; the penalty itself is not part of the energy. (The run
-    // with weight 0 is left out, because it rematches fewer patches in each iteration.)
+    // The penalty makes matches less similar, which raises the energy; the penalty itself is not part of the energy.
+    // (The run with weight 0 is left out, because it rematches fewer patches in each iteration.)
     let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
     assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
     // The largest valid weight yields finite colours, and invalid weights are errors.

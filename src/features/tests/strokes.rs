@@ -282,8 +282,8 @@ fn a_mirrored_room_is_laid_out_as_the_mirrored_box() {
 fn strokes_alone_shape_the_room() {
     let camera = camera(0.0, 0.0, 0.0, SIZE[0], SIZE[1]);
     let line = |y: f64| painted(DVec2::new(250.0, y), DVec2::new(390.0, y), SIZE);
-    // In the prior room, the ceiling begins at 0.4 focal lengths above the centre, in row 35; the strokes put it
-    // lower.
+    // Without evidence, the seam between ceiling and back wall lies 0.4 focal lengths above the centre, in row 35. The
+    // strokes place it lower.
     let strokes = [(line(20.0), true), (line(140.0), true), (line(160.0), false), (line(300.0), false)];
     let layout = layout_of(&camera, &[], &strokes);
     let face = |y: usize| truth(&camera, &layout.sides, 320, y).1;

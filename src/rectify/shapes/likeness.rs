@@ -42,7 +42,8 @@ const MIN_SEMIAXIS: f64 = 0.5;
 pub struct Shape {
     /// Centre of the region in photo pixels, relative to the principal point.
     centre: DVec2,
-    /// Covariance of the region's pixel positions, after removal of bloom of each of the widths [`BLOOMS`].
+    /// For each width in [`BLOOMS`], the covariance of the region's pixel positions after bloom of this width is
+    /// removed.
     covariances: [DMat2; BLOOMS.len()],
     /// Standard deviation of the `size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
     /// [`Form`].
@@ -137,7 +138,8 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
 }
 
 /// Returns how much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that
-/// they are alike. Infinite if the camera sees a shape beyond the plane's horizon or at too small an angle.
+/// they have equal size and form. Infinite if the camera sees a shape beyond the plane's horizon or at too small an
+/// angle.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
     least_cost(shapes, normal, focal, 1)
 }
@@ -152,7 +154,7 @@ fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
 
-/// Computes the cost after removal of bloom of one of the widths [`BLOOMS`] from the shapes.
+/// Computes the cost of the shapes after bloom of the width `BLOOMS[bloom]` is removed from them.
 fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f64 {
     let mut forms = Vec::with_capacity(shapes.len());
     for shape in shapes {

@@ -1,8 +1,9 @@
-//! Estimates the camera from lamps that are alike, for photos whose lines do not determine the camera. In
-//! fronto-parallel view, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine Rectification
-//! from Change of Scale", ACCV 2010), so the search looks for the tilt of their plane at which the lamps become alike.
-//! It assumes that most lamps are as long as they are wide, and that oblong lamps of one kind are equally long and
-//! parallel.
+//! Estimates the camera from the lamps of a photo, if lines do not determine the camera.
+//!
+//! In fronto-parallel view, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine
+//! Rectification from Change of Scale", ACCV 2010). The search therefore looks for the tilt of their plane for which
+//! the lamps agree best in size and form. It assumes that most lamps are as long as they are wide, and that oblong
+//! lamps of one kind are equally long and parallel.
 //! ```text
 //! mask of lamps ─▶ likeness ─▶ tilt of their plane, focal length ─▶ retilt: rotation about the normal ─▶ View
 //!                                                    segments ─────────┘
@@ -36,9 +37,9 @@ const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
 
 impl View {
-    /// Returns the view in which the lamps marked by `lamps`, on the plane marked by `plane`, are alike. `None` if the
-    /// lines determine the view, if there are too few lamps, if the lamps already agree with the view, or if the lamps
-    /// contradict each other.
+    /// Corrects the view such that the lamps marked by `lamps`, on the plane marked by `plane`, have equal size and
+    /// form in fronto-parallel view. `None` if the lines determine the view, if there are too few lamps, if the lamps
+    /// already agree with the view, or if the lamps contradict each other.
     pub fn with_lamps_alike(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.uncertain_tilt(plane) else { return Ok(None) };
         let shapes = likeness::of_mask(lamps, self.perspective.principal)?;
@@ -66,7 +67,7 @@ impl View {
     }
 }
 
-/// Whether the shapes are alike at `tilt` and clearly less alike at `than`.
+/// Whether the shapes on the plane agree in size and form with the tilt `tilt`, and clearly less with the tilt `than`.
 fn is_better(shapes: &[Shape], tilt: &Tilt, than: &Tilt) -> bool {
     let [cost, before] = [tilt, than].map(|tilt| likeness::cost(shapes, tilt.normal, tilt.focal));
     before - cost > MIN_GAIN && cost < MAX_SHARE * before && cost < MAX_COST * shapes.len() as f64

@@ -1,4 +1,4 @@
-//! Computes the view in which the plane has the tilt at which its lamps are alike.
+//! Corrects a view so that its plane has the tilt that was found from the lamps.
 
 use super::likeness::{self, Shape};
 use super::tilt::{Found, Tilt};
@@ -20,8 +20,8 @@ const ROTATIONS: usize = 360;
 const MIN_SUPPORT: usize = 3;
 
 impl View {
-    /// Returns the view with the plane tilted as found, and rotated about its normal so that most lines run along the
-    /// axes.
+    /// Returns the view whose plane has the tilt in `found`. The axes are rotated about the plane's normal so that
+    /// most lines run along them.
     pub(super) fn retilted(&self, found: &Found, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
         let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();
@@ -47,8 +47,8 @@ impl View {
             let support = members.iter().filter(|member| **member == Some(axis)).count();
             let mut covariance = found.covariance;
             if direction.dot(normal).abs() < FRAC_1_SQRT_2 {
-                // The covariance of a direction within the plane is that of the normal plus that of the rotation about
-                // the normal, which the lines along the direction determine.
+                // Covariance of a direction within the plane: the covariance of the normal plus the covariance of the
+                // rotation about the normal. The lines along the direction determine this rotation.
                 let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
                 covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
             }

@@ -22,7 +22,7 @@ fn camera(normal: DVec3, focal: f64) -> Perspective {
     Perspective { focal, focal_source: FocalSource::Assumed, principal, axes }
 }
 
-/// A view whose axes have the standard deviation `error`, in radians, as a few lines would determine them.
+/// A view with axes as uncertain as a few lines leave them. `error` is their standard deviation in radians.
 fn view(normal: DVec3, error: f64) -> View {
     let perspective = camera(normal, 500.0);
     let point = |axis: usize| VanishingPoint {

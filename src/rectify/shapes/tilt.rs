@@ -1,4 +1,4 @@
-//! Searches for the tilt of a plane at which the lamp shapes on the plane are alike.
+//! Searches for the tilt of a plane with which the lamp shapes on the plane have equal size and form.
 
 use super::likeness::{self, Shape};
 use crate::error::Result;
@@ -100,7 +100,7 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
     // Find the best focal length for every direction, then refine the tilts with the least cost. Refining a single
-    // tilt is not enough: if all shapes are elongated alike, the cost has several minima.
+    // tilt is not enough: if all shapes are elongated in the same direction, the cost has several minima.
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });

@@ -51,7 +51,7 @@ fn a_room_seen_along_its_axis_leaves_the_focal_length_open() {
     let view = view(&camera(0.0, 0.0), 0.3);
     let warnings = view.warnings();
     assert_eq!(codes(&warnings), [Code::FocalAssumed]);
-    // The spread in the warning is that of the prior, since the lines do not narrow it.
+    // The warning states the spread of the prior, since the lines do not narrow it.
     assert!((warnings[0].severity / USUAL_SPREAD - 1.0).abs() < 0.1, "{:?}", warnings[0]);
     assert!(warnings[0].severity > warnings[0].limit);
     // A focal length that the caller gives raises no warning.

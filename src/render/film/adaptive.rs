@@ -25,7 +25,8 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Paths per pixel of the first pass after the coarse image is complete. [origin not recorded]
+/// Paths per pixel of the first pass after the coarse image is complete.
+/// [convention: one path per replication (point sequence) of a pixel]
 const FIRST_PASS_PATHS: u32 = 4;
 /// Paths per pixel before the first adaptive pass. [origin not recorded]
 pub const MIN_UNIFORM_PATHS: u32 = 16;

@@ -16,7 +16,8 @@ use glam::{Vec3, Vec3A};
 const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Clusters of at least this many lights are split in parallel. [origin not recorded]
+/// Clusters of at least this many lights are split in parallel.
+/// [convention: Embree's builders have the same threshold]
 const PARALLEL_FROM: usize = 1024;
 /// Index that stands for "no parent" or "no child".
 const NONE: u32 = u32::MAX;

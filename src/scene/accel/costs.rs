@@ -16,7 +16,8 @@ use obvhs::bvh2::node::Bvh2Node;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Expected cost of intersecting a packet of triangles, relative to the cost of a node. [origin not recorded]
+/// Expected cost of intersecting a packet of triangles, relative to the cost of a node.
+/// [convention: Embree's builders give both equal costs]
 const PACKET_COST: f32 = 1.0;
 
 /// Number of branches processed between two checks for cancellation: one part may hold nearly the whole tree.
