@@ -55,7 +55,8 @@ impl Estimate {
         self.standard_error * STUDENT_T
     }
 
-    /// Returns the largest relative half-width of the confidence intervals of the channels with light.
+    /// Returns the half-width of the confidence interval relative to the mean, for the channel where it is largest.
+    /// Channels without light are ignored.
     pub(super) fn error(&self) -> f64 {
         let relative = self.half_width() / self.mean;
         (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)

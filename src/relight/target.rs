@@ -24,7 +24,7 @@ pub(super) struct Surface<'a> {
     quantity: Quantity,
 }
 
-/// A target point, and the factor that converts its irradiance to the quantity that is to match the photo.
+/// A target point, and the factor that converts its irradiance to the radiance that is compared with the photo.
 pub(super) struct Target {
     at: At,
     pub factor: Vec3,
