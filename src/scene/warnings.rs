@@ -111,8 +111,8 @@ impl Scene {
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
-    /// Warns if the extent of the scene suggests a unit other than the metre. Reports only the first defect in the
-    /// order too high, too wide, too small.
+    /// Warns if the extent of the scene suggests a unit other than the metre, because the scene is too high, too wide
+    /// or too small. Only the first of these defects is reported.
     pub fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let extent = (high - low).as_dvec3();

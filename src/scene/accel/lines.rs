@@ -1,7 +1,8 @@
 //! Storage for the nodes and packets of the acceleration structure in one list of cache lines.
 //!
-//! Deep in the tree, nodes are no longer in the processor's caches: each step of a ray waits for memory, and longer if
-//! it leads to another page. Each node is therefore followed by its packets, and nodes visited together share a page.
+//! Deep in the tree, nodes are no longer in the processor's caches, so each step of a ray waits for memory. It waits
+//! longer if the step leads to another page of memory. Each node is therefore followed by its packets, and nodes that
+//! are likely to be visited together share a page.
 
 use super::node::Node;
 use super::packet::Packet;
