@@ -110,8 +110,8 @@ impl Problem<'_> {
         (0..self.right.len()).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
     }
 
-    /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where the sum is over the unknowns between their
-    /// bounds.
+    /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where `g` is the gradient. The sum is over the
+    /// columns `a` of `A` whose unknowns lie between their bounds.
     fn newton_step(&self, lambda: f64, states: &[State], gradient: &[f64]) -> Vec<f64> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];

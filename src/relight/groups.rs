@@ -43,9 +43,9 @@ pub struct GroupParams {
     pub colour: Colour,
     /// Maximum multiplier of each group's emission, ≥ 0, may be infinite; empty for no bounds.
     pub max_scale: Vec<f64>,
-    /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`]; empty for continuous dimming. Groups
-    /// get the levels that together best meet the goals ([`super::steps`]). Their confidence intervals then include
-    /// the difference from the continuous powers.
+    /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`] of them; empty for continuous dimming.
+    /// Groups get the levels that together best meet the goals ([`super::steps`]). The confidence intervals of the
+    /// powers then include the difference from the continuous powers.
     pub levels: Vec<f64>,
     /// Weight of the regularisation towards equal powers, in `[1e-9, 1e3]`: with a small weight the powers meet the
     /// goals, with a large weight they stay equal.

@@ -77,7 +77,7 @@ impl Lamps {
         Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
-    /// Makes lamps from meshes: every piece of the emissive meshes that is connected by shared vertices is a lamp.
+    /// Makes lamps from the emissive meshes: triangles that are connected by shared vertices form one lamp.
     pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let mut labels = try_vec(triangles, 0u32)?;

@@ -35,8 +35,8 @@ impl Slope {
         self.changes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut at, mut slope, mut growth) = (0.0, self.start, self.growth);
         for (next, change) in self.changes.into_iter().chain([(1.0, 0.0)]) {
-            // Clamp `growth`, because rounding may make it negative: without rounding, it is 0 after every amount that
-            // was added has been subtracted again.
+            // Clamp `growth` to 0. Every amount that is subtracted from it was added before, so only rounding makes it
+            // negative.
             let rise = growth.max(0.0) * (next - at);
             if slope + rise >= 0.0 {
                 return if rise > 0.0 { at - slope / growth } else { at };

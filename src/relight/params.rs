@@ -30,8 +30,8 @@ pub enum Place<'a> {
     /// A surface, given by its triangles as (mesh, triangle). Light is measured on the side from which the triangles
     /// wind counter-clockwise. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),
-    /// A calculation grid in the air: a parallelogram given by a corner and two edges, lit on the side of `normal`.
-    /// Its light is the radiance that a white surface there would have: illuminance / π.
+    /// A calculation grid in the air: a parallelogram given by a corner and two edges. Light is measured on the side
+    /// of `normal`, as the radiance that a white surface there would have: illuminance / π.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 

@@ -30,7 +30,8 @@ pub struct Goal<'a> {
     /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light, the illuminance divided by π.
     pub target: Vec3,
     pub aspect: Aspect,
-    /// Whether the target of each channel is exact or a limit; the same for all channels if only the luminance counts.
+    /// Whether the target of each channel is exact or a limit. With [`Aspect::Luminance`], the three entries must be
+    /// equal.
     pub constraint: [Constraint; 3],
     /// Weight of this goal's relative error compared with other goals, ≥ 0.
     pub weight: f64,

@@ -21,7 +21,7 @@ const MAX_ROUNDS: usize = 100;
 /// A decrease of the sum counts as zero if it is at most this, relative to the squared targets. [rounding]
 const ROUNDING: f64 = 1e-14;
 
-/// The current powers, the index of the level chosen for each group, and the light of each term.
+/// The current powers, the index of the level chosen for each group, and the light of each term under these powers.
 #[derive(Clone)]
 struct State {
     powers: Vec<f64>,
@@ -103,7 +103,8 @@ mod tests {
 
     #[test]
     fn equal_lamps_share_the_rounding() {
-        // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
+        // Ten lamps with a power of 0.24 give 2.4 in total. If lamps can only be on or off, two must be on for an
+        // exact target of 2.4, and three for a lower limit of 2.4.
         let terms = Terms { matrix: &[1.0; 10], right: &[2.4], constraints: &[Constraint::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();
         assert_eq!(on, 2.0);

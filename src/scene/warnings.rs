@@ -17,7 +17,7 @@ pub const MAX_WIDTH: f64 = 2000.0;
 /// [convention]
 pub const MIN_EXTENT: f64 = 0.2;
 
-/// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
+/// Height and width of a typical room in metres. A warning suggests the unit that brings the scene closest to this
 /// size. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;

@@ -32,8 +32,8 @@ const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 /// this ratio, the pattern is refused if the plane also spans fewer than `MIN_SHOWN_TEXELS` texels. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
-/// Minimum number of texels along the plane in the photo. Fewer texels cannot show a pattern, that is two lamps with a
-/// gap beside each. [convention]
+/// Minimum number of texels along the plane in the photo: enough to show two lamps with a gap beside each. With fewer
+/// texels, no pattern would be visible. [convention]
 const MIN_SHOWN_TEXELS: f64 = 4.0;
 
 /// Size, rotation, offset and margin of the pattern on the surface.
@@ -127,9 +127,10 @@ impl Pattern {
         Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
-    /// Chooses the size and the number of the texels on the surface. The size is `texel_size`; if that is 0, it is the
-    /// size of an unwarped pixel, enlarged where the surface would need more than `max_texels` along its longer side.
-    /// The longer side of the unwarped photo has `pixels` pixels of `pixel` metres each.
+    /// Chooses the size and the number of the texels on the surface. The size is `texel_size`. If that is 0, it is the
+    /// size of an unwarped pixel or, if the surface would then need more than `max_texels` along its longer side, the
+    /// smallest size that is allowed. The longer side of the unwarped photo has `pixels` pixels of `pixel` metres
+    /// each.
     pub(super) fn texel_grid(
         &self,
         surface: &Surface,

@@ -8,9 +8,9 @@ use glam::{Vec2, Vec3};
 
 /// Vertical angle of view in radians.
 const FOV_Y: f32 = 0.9;
-/// Distances from a corner of the surface that are tried, as shares of the surface's sides.
+/// Distances of the candidate cameras from a corner of the surface, as shares of the surface's sides.
 const INSETS: [f32; 2] = [0.08, 0.2];
-/// Distances below the surface that are tried, as shares of the scene's depth below the surface.
+/// Distances of the candidate cameras from the surface, as shares of the depth of the scene below the surface.
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
 /// Numbers of rays, horizontally and vertically, with which the mean line of sight of a camera is measured.
 const RAYS: [usize; 2] = [12, 8];

@@ -75,7 +75,7 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
     assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
     assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
     assert_eq!((free.outcomes[0].status, &free.unreachable), ([TargetStatus::Met; 3], &None));
-    // With half the required power as bound, the bound is the solution, and the explanation names it.
+    // If the upper bound is half the required power, the solution is the bound, and the explanation names the bound.
     let bounded = GroupParams { max_scale: vec![expected / 2.0], ..GroupParams::default() };
     let bounded = powers(&responses, &goals, &bounded).unwrap();
     assert_eq!(bounded.scale[0].x, expected / 2.0);
@@ -345,7 +345,7 @@ fn luminaires_are_lamps() {
     assert!(solution.unreachable.is_none());
 }
 
-/// Free colours are solved channel by channel, as in the closed form.
+/// If the colour of the groups may change, every channel of a coloured goal is met, as in the closed form.
 #[test]
 fn free_colours_meet_a_coloured_goal() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);

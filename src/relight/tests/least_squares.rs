@@ -58,7 +58,7 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     let r = |x, z| response(x, z, PLACES[0]);
     let (first, second) = (mean(r), mean(|x, z| r(x, z).powi(2)));
     let variation = second / (first * first) - 1.0;
-    // The floor is far from uniformly lit, so that the test can fail.
+    // The floor must be far from uniformly lit; otherwise both fits would give equal results.
     assert!(variation > 0.5, "{variation}");
     let params = Params { target_error: 0.004, ..Params::default() };
     let (plain, least) = (solve_with(&scene, Fit::Mean, &params), solve_with(&scene, Fit::LeastSquares, &params));

@@ -177,10 +177,10 @@ impl Accel {
     }
 }
 
-/// The nearest accepted hit so far, and the farthest distance at which a further hit is of interest.
+/// The nearest accepted hit so far, and the maximum distance of further hits.
 struct Best {
     hit: Option<Hit>,
-    /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.
+    /// Maximum distance of further hits: the distance of the best hit, or `ray_t_max` before the first hit.
     t_max: f32,
     ray_t_max: f32,
 }

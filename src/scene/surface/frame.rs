@@ -31,7 +31,7 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     if aligned { aligned_frame } else { turned_frame }
 }
 
-/// Returns the direction of u that is aligned with the world axes.
+/// Returns the u axis of the rectangle that is aligned with the world axes.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
         // On a wall, v points down as far as possible, and u = normal × v.
