@@ -16,7 +16,7 @@ pub(super) enum Division<'a> {
     Whole,
     /// One bin per lamp; light that comes from elsewhere counts as background.
     Lamps(&'a Lamps),
-    /// One bin per cell of the unit square of texture coordinates, which repeats.
+    /// One bin per cell of a grid over the unit square of texture coordinates. The grid repeats outside the square.
     Cells { width: usize, height: usize },
 }
 

@@ -3,9 +3,9 @@
 //! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique
 //! even for identical columns.
 //!
-//! The dual problem has only one unknown per row of `A`, the vector `z`. A solution satisfies `x = clip(p + Aᵀ z, 0,
-//! u)` and `λ z = b − A x`. Inserted into each other, these two conditions say that the gradient of the dual function,
-//! which is convex and piecewise quadratic in `z`, is zero.
+//! The dual problem has only one unknown per row of `A`, the vector `z`. A solution satisfies
+//! `x = clip(p + Aᵀ z, 0, u)` and `λ z = b − A x`. If the first condition is inserted into the second, it says that
+//! the gradient of the dual function is zero. This function of `z` is convex and piecewise quadratic.
 //!
 //! Newton's method with an exact line search minimises the dual function in a few steps. Each step treats the unknowns
 //! that are at their bounds as fixed (the primal-dual active set method of Hintermüller, Ito and Kunisch 2002).

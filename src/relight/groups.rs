@@ -91,8 +91,8 @@ pub struct GroupSolution {
     pub unreachable: Option<String>,
 }
 
-/// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]),
-/// traced for the same goals; only the targets and weights of the goals may differ.
+/// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]).
+/// They must have been traced for goals with the same places and quantities; other properties of the goals may differ.
 ///
 /// Returns an `Unreachable` error if no goal gets light from any group. Also fails if parameters are out of range or
 /// the job is cancelled.

@@ -19,8 +19,8 @@ pub enum Fit {
     /// The mean over the points equals the target colour, as in the paper.
     Mean,
     /// The sum of the squared differences at the points is minimal, as in the limit of gradient descent on texels
-    /// (Lipp et al. 2024). Bright points count more: without other light, the solution is dimmer by the factor `1 / (1
-    /// + CV²)`, where CV is the coefficient of variation of the response over the target.
+    /// (Lipp et al. 2024). Bright points count more: without other light, the solution is dimmer by the factor
+    /// `1 / (1 + CV²)`, where CV is the coefficient of variation of the response over the target.
     LeastSquares,
 }
 

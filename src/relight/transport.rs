@@ -118,9 +118,8 @@ impl<'a> Batches<'a> {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces paths until each batch has `growth` times its current number of paths, with `growth` clamped to
-    /// [`GROWTH`], and at least [`FIRST_ROUND`] paths. A batch never gets more than `limit` divided by the number of
-    /// batches, rounded up.
+    /// Traces paths until each batch has `growth` times its current number of paths, at least [`FIRST_ROUND`].
+    /// `growth` is clamped to the range [`GROWTH`]. All batches together get at most about `limit` paths.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
         let max_per_batch = limit.div_ceil(BATCHES as u32);
         let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);

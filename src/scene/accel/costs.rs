@@ -47,8 +47,8 @@ pub(super) struct Branch {
     count: u32,
     /// Half the surface area of this branch's box.
     pub area: f32,
-    /// Sum of the half areas of the boxes of all leaves below. This approximates the area of their triangles, as most
-    /// leaf boxes are flat.
+    /// Half the total surface area of all leaf boxes below this branch. It approximates the area of the leaves'
+    /// triangles, because most leaf boxes are flat.
     pub surface: f32,
     /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it.
     pub cost: [f32; 7],
@@ -61,8 +61,8 @@ impl Branch {
         Self { shape, content, count: node.prim_count, area, surface: area, cost: [area * PACKET_COST; 7] }
     }
 
-    /// Estimated number of cache lines for this branch's packets and nodes. It is twice the number of full packets (5
-    /// lines for 8 triangles), because packets are rarely full and nodes add a tenth.
+    /// Estimated number of cache lines for this branch's packets and nodes. Full packets would fill 5 lines for every
+    /// 8 triangles; the estimate is twice as much, because packets are rarely full and nodes add a tenth.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }

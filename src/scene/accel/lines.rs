@@ -90,7 +90,8 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Prefetches the node or packet at `line`, as many cache lines as a packet has. A node has one line fewer.
+    /// Prefetches the node or packet at `line`. It fetches as many cache lines as a packet fills; a node fills one
+    /// less.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
         pages::prefetch(self.at(line), lines_of::<Packet>());

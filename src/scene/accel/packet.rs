@@ -5,7 +5,7 @@ use super::lanes::{Lanes, Row};
 use super::ray::Hit;
 use glam::Vec3;
 
-/// Minimum distance of a hit, relative to the depth along the ray of the triangle's farthest corner. Nearer hits are
+/// Minimum distance of a hit, relative to the largest depth of the triangle's corners along the ray. Nearer hits are
 /// refused, because the distance could be a rounding error (sixteen errors of 2^-24 each). [rounding]
 const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 

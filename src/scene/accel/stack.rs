@@ -26,7 +26,7 @@ impl<'a> Stack<'a> {
         Self { entries, len: 0 }
     }
 
-    /// Removes and returns the child on top, with its entry distance.
+    /// Removes the child on top. Returns the child and the distance at which the ray enters its box.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<(f32, Child)> {
         let top = self.top()?;

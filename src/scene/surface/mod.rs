@@ -28,8 +28,8 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// A planar patch of the scene, with the frame of its bounding rectangle.
 ///
-/// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored: `u ×
-/// v = -normal`. On walls, v points down as far as possible. On floors and ceilings, u points along +x as far as
+/// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored:
+/// `u × v = -normal`. On walls, v points down as far as possible. On floors and ceilings, u points along +x as far as
 /// possible. A person who faces -z and looks up thus sees a ceiling's texture upright.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
