@@ -1,6 +1,7 @@
-//! Band-limited look-ups of a repeating texture with their derivatives, for the gradient descent of a placement: cubic
-//! B-splines on the levels of a pyramid, interpolated linearly between levels. Unlike nearest and bilinear look-ups,
-//! they are differentiable everywhere.
+//! Band-limited look-ups in a repeating texture, with derivatives, for the gradient descent of a placement.
+//!
+//! A look-up interpolates with cubic B-splines within two levels of an image pyramid, and linearly between the levels.
+//! The result is differentiable with respect to the texture coordinates, unlike nearest and bilinear look-ups.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -39,7 +40,8 @@ impl Pyramid {
         Ok(Self { levels })
     }
 
-    /// Looks up the texture at `uv`, filtered as if a texel of level 0 had `2^level` times its side.
+    /// Looks up the texture at `uv`, filtered to texels with `2^level` times the side of the original texels. `level`
+    /// may be fractional.
     pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
         let last = (self.levels.len() - 1) as f64;
         let clamped = level.clamp(0.0, last);

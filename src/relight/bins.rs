@@ -16,7 +16,7 @@ pub(super) enum Division<'a> {
     Whole,
     /// One bin per lamp; light that comes from elsewhere counts as background.
     Lamps(&'a Lamps),
-    /// One bin per cell of the unit square of texture coordinates, which repeats.
+    /// One bin per cell of a grid over the unit square of texture coordinates. The grid repeats outside the square.
     Cells { width: usize, height: usize },
 }
 
@@ -68,7 +68,7 @@ pub(super) struct Sorter<'a> {
 }
 
 impl<'a> Sorter<'a> {
-    /// `factor` converts incident light to the quantity that is to match the photo.
+    /// `factor` converts irradiance to the radiance that is compared with the photo.
     pub fn new(bins: &'a Bins<'a>, factor: Vec3, sums: &'a mut [DVec3], others: &'a mut DVec3) -> Self {
         Self { bins, factor, sums, others }
     }

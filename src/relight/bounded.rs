@@ -1,11 +1,14 @@
 //! Bounded least squares for few equations and any number of unknowns.
 //!
 //! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique
-//! even for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: a system
-//! in `z` with one equation per row of `A`. It states that the gradient of a convex, piecewise quadratic function of
-//! `z` is zero. Newton's method with an exact line search minimises this function in a few steps. Each step solves for
-//! the unknowns between their bounds: this is the primal-dual active set method (Hintermüller, Ito and Kunisch 2002),
-//! applied to the dual problem, which has few unknowns.
+//! even for identical columns.
+//!
+//! The dual problem has only one unknown per row of `A`, the vector `z`. A solution satisfies
+//! `x = clip(p + Aᵀ z, 0, u)` and `λ z = b − A x`. If the first condition is inserted into the second, it says that
+//! the gradient of the dual function is zero. This function of `z` is convex and piecewise quadratic.
+//!
+//! Newton's method with an exact line search minimises the dual function in a few steps. Each step treats the unknowns
+//! that are at their bounds as fixed (the primal-dual active set method of Hintermüller, Ito and Kunisch 2002).
 
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
@@ -107,8 +110,8 @@ impl Problem<'_> {
         (0..self.right.len()).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
     }
 
-    /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where the sum is over the unknowns between their
-    /// bounds.
+    /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where `g` is the gradient. The sum is over the
+    /// columns `a` of `A` whose unknowns lie between their bounds.
     fn newton_step(&self, lambda: f64, states: &[State], gradient: &[f64]) -> Vec<f64> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
@@ -206,7 +209,7 @@ mod tests {
         // One equation in one unknown: a x = b, slightly regularised towards p.
         let x = solve(1, &[2.0], &[6.0], 1e-9, &[0.0], &[FREE]);
         assert!((x[0] - 6.0 * 2.0 / (4.0 + 4e-9)).abs() < 1e-12);
-        // Identical unknowns get equal shares beyond their preferred values.
+        // The preferred values add up to 3. The remaining 3 is divided equally among identical unknowns.
         let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
         // The first unknown is bounded by 1, so the second unknown contributes the remaining 5.
@@ -247,7 +250,7 @@ mod tests {
                 let slope: f64 =
                     (0..m).map(|i| matrix[i * n + j] * (dot(&matrix[i * n..][..n], &x) - right[i])).sum::<f64>()
                         + lambda * (x[j] - preferred[j]);
-                // The tolerance is relative to the terms that cancel in the slope.
+                // The slope is a difference of large terms: choose the tolerance relative to their size.
                 let small = 1e-6 * (lambda + norm(&right));
                 let fits = match x[j] {
                     v if v == upper[j] => slope <= small,

@@ -144,7 +144,8 @@ mod tests {
             let found = run(&bounds, [-1.2, 1.0], valley, monitor.job());
             assert!(found.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-4), "{found:?}");
         }
-        // A wave over its whole period is unbounded, and a variable with equal bounds is fixed.
+        // The bounds of the first variable span a whole period, so it is unbounded. The bounds of the second variable
+        // are equal, so it is fixed.
         let wave = |[x, y]: [f64; 2]| ((x - 3.0).cos(), [-(x - 3.0).sin(), 1.0 + y]);
         let bounds = Bounds { min: [-3.2, 0.7], max: [3.2, 0.7], period: [std::f64::consts::TAU, 1.0] };
         let found = run(&bounds, [2.9, 0.7], wave, monitor.job());

@@ -23,9 +23,9 @@ pub(super) fn without(mean: f64, part: f64) -> f64 {
     (n * mean - part) / (n - 1.0)
 }
 
-/// Computes the pseudo-values of the jackknife over batches (Efron 1982, §2) from the result of all batches and the
-/// results without each batch. The mean of the pseudo-values is the result without its bias of order 1/n, and their
-/// variance gives its standard error.
+/// Computes the pseudo-values of the jackknife over batches (Efron 1982, §2): `whole` is the result of all batches,
+/// `without` holds the results with one batch left out. The mean of the pseudo-values is an estimate of the result
+/// without the bias of order 1/n. Their variance gives the standard error of this estimate.
 pub(super) fn pseudo_values(whole: f64, without: &[f64; BATCHES]) -> [f64; BATCHES] {
     let n = BATCHES as f64;
     without.map(|w| n * whole - (n - 1.0) * w)

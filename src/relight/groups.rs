@@ -1,15 +1,15 @@
 //! Solves for the powers of groups of lamps that best meet several lighting goals, within bounds.
 //!
-//! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels, plus a small regularisation. For each goal, `w` is the weight, `b` the radiance from all other light, `r`
-//! the response to a group, `t` the target and `s` the target's brightness. The regularisation pulls towards equal
-//! powers, which determines powers that the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises
-//! the same sum without regularisation). With one group and one goal, the solution is the closed form of
-//! [`super::run`].
+//! Radiance is linear in the powers `x`. The best powers minimise the sum `Σ w² ((b + Σ r x − t) / s)²` over goals and
+//! channels ("Painting with light", Schoeneman et al. 1993). For each goal, `w` is the weight, `b` the radiance from
+//! all other light, `r` the response to a group, `t` the target and `s` the target's brightness.
 //!
-//! A goal may be a lower or upper limit; its residual then counts only where the limit is violated ([`Constraint`]).
+//! A small regularisation towards equal powers is added, because the goals may leave some powers open. With one group
+//! and one goal, the solution is the closed form of [`super::run`].
 //!
-//! Each residual belongs to a goal and is a mean over many paths. Single texels are never compared with the photo:
+//! If a goal is a lower or an upper limit, its residual counts only if the limit is violated ([`Constraint`]).
+//!
+//! Each residual is the residual of a mean over many paths. Single texels are not compared with the photo, because
 //! their noise would bias the powers towards dark.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
@@ -43,9 +43,9 @@ pub struct GroupParams {
     pub colour: Colour,
     /// Maximum multiplier of each group's emission, ≥ 0, may be infinite; empty for no bounds.
     pub max_scale: Vec<f64>,
-    /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`]; empty for continuous dimming. Groups
-    /// get the levels that together best meet the goals ([`super::steps`]). Their confidence intervals then include
-    /// the difference from the continuous powers.
+    /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`] of them; empty for continuous dimming.
+    /// Groups get the levels that together best meet the goals ([`super::steps`]). The confidence intervals of the
+    /// powers then include the difference from the continuous powers.
     pub levels: Vec<f64>,
     /// Weight of the regularisation towards equal powers, in `[1e-9, 1e3]`: with a small weight the powers meet the
     /// goals, with a large weight they stay equal.
@@ -81,9 +81,9 @@ pub struct Outcome {
 pub struct GroupSolution {
     /// Multipliers of the emission of each group, ≥ 0.
     pub scale: Vec<DVec3>,
-    /// Half-widths of the 95 % confidence intervals of `scale`. With dimming levels they include the distance between
-    /// the chosen level and the continuous power. Without levels the half-width is 0 if the power stays at its bound
-    /// whichever batch of paths is left out.
+    /// Half-widths of the 95 % confidence intervals of `scale`, by the jackknife over batches of paths. A half-width
+    /// is 0 if the power is at its bound in all solutions of the jackknife. With dimming levels, the distance between
+    /// the chosen level and the continuous power is added.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
     /// The reason why goals are missed; `None` if all are met. If goals are missed, the powers are the best within the
@@ -91,8 +91,8 @@ pub struct GroupSolution {
     pub unreachable: Option<String>,
 }
 
-/// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]),
-/// traced for the same goals; only the targets and weights of the goals may differ.
+/// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]).
+/// They must have been traced for goals with the same places and quantities; other properties of the goals may differ.
 ///
 /// Returns an `Unreachable` error if no goal gets light from any group. Also fails if parameters are out of range or
 /// the job is cancelled.
@@ -136,9 +136,9 @@ impl Powers {
         }
     }
 
-    /// Returns half-widths of 95 % confidence intervals by the jackknife of [`super::estimate::pseudo_values`], for
-    /// all groups at once. `without` holds, for each batch, the powers solved without this batch. Pseudo-values spread
-    /// `n - 1` times as far as the results from which they are computed.
+    /// Computes the half-widths of the 95 % confidence intervals of all groups by the jackknife
+    /// ([`super::estimate::pseudo_values`]). `without` holds, for each batch, the powers solved without this batch.
+    /// The pseudo-values themselves are not needed: they spread `n - 1` times as far as these powers.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {
@@ -216,7 +216,7 @@ struct Equations {
 
 impl Equations {
     fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
-        // Regularise towards the power that meets the goals best if all lamps have the same power.
+        // Regularise towards equal powers: compute the common power of all lamps that meets the goals best.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
         let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
@@ -233,7 +233,7 @@ struct Measured {
 }
 
 impl System<'_> {
-    /// Averages over all batches.
+    /// Returns the means over all batches.
     fn means(&self, job: Job) -> Result<Measured> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
@@ -254,7 +254,7 @@ impl System<'_> {
         })
     }
 
-    /// Averages over all batches but one.
+    /// Returns the means over all batches but one.
     fn means_without(&self, all: &Measured, batch: usize) -> Measured {
         // Clamp to 0, because rounding may make the remainder negative.
         let rest = |mean: &DVec3, part: DVec3| {

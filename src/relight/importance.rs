@@ -58,10 +58,10 @@ pub struct Importance {
 /// The response of the target to a texture.
 #[derive(Clone, Debug)]
 pub struct Response {
-    /// Mean radiance of the target in cd/m² per channel, for texture values in cd/m².
+    /// Mean radiance of the target per channel, in the unit of the texture's values (usually cd/m²).
     pub light: Estimate,
-    /// Result with cells of twice the side, minus this result; it includes noise. Where `I` is smooth, this difference
-    /// is three times the error of the result.
+    /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, it is
+    /// three times the error that the size of the cells causes, plus noise.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
 }
@@ -76,19 +76,18 @@ pub(super) struct Cells {
 /// Maximum number of cells along each side; a map of this size takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// The emission of a cell is averaged over a grid of texture look-ups. Along each side of the cell, the number of
-/// look-ups is the number of texels that the side covers, within a minimum and a maximum. The maximum is
-/// `MAX_LOOK_UPS`. The minimum is `LOOK_UPS_ACROSS` divided by the number of cells along that side of the map, but
-/// between 4 and `MIN_LOOK_UPS`. With fewer look-ups, texels that cell borders cut would get wrong weights, which
-/// biases periodic patterns. [origin not recorded]
+/// The emission of a cell is the mean of a grid of texture look-ups, about one per texel along each side, with a
+/// minimum and a maximum. In maps of more than 64 cells along a side, the minimum falls from `MIN_LOOK_UPS` to
+/// `LOOK_UPS_ACROSS` divided by the number of cells, but not below 4. With fewer look-ups, texels cut by cell borders
+/// would get wrong weights, which biases periodic patterns. [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;
 
 impl Importance {
-    /// Traces the importance of a goal on the surfaces of the emitting material, which must have texture coordinates.
-    /// The target and the weight of the goal are ignored. Points of the target that emit in the original scene are
-    /// excluded.
+    /// Traces the importance map of the surfaces with the material `emitter`, which must have texture coordinates. The
+    /// map is computed for the place where the goal measures light; the goal's target value and weight are ignored.
+    /// Points of this place that emit light in `scene` are excluded.
     ///
     /// # Errors
     /// Parameters out of range; a material or a target that does not exist; surfaces without texture coordinates;
@@ -135,7 +134,8 @@ impl Importance {
         (self.width, self.height)
     }
 
-    /// Returns the mean map over all batches, reduced to at most `max_cells` cells along each side by adding up cells.
+    /// Returns the mean map over all batches. If the map has more than `max_cells` cells along a side, neighbouring
+    /// cells are added up.
     pub(super) fn cells(&self, max_cells: usize) -> Cells {
         let (width, height) = (self.width.min(max_cells), self.height.min(max_cells));
         let mut importance = vec![DVec3::ZERO; width * height];
@@ -201,7 +201,7 @@ impl Importance {
         if !placement.is_finite() {
             return Err(Error::argument(format!("placement is {placement}; it must be finite")));
         }
-        // Look up about as many points along each side of a cell as the transformed cell covers texels.
+        // Choose the number of look-ups along each side of a cell: about one per texel that the side covers.
         let cell = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
         let along = |side: Vec2, cells: usize| {
@@ -228,7 +228,7 @@ impl Importance {
         Ok(rows.into_iter().flatten().collect())
     }
 
-    /// Computes the response with cells of twice the side.
+    /// Computes the response with 2 × 2 cells merged into one, for the estimate of the error.
     fn coarse(&self, emission: &[DVec3]) -> DVec3 {
         let mut total = DVec3::ZERO;
         for y in (0..self.height).step_by(2) {

@@ -14,7 +14,7 @@ pub struct Lamps {
     /// For each texel or triangle, the number of its lamp plus one; 0 outside the lamps.
     labels: Vec<u32>,
     division: Division,
-    /// Centre of each lamp: texture coordinates with z = 0, or metres.
+    /// Centre of each lamp: texture coordinates (with z = 0) for regions of a texture, a position in metres otherwise.
     centres: Vec<Vec3>,
     /// Area of each lamp in texels or m²; for punctual lights, a number that identifies their kind.
     sizes: Vec<f32>,
@@ -26,9 +26,9 @@ const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Division {
-    /// A label per texel. Texture coordinates outside the unit square repeat the texture.
+    /// One label per texel. Texture coordinates outside the unit square repeat the texture.
     Texels { width: usize, height: usize },
-    /// A label per triangle; `first` holds the label index of each mesh's first triangle.
+    /// One label per triangle. For each mesh, `first` holds the index in `labels` of the mesh's first triangle.
     Triangles { first: Vec<usize> },
     /// The punctual lights of the scene; no labels.
     Lights,
@@ -77,7 +77,7 @@ impl Lamps {
         Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
-    /// Makes lamps from meshes: every piece of the emissive meshes that is connected by shared vertices is a lamp.
+    /// Makes lamps from the emissive meshes: triangles that are connected by shared vertices form one lamp.
     pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let mut labels = try_vec(triangles, 0u32)?;

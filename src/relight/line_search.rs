@@ -1,7 +1,7 @@
 //! Exact line search for a convex, piecewise quadratic function: the zero of its derivative, which is piecewise linear
 //! and non-decreasing.
 
-/// The derivative of the function along a step, whose positions run from 0 to 1.
+/// The derivative of the function along a step. Positions on the step run from 0 to 1.
 pub(super) struct Slope {
     /// The derivative at 0.
     pub start: f64,
@@ -12,7 +12,7 @@ pub(super) struct Slope {
 }
 
 impl Slope {
-    /// Adds `growth` to the slope of the derivative between two positions.
+    /// Increases the slope of the derivative by `growth` on the interval from position `from` to position `to`.
     pub fn add(&mut self, from: f64, to: f64, growth: f64) {
         if to <= 0.0 || from >= 1.0 || from >= to {
             return;
@@ -35,7 +35,7 @@ impl Slope {
         self.changes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut at, mut slope, mut growth) = (0.0, self.start, self.growth);
         for (next, change) in self.changes.into_iter().chain([(1.0, 0.0)]) {
-            // Clamp the slope to 0: every subtracted amount was added before, so only rounding makes the slope
+            // Clamp `growth` to 0. Every amount that is subtracted from it was added before, so only rounding makes it
             // negative.
             let rise = growth.max(0.0) * (next - at);
             if slope + rise >= 0.0 {

@@ -1,16 +1,20 @@
 //! Relighting: solves for colour and intensity of the emission so that light transport matches the photo
 //! ("Single-Exemplar Lighting Style Transfer", §7).
 //!
-//! Radiance is linear in the emission, so no search is needed. Per colour channel, the mean radiance `r` of the target
-//! under the current emission and its mean radiance `b` under all other light are measured once; the solution is
-//! `(target - b) / r`. The measurement is a Monte Carlo estimate, so the solution has a confidence interval.
+//! Radiance is linear in the emission, so no search is needed. In each colour channel, two means over the target are
+//! measured once: its radiance `r` under the current emission, and its radiance `b` under all other light. The
+//! emission must be multiplied by `(target - b) / r`. Because both means are Monte Carlo estimates, the solution has a
+//! confidence interval.
 //!
-//! The light of the same paths can also be sorted by its source (`bins`). Light sorted by lamp gives the responses of
-//! several targets to thousands of lamps ([`lamp_responses`]), and a small convex problem then gives the powers of
-//! groups of lamps within bounds or at dimming levels ([`solve_groups`]). Light sorted by cell of a surface gives the
-//! [`Importance`] of the surface: a dot product of the importance and a texture is the response to the texture, and
-//! its gradient leads to the best placement of the texture ([`Importance::place`]). Separately, [`mix_primaries`]
-//! mixes a colour from LEDs.
+//! The light of the same paths can also be sorted by its source (`bins`):
+//!
+//! - By lamp: this gives the responses of several targets to thousands of lamps ([`lamp_responses`]). A small convex
+//!   problem then gives the powers of groups of lamps, within bounds or at dimming levels ([`solve_groups`]).
+//! - By cell of the emissive surface: this gives an importance map ([`Importance`]). The dot product of the map and a
+//!   texture is the response to this texture, and its gradient leads to the best placement of the texture
+//!   ([`Importance::place`]).
+//!
+//! Independently of light transport, [`mix_primaries`] mixes a colour from LEDs.
 //!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 
@@ -63,8 +67,8 @@ pub struct Input<'a> {
     pub world: &'a World,
     /// Index of the emitting material to solve for.
     pub emitter: usize,
-    /// The triangles of the target surface, each as (mesh, triangle). They wind counter-clockwise as seen from the
-    /// side to match.
+    /// The triangles of the target surface, each as (mesh, triangle). Light is measured on the side from which the
+    /// triangles wind counter-clockwise.
     pub target_triangles: &'a [(usize, usize)],
     /// Mean radiance of the target to achieve, in cd/m² per channel, ≥ 0. For [`Quantity::Incident`], it is the
     /// radiance of a white surface in the same light, illuminance / π.

@@ -4,7 +4,7 @@ use super::sided::Constraint;
 use crate::error::{Result, check_range};
 use glam::Vec3;
 
-/// The quantity of the target that is to match the photo.
+/// The kind of radiance that is measured at the target and compared with the photo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Outgoing diffuse light of the target, its albedo included, as a photo shows it.
@@ -13,25 +13,25 @@ pub enum Quantity {
     Incident,
 }
 
-/// How a target of many points is matched.
+/// How the light at the many points of a target is fitted to the single target colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fit {
-    /// By its mean over the points, a single colour, as in the paper.
+    /// The mean over the points equals the target colour, as in the paper.
     Mean,
-    /// Point by point, by least squares: the limit of gradient descent on texels (Lipp et al. 2024). Bright points
-    /// have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the coefficient
-    /// of variation of the response over the target.
+    /// The sum of the squared differences at the points is minimal, as in the limit of gradient descent on texels
+    /// (Lipp et al. 2024). Bright points count more: without other light, the solution is dimmer by the factor
+    /// `1 / (1 + CV²)`, where CV is the coefficient of variation of the response over the target.
     LeastSquares,
 }
 
 /// The geometry of a target: where its light is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place<'a> {
-    /// A surface, given by its triangles as (mesh, triangle). They wind counter-clockwise as seen from the side to
-    /// match. Lamps on the surface are excluded.
+    /// A surface, given by its triangles as (mesh, triangle). Light is measured on the side from which the triangles
+    /// wind counter-clockwise. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),
-    /// A calculation grid in the air: a parallelogram given by a corner and two edges, lit on the side of `normal`.
-    /// Its light is the radiance that a white surface there would have: illuminance / π.
+    /// A calculation grid in the air: a parallelogram given by a corner and two edges. Light is measured on the side
+    /// of `normal`, as the radiance that a white surface there would have: illuminance / π.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
@@ -39,7 +39,7 @@ pub enum Place<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
-    /// How the points of the target are matched. Only [`super::run`] uses `fit` and `constraint`.
+    /// How the light at the points of the target is fitted. Only [`super::run`] uses `fit` and `constraint`.
     pub fit: Fit,
     /// Whether the target of each channel is exact or a limit; clipped pixels of a photo give lower limits. A channel
     /// with a limit gets the mean scale of the exact channels if this scale satisfies the limit, and otherwise the

@@ -1,14 +1,16 @@
 //! Finds the best placement of a texture: its offset, scale and rotation on the surface, by gradient descent on the
 //! importance map.
 //!
-//! The light of a placement is a dot product with the map, and so is its gradient. The texture is looked up at the
-//! centres of the cells, band-limited to their size ([`super::band`]), which makes it differentiable. As textures
-//! repeat, there are many local optima. The search evaluates many evenly distributed starting points, the current
-//! placement first, and descends from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
-//! [`Importance::respond`] compares the results at full resolution.
+//! The target's light under a placed texture is the dot product of the map and the texture, looked up at the centres
+//! of the map's cells. To make it differentiable, the look-ups are band-limited to the size of a cell
+//! ([`super::band`]). As textures repeat, there are many local optima. The search has three steps:
 //!
-//! All placements share the noise of the map. The light of the best of many placements is therefore overestimated by a
-//! small part of its confidence interval.
+//! 1. Evaluate many evenly distributed starting points and the current placement.
+//! 2. Descend from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
+//! 3. Compare the results at full resolution ([`Importance::respond`]).
+//!
+//! The noise of the map favours some placements. The light of the best placement is therefore slightly overestimated,
+//! by a small part of its confidence interval.
 
 use super::band::Pyramid;
 use super::descent::{self, Bounds};

@@ -32,8 +32,9 @@ pub struct Mixture {
     pub delta_e: f64,
 }
 
-/// Mixes a linear RGB colour from primaries, with drives of at most `max_drive`. Each primary is given by its linear
-/// RGB colour at a drive of 1, which has negative channels if it lies outside the gamut, as LEDs do.
+/// Mixes the linear RGB colour `wanted` from primaries such as LEDs, each with a drive from 0 to `max_drive`. A
+/// primary is given by its linear RGB colour at a drive of 1. Colours outside the gamut of RGB, such as those of most
+/// LEDs, have negative channels.
 ///
 /// # Errors
 /// Numbers that are not finite or out of range; no primaries or more than [`MAX_PRIMARIES`]; primaries that are all

@@ -30,7 +30,8 @@ pub struct Goal<'a> {
     /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light, the illuminance divided by π.
     pub target: Vec3,
     pub aspect: Aspect,
-    /// Whether the target of each channel is exact or a limit; the same for all channels if only the luminance counts.
+    /// Whether the target of each channel is exact or a limit. With [`Aspect::Luminance`], the three entries must be
+    /// equal.
     pub constraint: [Constraint; 3],
     /// Weight of this goal's relative error compared with other goals, ≥ 0.
     pub weight: f64,
@@ -55,7 +56,8 @@ impl Estimate {
         self.standard_error * STUDENT_T
     }
 
-    /// Returns the largest relative half-width of the confidence intervals of the channels with light.
+    /// Returns the half-width of the confidence interval relative to the mean, for the channel where it is largest.
+    /// Channels without light are ignored.
     pub(super) fn error(&self) -> f64 {
         let relative = self.half_width() / self.mean;
         (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)

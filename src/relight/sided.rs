@@ -2,10 +2,14 @@
 //!
 //! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
 //! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
-//! quadratic. Each step of Newton's method solves the problem with only the terms that are active at the current point
-//! ([`super::bounded`]), then moves towards the solution, to the minimum of the function on this line. The method ends
-//! after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after
-//! a few.
+//! quadratic. A step of Newton's method has three parts:
+//!
+//! 1. Find the active terms: the exact targets, and the limits that the current point violates.
+//! 2. Solve the problem with the active terms only ([`super::bounded`]).
+//! 3. Go to the minimum of the function on the line from the current point to this solution.
+//!
+//! The method ends after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in
+//! practice after a few.
 
 use super::bounded::{self, dot};
 use super::line_search::Slope;
@@ -88,8 +92,8 @@ impl Problem<'_> {
         &self.matrix[i * n..(i + 1) * n]
     }
 
-    /// Returns which terms are active at `x`. A term whose value equals its limit up to rounding keeps its state from
-    /// `before`.
+    /// Returns which terms are active at `x`: exact targets, and limits that are violated. A term whose value equals
+    /// its limit up to rounding keeps its state from `before`.
     fn active(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
         let is_active = |i: usize| {
             let (light, right) = (dot(self.row(i), x), self.right[i]);
@@ -140,9 +144,9 @@ impl Problem<'_> {
     }
 }
 
-/// Returns, in closed form, the power `q ≥ 0` that minimises `½ Σ ψ(a q − b)²`, where all lamps have this power and `a
-/// ≥ 0`. Among several minima it returns the smallest, which uses the least light. If no term requires light, it
-/// returns the minimum nearest to 1, the current power.
+/// Returns the common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, where `a ≥ 0` are the `responses`
+/// to all lamps together. Among several minima it returns the smallest, which uses the least light. If no term
+/// requires light, it returns the minimum nearest to 1, the current power.
 pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Constraint]) -> f64 {
     let rows = || {
         responses
@@ -257,7 +261,8 @@ mod tests {
         for case in 0..1000 {
             let (m, n) = (1 + rng.below(8), 1 + rng.below(if case % 2 == 0 { 30 } else { 5 }));
             let mut matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
-            // The channels of a grey room are equal.
+            // In every third case, make groups of three rows equal, as the three channels of a goal are in a grey
+            // room.
             for i in (1..m).filter(|i| case % 3 == 0 && i % 3 != 0) {
                 matrix.copy_within((i - 1) * n..i * n, i * n);
             }

@@ -31,8 +31,8 @@ pub struct Solution {
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².
     pub background: DVec3,
-    /// Colour error of the target: 95 % of errors stay below this CIEDE2000 difference, at the exposure that shows the
-    /// target as a middle grey.
+    /// Colour error of the target: with a probability of 95 %, the CIEDE2000 difference from the true colour is below
+    /// this value. The exposure for this comparison shows the target as a middle grey.
     pub delta_e: f64,
     /// Number of paths traced.
     pub paths: u32,

@@ -22,7 +22,7 @@ pub(super) struct Measured {
 struct Channel {
     response: [f64; BATCHES],
     background: [f64; BATCHES],
-    /// Means over the target's points of the squared response, and of response × background.
+    /// Two means over the target's points: of the squared response, and of the response times the background.
     squares: Option<[[f64; BATCHES]; 2]>,
 }
 
@@ -133,9 +133,10 @@ impl Channel {
     }
 }
 
-/// Colour error of the target: Student's quantile times the root mean square CIEDE2000 difference that the deviations
-/// of the batches cause, scaled to the standard error of the mean. It includes the correlation of the channels and
-/// bounds 95 % of errors in any direction. The exposure shows the target as a middle grey.
+/// Computes the CIEDE2000 difference below which 95 % of the target's colour errors stay. The deviation of each batch,
+/// scaled to the standard error of the mean, changes the target's colour; the result is the root mean square of these
+/// colour differences times Student's quantile. The three channels of a batch deviate together, so their correlation
+/// is included. The exposure shows the target as a middle grey.
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();

@@ -21,7 +21,7 @@ const MAX_ROUNDS: usize = 100;
 /// A decrease of the sum counts as zero if it is at most this, relative to the squared targets. [rounding]
 const ROUNDING: f64 = 1e-14;
 
-/// The current powers, the index of the level chosen for each group, and the light of each term.
+/// The current powers, the index of the level chosen for each group, and the light of each term under these powers.
 #[derive(Clone)]
 struct State {
     powers: Vec<f64>,
@@ -30,8 +30,8 @@ struct State {
 }
 
 impl Terms<'_> {
-    /// Rounds the powers `x` to levels (ascending, not empty). A group's level exceeds the group's bound only if even
-    /// the lowest level does.
+    /// Rounds the powers `x` to `levels` (ascending, not empty). Each group gets a level that is at most its bound in
+    /// `upper`, or the lowest level if all levels are above the bound.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
         let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {
@@ -40,8 +40,8 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Start once from the nearest level of every group, and once from the unrounded powers, of which the descent
-        // then rounds one group after the other.
+        // Try two starting points: all groups at their nearest levels, and the unrounded powers. From the latter, the
+        // descent rounds one group after the other.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
@@ -103,7 +103,8 @@ mod tests {
 
     #[test]
     fn equal_lamps_share_the_rounding() {
-        // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
+        // Ten lamps with a power of 0.24 give 2.4 in total. If lamps can only be on or off, two must be on for an
+        // exact target of 2.4, and three for a lower limit of 2.4.
         let terms = Terms { matrix: &[1.0; 10], right: &[2.4], constraints: &[Constraint::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();
         assert_eq!(on, 2.0);
@@ -116,8 +117,8 @@ mod tests {
         assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
     }
 
-    /// Joint rounding is never worse than separate rounding, and no change of a single group improves it. Its mean
-    /// error is less than 0.6 times the mean error of separate rounding.
+    /// Joint rounding is never worse than separate rounding, and no change of a single group improves it. On average,
+    /// the error of joint rounding is less than 0.6 times the error of separate rounding.
     #[test]
     fn joint_choices_against_all_combinations() {
         let mut rng = Rng::new(11, &[]);

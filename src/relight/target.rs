@@ -24,7 +24,7 @@ pub(super) struct Surface<'a> {
     quantity: Quantity,
 }
 
-/// A target point, and the factor that converts its irradiance to the quantity that is to match the photo.
+/// A target point, and the factor that converts its irradiance to the radiance that is compared with the photo.
 pub(super) struct Target {
     at: At,
     pub factor: Vec3,
@@ -101,7 +101,8 @@ impl<'a> Surface<'a> {
     }
 
     fn point(&self, u: f64, v: f64) -> Option<Target> {
-        // Select a triangle by area and reuse the remainder of the random number within it.
+        // Select a triangle with a probability proportional to its area. Reuse the remainder of the random number for
+        // the point in the triangle.
         let total = self.cumulative[self.cumulative.len() - 1];
         let i = self.cumulative.partition_point(|&sum| sum <= u * total).min(self.triangles.len() - 1);
         let before = if i == 0 { 0.0 } else { self.cumulative[i - 1] };

@@ -63,17 +63,17 @@ struct Batch {
     bins: Vec<DVec3>,
     /// Sum of the light that belongs to no bin.
     others: DVec3,
-    /// Sums of the products of the light of two paths from the same point.
+    /// Sums over pairs of paths from the same point; each term is the product of one path's light and the other's.
     pairs: Pairs,
     /// Number of paths summed; target points on lamps start no path.
     count: u32,
 }
 
-/// Second moments of the light at target points. Products of two independent paths from the same point are unbiased,
-/// whereas squares of single paths include their noise.
+/// Second moments of the light at target points. They are estimated by products of two independent paths from the same
+/// point, which are unbiased; squares of single paths would include noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// The square of the response (the light of the bin).
+    /// The square of the response, which is the light of the single bin.
     pub own: DVec3,
     /// The product of the response and the background (all other light).
     pub cross: DVec3,
@@ -108,7 +108,7 @@ impl<'a> Batches<'a> {
         Ok(Self { world, points, bins, seed, paired: false, batches, traced: 0 })
     }
 
-    /// Makes later rounds trace pairs of paths from each point, as a least squares fit needs; only for a single bin.
+    /// Switches to tracing two paths from each point, which a least squares fit needs. Allowed only with a single bin.
     pub fn in_pairs(self) -> Self {
         Self { paired: true, ..self }
     }
@@ -118,9 +118,8 @@ impl<'a> Batches<'a> {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces paths until each batch has `growth` times its current number of paths, with `growth` clamped to
-    /// [`GROWTH`], and at least [`FIRST_ROUND`] paths. A batch never gets more than `limit` divided by the number of
-    /// batches, rounded up.
+    /// Traces paths until each batch has `growth` times its current number of paths, at least [`FIRST_ROUND`].
+    /// `growth` is clamped to the range [`GROWTH`]. All batches together get at most about `limit` paths.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
         let max_per_batch = limit.div_ceil(BATCHES as u32);
         let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
@@ -143,13 +142,13 @@ impl<'a> Batches<'a> {
         Ok(())
     }
 
-    /// For each bin, the mean light per path, over the paths of one batch.
+    /// Returns the light in each bin, as a mean over the paths of one batch.
     pub fn mean_of_bins(&self, batch: usize) -> impl Iterator<Item = DVec3> {
         let batch = &self.batches[batch];
         batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
     }
 
-    /// For each batch, the mean light per path: of each bin, and of the light that belongs to no bin.
+    /// Returns the means over the paths of each batch: the light in each bin, and the light that belongs to no bin.
     pub fn means(&self) -> Vec<Means> {
         self.batches.iter().cloned().map(Batch::into_means).collect()
     }

@@ -34,10 +34,11 @@ pub enum PunctualLight {
     /// A measured luminaire in the far field: it is treated as a point, which assumes that the lit surfaces are far
     /// away compared with its size.
     ///
-    /// `axis` is the unit direction of γ = 0 (down for a hanging luminaire), and `c0` the unit direction of C = 0,
-    /// perpendicular to `axis`. C increases anticlockwise for a viewer who looks along `axis`, from above for a
-    /// hanging luminaire. The intensity in cd is `colour` per channel times the value of the scene's distribution of
-    /// index `distribution`.
+    /// - `axis` is the unit direction of γ = 0, which points down for a hanging luminaire.
+    /// - `c0` is the unit direction of C = 0, perpendicular to `axis`. C increases anticlockwise as seen by a viewer
+    ///   who looks along `axis`, that is, from above for a hanging luminaire.
+    /// - The intensity in cd is the product of `colour` and the value of the measured distribution. `distribution` is
+    ///   the index of this distribution in the scene.
     Luminaire { position: Vec3, axis: Vec3, c0: Vec3, colour: Vec3, distribution: usize },
 }
 

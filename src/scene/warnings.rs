@@ -17,7 +17,7 @@ pub const MAX_WIDTH: f64 = 2000.0;
 /// [convention]
 pub const MIN_EXTENT: f64 = 0.2;
 
-/// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
+/// Height and width of a typical room in metres. A warning suggests the unit that brings the scene closest to this
 /// size. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
@@ -111,8 +111,8 @@ impl Scene {
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
-    /// Warns if the extent of the scene suggests a unit other than the metre. Reports only the first defect in the
-    /// order too high, too wide, too small.
+    /// Warns if the extent of the scene suggests a unit other than the metre, because the scene is too high, too wide
+    /// or too small. Only the first of these defects is reported.
     pub fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let extent = (high - low).as_dvec3();

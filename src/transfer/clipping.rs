@@ -1,26 +1,29 @@
 //! Estimates the values that the clipped pixels of a photo would have without clipping.
 //!
-//! Two lights mix on a plane: the light of its lamps, and the light that the room reflects. The colours of the plane's
-//! pixels therefore lie roughly on a line. For each pair of channels, this line is fitted to the pixels in which
-//! neither of the two channels is clipped. In the other pixels, a clipped channel follows from an unclipped one.
-//! Because this is extrapolation, the estimate is limited to a range. It is at least white, and at most the unclipped
-//! channel times the ratio of the means of the two channels in the fitted pixels. If all channels of a pixel are
-//! clipped, only a lower bound of their values is known: white.
+//! A plane receives light directly from lamps and light reflected by the room. The colours of its pixels are mixtures
+//! of these two lights and lie roughly on a line in colour space.
+//!
+//! 1. For each pair of channels, fit a line to the pixels in which both channels are unclipped.
+//! 2. In the other pixels, predict a clipped channel from an unclipped one with this line.
+//! 3. Limit the prediction, because it is an extrapolation: it is at least the clipped value, and at most the value
+//!    that the ratio of the two channels' means gives.
+//!
+//! If all channels of a pixel are clipped, the pixel keeps its values, which are lower bounds.
 
 use glam::{BVec3, DVec3, Vec3};
 
-/// Minimum value at which a channel of the photo itself counts as clipped; the two largest 8-bit values reach it after
-/// decoding. In an unwarped photo, whose pixels are means of several photo pixels, clipping begins at lower values
-/// (`emission::Params::clip_level`).
+/// A channel of the photo counts as clipped from this linear value on; only the two largest 8-bit values reach it. In
+/// the unwarped photo, whose pixels are means of photo pixels, the limit is lower (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
 /// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
 const LEAST_WHOLE: f64 = 0.02;
-/// Relative standard deviation of a plane's brightness below which the regularisation dominates: the fitted line then
-/// runs nearly through black.
+/// Strength of the regularisation of the fitted line. If the relative standard deviation of the plane's brightness is
+/// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels.
 const EVEN: f64 = 0.05;
 
-/// Returns the mean colour of some pixels, and for each channel the share of pixels in which the channel is clipped
-/// and its value was not estimated. Clipped values are estimated only if `one_plane` is true. `None` without pixels.
+/// Returns the mean colour of `pixels`, and for each channel the share of pixels in which its value remains unknown,
+/// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true. Returns
+/// `None` if there are no pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;
@@ -96,8 +99,8 @@ impl Moments {
         self.xy += x * y;
     }
 
-    /// Fits the line by least squares, regularised towards the line through black. `None` for fewer than `least`
-    /// pixels.
+    /// Fits the line by least squares, regularised towards the line through black. Returns `None` if there are fewer
+    /// than `least` pixels, or if channel x is black in all of them.
     fn line(&self, least: f64) -> Option<Line> {
         let (x, y) = (self.x / self.n, self.y / self.n);
         if self.n < least || !(x > 0.0) {

@@ -59,7 +59,7 @@ pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: 
     })
 }
 
-/// The mean colour of the selected pixels, without pixels that are not finite.
+/// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored.
 fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<Target> {
     let colours = photo.data.chunks_exact(photo.channels).map(|p| Vec3::new(p[0], p[1], p[2])).enumerate();
     let selected = &selected;

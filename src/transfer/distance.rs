@@ -33,7 +33,7 @@ const OTHER: f64 = 0.5;
 const SIDES: [f64; 2] = [0.05, 3.0];
 /// Share of the length of a lamp's side that is luminous; the frame takes up the rest. [convention]
 const SHINES: f64 = 0.96;
-/// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view.
+/// Standard deviation of the logarithm of a measured side. Its causes are frames, blur, and errors of the view.
 /// [bench photos:real]
 const SIDE_ERROR: f64 = 0.07;
 
@@ -42,8 +42,8 @@ const SIDE_ERROR: f64 = 0.07;
 pub struct Distance {
     /// The distance in metres; if it is an estimate, the median of the posterior.
     pub metres: f64,
-    /// Standard deviation of the logarithm of the distance, about its relative error; 0 if the caller has set the
-    /// distance, or a length that determines it.
+    /// Standard deviation of the logarithm of the distance, which is approximately the relative error of the distance.
+    /// 0 if the caller has set the distance, or a length that determines it.
     pub error: f64,
 }
 
@@ -123,7 +123,8 @@ mod tests {
         }
     }
 
-    /// The stated error must cover the true error of lamps and rooms that are drawn from the model itself.
+    /// Draws distances and lamp sizes from the model. The true distance must lie within 1.96 estimated standard errors
+    /// about as often as for a normal distribution.
     #[test]
     fn stated_errors_cover_what_the_model_draws() {
         let mut rng = crate::rng::Rng::new(5, &[]);

@@ -1,4 +1,4 @@
-//! Finds the parts of the surface's rectangle where lamps may lie.
+//! Finds the parts of the surface's bounding rectangle where lamps may lie.
 
 use crate::emission::Placement;
 use crate::error::Result;
@@ -11,12 +11,12 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 
 /// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost.
 const CRACK: f64 = 1e-3;
-/// A surface whose area is at least this share of its rectangle's area counts as the full rectangle.
+/// A surface counts as a full rectangle if its area is at least this share of its bounding rectangle's area.
 const FULL: f32 = 0.9999;
 
-/// Computes the placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if
-/// light is allowed at all texels. `untouched` is the surface before the pattern was rotated; the zones are given
-/// along the axes of `untouched`.
+/// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has
+/// `size` texels and covers the bounding rectangle of `surface`, whose axes are those of the rotated pattern. The
+/// zones are given along the axes of `untouched`, the surface before the rotation.
 pub(super) fn of(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),
@@ -33,13 +33,13 @@ pub(super) fn of(
     let (width, height) = (size.x as usize, size.y as usize);
     let density = size.as_dvec2() / surface.size.as_dvec2();
 
-    // Find the texels that the surface covers. If its edge may cut lamps, keep every texel that may be visible in
-    // part.
+    // Find the texels that the surface covers. If lamps may cross the surface's edge (no margin), include texels of
+    // which only a part is visible.
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Mark the places where no lamp may be: zones and, if lamps must keep a margin, places off the surface. Then
-    // dilate the marked places by the margin.
+    // Mark the texels where no lamp may be: those in zones and, if lamps must keep a margin, those off the surface.
+    // Then dilate the marked texels by the margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);

@@ -92,7 +92,8 @@ pub struct Input {
     /// The triangles of the scene that receive the lights, as pairs of indices (mesh, triangle). If the list is not
     /// empty, it is used instead of `surface`.
     pub triangles: Vec<(usize, usize)>,
-    /// Keep-out rectangles of the surface, without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
+    /// Rectangles of the surface that must stay free of lamps: `(u0, v0, u1, v1)` in metres along the surface's axes,
+    /// from its corner.
     pub zones: Vec<DVec4>,
     /// The camera of the picture. If absent, the scene's first camera is used; if the scene has no camera, one is
     /// chosen.
@@ -108,8 +109,8 @@ pub struct Params {
     pub plane: segment::Params,
     /// Settings of the second phase of segmentation, which finds the lights on this plane.
     pub lights: segment::Params,
-    /// Settings of the texture. The transfer sets `width`, `height`, `scale` and `offset`, from the surface's size,
-    /// `pattern`, `plane_distance` and `max_texels`.
+    /// Settings of the texture's synthesis. The transfer replaces `width`, `height`, `scale` and `offset` by values
+    /// that follow from the surface's size, `pattern`, `plane_distance` and `max_texels`.
     pub emission: emission::Params,
     /// Size, rotation, offset and margin of the pattern on the surface.
     pub pattern: Pattern,
@@ -159,28 +160,28 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view found from lines alone, if the lamps have led to a different view, which is then in `view`.
+    /// The view before its correction. `None` if the lamps have not corrected the view; otherwise, `view` holds the
+    /// corrected one.
     pub view_by_lines: Option<Arc<View>>,
     /// Whether the caller has set the view. Such a view is not corrected.
     pub view_is_given: bool,
     pub features: Option<Arc<Features>>,
-    /// Lamps found beyond the plane of the first room layout. The room was enlarged to contain them, and they serve as
-    /// examples of the plane.
+    /// The lamps to which the room was enlarged, because they lay beyond the ceiling of the first room layout. They
+    /// serve as examples of the plane.
     pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
     pub emission: Option<Arc<Emission>>,
-    /// The distance of the photo's camera from the lit plane at which the pattern has its size on the surface; absent
-    /// if the caller supplies the texture.
+    /// The distance of the photo's camera from the lit plane. It gives the pattern its size on the surface. `None` if
+    /// the caller supplies the texture.
     pub distance: Option<Distance>,
-    /// The scene with the texture on its surface before relighting: the emission is `white_luminance` times the
-    /// texture's values.
+    /// The scene before relighting. The texture is on the surface, and its values are multiplied by `white_luminance`.
     pub unsolved: Option<Arc<LitScene>>,
     /// Mean colour that the surface should have, relative to the photo's white.
     pub target: Option<Vec3>,
     pub solution: Option<Solution>,
-    /// The scene with the solved emission. If the scene had no camera, it also has a chosen one.
+    /// The scene with the solved emission. If the scene had no camera, one was added.
     pub lit: Option<Arc<LitScene>>,
     pub film: Option<Arc<Film>>,
     /// Seconds that each stage took in its latest run.
@@ -243,8 +244,8 @@ impl Transfer {
         .map_err(|e| self.with_likely_unit(stage, e).context(format_args!("stage {stage:?}")))
     }
 
-    /// If a stage fails on a scene of implausible size, mentions the size in the error, because it is the likely
-    /// cause.
+    /// Adds a hint to the error of a stage if the scene has an implausible size, because a wrong unit of length is the
+    /// likely cause.
     fn with_likely_unit(&self, stage: Stage, error: Error) -> Error {
         let is_cause = stage >= Stage::Emission && error.kind != ErrorKind::Cancelled;
         match self.input.scene.as_ref().filter(|_| is_cause).and_then(|scene| scene.implausible_size()) {

@@ -19,7 +19,8 @@ pub enum Scale {
     /// The shorter period of the lamps' lattice; without a lattice, the median distance from a lamp to its nearest
     /// neighbour.
     Spacing(f64),
-    /// The width of the surface: as many lamps lie side by side on it as on the plane in the photo.
+    /// The plane in the photo is scaled to the width of the surface, so that both have the same number of lamps side
+    /// by side.
     Across,
 }
 
@@ -27,28 +28,28 @@ pub enum Scale {
 /// a disc and a full box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// A pattern is refused if it is too small for the texels: if the surface is more than this many times as long as the
-/// plane in the photo (for example a hall of 600 m and 6 m of a ceiling), and the plane spans fewer than
-/// `MIN_SHOWN_TEXELS` texels. [convention]
+/// Maximum ratio of the surface's length to the length of the plane in the photo, for example 600 m to 6 m. Beyond
+/// this ratio, the pattern is refused if the plane also spans fewer than `MIN_SHOWN_TEXELS` texels. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
-/// Minimum number of texels along the plane in the photo for its pattern to be visible: enough for two lamps with a
-/// gap beside each. [convention]
+/// Minimum number of texels along the plane in the photo: enough to show two lamps with a gap beside each. With fewer
+/// texels, no pattern would be visible. [convention]
 const MIN_SHOWN_TEXELS: f64 = 4.0;
 
 /// Size, rotation, offset and margin of the pattern on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`. 0: the size of an unwarped pixel or, if that is larger, the
-    /// minimum size that `max_texels` allows.
+    /// Metres per texel, in `[0, 1e6]`. 0 means the size of an unwarped pixel; the texels are larger if there would be
+    /// more than `max_texels` along a side.
     pub texel_size: f64,
     /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,
     /// Shift of the pattern along its own axes in metres, each in `[-1e6, 1e6]`.
     pub offset: DVec2,
-    /// Minimum distance in metres of lamps from the surface's edge and from the zones of the input, in `[-1, 1e6]`.
-    /// Closer lamps are left out. If negative, the surface's edge cuts lamps instead.
+    /// Minimum distance in metres, in `[-1, 1e6]`, between a lamp and the surface's edge or a keep-out zone
+    /// ([`super::Input::zones`]). Lamps that are closer are removed. If the margin is negative, lamps may cross the
+    /// surface's edge and are cut off there.
     pub margin: f64,
 }
 
@@ -62,9 +63,9 @@ impl Default for Pattern {
 pub(super) struct Sizing {
     /// Metres per unwarped pixel.
     pub pixel: f64,
-    /// The distance of the photo's camera from the lit plane at which the pattern has this size.
+    /// The distance of the photo's camera from the lit plane, from which this size follows.
     pub distance: Distance,
-    /// The measurements of the exemplar, if the size depends on them.
+    /// The measured sizes of the exemplar's lamps; `None` if the size of the pattern does not depend on them.
     pub measured: Option<Measure>,
 }
 
@@ -92,9 +93,9 @@ impl Pattern {
         Ok(())
     }
 
-    /// Computes the size of an unwarped pixel on the surface. `pixel` is the size that the pixel has if the photo's
-    /// camera is at distance 1 from the lit plane. `plane_distance` is the actual distance in metres; 0 means that the
-    /// distance is estimated from the lamps.
+    /// Computes the size of an unwarped pixel on the surface, in metres. `pixel` is this size divided by the distance
+    /// of the photo's camera from the lit plane. `plane_distance` is this distance in metres; if it is 0, the distance
+    /// is estimated from the lamps.
     pub(super) fn sizing(
         &self,
         (pixel, plane_distance): (f64, f64),
@@ -126,9 +127,10 @@ impl Pattern {
         Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
-    /// Chooses the size and number of the texels on the surface. The size is `texel_size` or, if that is 0, the size
-    /// of an unwarped pixel, enlarged if necessary so that there are at most `max_texels` along the longer side. The
-    /// unwarped photo is `pixels` pixels long, each of `pixel` metres.
+    /// Chooses the size and the number of the texels on the surface. The size is `texel_size`. If that is 0, it is the
+    /// size of an unwarped pixel or, if the surface would then need more than `max_texels` along its longer side, the
+    /// smallest size that is allowed. The longer side of the unwarped photo has `pixels` pixels of `pixel` metres
+    /// each.
     pub(super) fn texel_grid(
         &self,
         surface: &Surface,
@@ -145,8 +147,8 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // Refuse here the scales that the synthesis would refuse too, because its error message does not name the
-        // cause. Also refuse a pattern too small for the texels, which would take minutes.
+        // Refuse scales outside the range of the synthesis, with a message that names the cause. Also refuse a pattern
+        // that the texels cannot show, because its synthesis would take minutes.
         let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
         let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
         if is_lost || !emission::SCALES.contains(&(texel / pixel)) {
@@ -184,8 +186,8 @@ mod tests {
 
     #[test]
     fn a_scene_in_another_unit_is_named_as_the_cause() {
-        // A surface of 8 m in millimetres, read as 8000 m, with pixels of 2 mm and of 2 cm; the synthesis could scale
-        // only the latter.
+        // A surface of 8 m is given in millimetres and read as 8000 m. The scale is outside the range of the synthesis
+        // for pixels of 2 mm, and inside it for pixels of 2 cm. Both must be refused.
         for pixel in [0.002, 0.02] {
             let grid = |size, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).map(|_| ());
             let error = grid(Vec2::new(8000.0, 6000.0), 2048).unwrap_err();
@@ -198,8 +200,8 @@ mod tests {
 
     #[test]
     fn lamps_keep_their_size_in_metres() {
-        // With pixels of 2 cm, the surface has 300 × 150 texels of one pixel, or 100 × 50 texels of three pixels (6
-        // cm).
+        // Unwarped pixels measure 2 cm. With 300 × 150 texels, a texel has the size of one pixel; with 100 × 50
+        // texels, the size of three.
         let grid = |size, pixel, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).unwrap();
         let fine = grid(Vec2::new(6.0, 3.0), 0.02, 2048);
         assert_eq!((fine.width, fine.height), (300, 150));

@@ -14,10 +14,9 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Maximum factors by which a wall may be moved outwards to enclose lamps beyond it. If a larger factor is necessary,
-/// the room is not enlarged. `MAX_GROWTH_UNCERTAIN` applies to uncertain room layouts: the plane was proposed
-/// automatically because the user painted no strokes, or the lines of the photo do not determine the camera.
-/// [bench photos:tune, photos:real]
+/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the
+/// room stays as it is. The second value applies if the room layout is uncertain: the user painted no strokes on the
+/// plane, or the photo's lines do not determine the camera. [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
@@ -273,7 +272,8 @@ impl Transfer {
 }
 
 impl Results {
-    /// Restores the view and the room layout to their state before the lamps changed them.
+    /// Forgets the corrections that the lamps led to: restores the view found from lines, and clears the lamps beyond
+    /// the room.
     pub(super) fn forget_lamps(&mut self) {
         self.beyond.clear();
         if let Some(view) = self.view_by_lines.take() {
@@ -283,14 +283,14 @@ impl Results {
 }
 
 impl LitScene {
-    /// Returns the scene with another strength of the emission, in cd/m² per channel.
+    /// Returns a copy of the lit scene whose texture is multiplied by `strength` (cd/m² per channel).
     pub fn with_strength(&self, strength: Vec3) -> Self {
         let mut scene = (*self.scene).clone();
         scene.materials[self.placed.material].emission = strength;
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 
-    /// Returns the scene with white lamps of equal luminance, for comparison with the colour of the solution.
+    /// Returns a copy of the lit scene with white lamps that have the luminance of the coloured ones, for comparison.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
         let material = &mut scene.materials[self.placed.material];

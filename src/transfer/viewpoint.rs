@@ -8,11 +8,11 @@ use glam::{Vec2, Vec3};
 
 /// Vertical angle of view in radians.
 const FOV_Y: f32 = 0.9;
-/// Distances from a corner of the surface that are tried, as shares of the surface's sides.
+/// Distances of the candidate cameras from a corner of the surface, as shares of the surface's sides.
 const INSETS: [f32; 2] = [0.08, 0.2];
-/// Distances below the surface that are tried, as shares of the scene's depth below the surface.
+/// Distances of the candidate cameras from the surface, as shares of the depth of the scene below the surface.
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Number of rays across and down the picture that measure how open a view is.
+/// Numbers of rays, horizontally and vertically, with which the mean line of sight of a camera is measured.
 const RAYS: [usize; 2] = [12, 8];
 
 /// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
@@ -34,7 +34,8 @@ pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     best.1.unwrap_or_else(|| candidate(surface, 0, INSETS[0], HEIGHTS[0] * depth))
 }
 
-/// Maximum distance of the scene's vertices from the surface, on the side of the room.
+/// Returns the distance from the surface to the farthest vertex on its lit side, or half the surface's longer side if
+/// there is none.
 fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
     let points = scene.meshes.iter().flat_map(|m| &m.positions);
     let depth = points.map(|p| (*p - surface.origin).dot(surface.normal)).fold(0.0, f32::max);

@@ -55,7 +55,8 @@ mod tests {
     use crate::warning::Code;
     use std::sync::Arc;
 
-    /// The warnings about two masks of ten columns: the plane covers columns `0..plane`, the lights cover `0..lights`.
+    /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, that of
+    /// the lights `0..lights`.
     fn codes(plane: usize, lights: usize) -> Vec<(Stage, Code)> {
         let mask = |columns: usize| {
             let mask = Image::from_fn(10, 4, |x, _| [f32::from(x < columns)]).unwrap();

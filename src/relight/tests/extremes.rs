@@ -30,8 +30,8 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
     };
     let grey = solved(Vec3::splat(0.3), Vec3::splat(0.3));
     let warm = solved(Vec3::new(0.45, 0.28, 0.15), Vec3::new(0.6, 0.05, 0.05));
-    // The same target needs white light in a grey room and bluish light in a warm one; the difference exceeds both
-    // intervals.
+    // The same target needs white light in a grey room, and bluish light in a warm one. The difference must exceed the
+    // confidence intervals of both solutions.
     let blue = |s: &Solution| (s.scale.z / s.scale.x, (s.half_width.z / s.scale.z).hypot(s.half_width.x / s.scale.x));
     let ((neutral, e), (shifted, f)) = (blue(&grey), blue(&warm));
     assert!((neutral - 1.0).abs() < 1.5 * e, "{grey:?}");

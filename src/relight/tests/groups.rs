@@ -75,7 +75,7 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
     assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
     assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
     assert_eq!((free.outcomes[0].status, &free.unreachable), ([TargetStatus::Met; 3], &None));
-    // With half the required power as bound, the bound is the solution, and the explanation names it.
+    // If the upper bound is half the required power, the solution is the bound, and the explanation names the bound.
     let bounded = GroupParams { max_scale: vec![expected / 2.0], ..GroupParams::default() };
     let bounded = powers(&responses, &goals, &bounded).unwrap();
     assert_eq!(bounded.scale[0].x, expected / 2.0);
@@ -186,8 +186,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
         reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
         "{reason}"
     );
-    // Test powers at their bound, then other lights that exceed the target, so that the power would have to be
-    // negative.
+    // Test goals for which the powers reach their upper bounds, then goals that the other lights alone exceed.
     let reason =
         reason_for(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
@@ -254,7 +253,8 @@ fn limits_count_on_one_side() {
     assert_eq!(solve(one(caps[0], Constraint::AtMost), one(1e3, Constraint::AtMost)).scale, [DVec3::ONE; 2]);
     let solution = solve(one(caps[1], Constraint::AtMost), one(1e3, Constraint::AtMost));
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
-    // An unreachable goal is reported with the kind of its limit.
+    // If two goals contradict each other, the missed lower limit is reported as too dim, and the missed upper limit as
+    // too bright.
     let goals = [at(0.9, 0.9, 40.0, Constraint::AtLeast), at(3.1, 3.1, 1.0, Constraint::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);
@@ -345,7 +345,7 @@ fn luminaires_are_lamps() {
     assert!(solution.unreachable.is_none());
 }
 
-/// Free colours are solved channel by channel, as in the closed form.
+/// If the colour of the groups may change, every channel of a coloured goal is met, as in the closed form.
 #[test]
 fn free_colours_meet_a_coloured_goal() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -381,7 +381,8 @@ fn intervals_of_single_lamps_cover() {
             (a.mean.x - b.mean.x).abs() < 2.04 * sigma
         })
         .count();
-    // Of 64 intervals at 95 %, fewer than 54 contain the truth with a probability below 1e-3.
+    // Each interval contains the truth with a probability of 95 %. The probability that fewer than 54 of 64 intervals
+    // contain it is below 1e-3.
     assert!(inside >= 54, "{inside} of 64");
 }
 

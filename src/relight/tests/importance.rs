@@ -46,7 +46,7 @@ fn lamps() -> Texture {
     Texture::new("lamps", image)
 }
 
-/// The dot product of the map and a texture equals the result of tracing the textured room, within the joint interval,
+/// The dot product of the map and a texture equals the result of tracing the textured room, within the errors of both,
 /// for any placement of the texture.
 #[test]
 fn a_dot_product_with_the_map_equals_tracing() {
@@ -68,7 +68,7 @@ fn a_dot_product_with_the_map_equals_tracing() {
             let off = (response.light.mean[c] - direct.response[c]).abs();
             let allowed = 4.0 * sigma + response.band_error[c].abs();
             assert!(off < allowed, "channel {c}: {response:?} {direct:?}");
-            // The joint interval is narrow, so that the test can fail.
+            // The allowed difference must be small; otherwise the test could never fail.
             assert!(allowed < 0.1 * direct.response[c], "{allowed} {}", direct.response[c]);
         }
         // In the closed form, the scale for a target of 1 is the reciprocal of the response.

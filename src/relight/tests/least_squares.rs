@@ -58,7 +58,7 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     let r = |x, z| response(x, z, PLACES[0]);
     let (first, second) = (mean(r), mean(|x, z| r(x, z).powi(2)));
     let variation = second / (first * first) - 1.0;
-    // The floor is far from uniformly lit, so that the test can fail.
+    // The floor must be far from uniformly lit; otherwise both fits would give equal results.
     assert!(variation > 0.5, "{variation}");
     let params = Params { target_error: 0.004, ..Params::default() };
     let (plain, least) = (solve_with(&scene, Fit::Mean, &params), solve_with(&scene, Fit::LeastSquares, &params));
@@ -72,8 +72,8 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     assert!((ratio * (1.0 + variation) - 1.0).abs() < 4.0 * sigma, "{ratio}, {variation}");
 }
 
-/// With other light `b`, the solution for the target `t` is `c = E r (t - b) / E r²`. Noise does not bias `c`: its
-/// expected value is right even for few paths, although the squares of their noisy values would be far too large.
+/// With other light `b`, the least squares solution for the target `t` is `c = E[r (t - b)] / E[r²]`. Few paths give a
+/// noisy but unbiased `c`, although the mean of their squared values is far larger than `E[r²]`.
 #[test]
 fn noise_does_not_make_the_answer_dark() {
     let scene = scene();

@@ -79,7 +79,7 @@ fn a_black_room_answers_with_the_form_factor() {
         );
         assert!(solution.half_width[c] / solution.scale[c] < 0.002);
     }
-    // An error of 0.2 % of a middle grey is about 0.07 in lightness; the errors of the channels are equal.
+    // For a middle grey, a relative error of 0.2 % in all channels changes the CIELAB lightness by about 0.07.
     assert!(solution.delta_e > 0.01 && solution.delta_e < 0.1, "{}", solution.delta_e);
 }
 
@@ -147,7 +147,8 @@ fn a_limit_binds_only_where_it_is_broken() {
     }
     assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
     assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
-    // A limit that the other channels' scale violates is met exactly, on either side.
+    // If the scale of the other channels violates a lower or an upper limit, the limited channel meets its limit
+    // exactly.
     for (factor, constraint) in [(1.5, Constraint::AtLeast), (0.5, Constraint::AtMost)] {
         let bound = least(truth * Vec3::new(factor, 1.0, 1.0), constraint);
         let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Constraint::Exactly);

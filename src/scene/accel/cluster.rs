@@ -27,8 +27,8 @@ const SEARCH_RADIUS: usize = 8;
 /// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Mask of the low bits of a candidate's area, which are replaced by the XOR of the indices of the two clusters. From
-/// these bits and its own index a cluster recovers the index of its partner.
+/// Mask of the low bits of a float. In the area of a candidate pair of clusters, these bits are replaced by the XOR of
+/// the two clusters' indices. From them and its own index, a cluster recovers the index of its partner.
 const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
 /// Builds the tree over all leaves. There must be at least one leaf.
@@ -73,7 +73,8 @@ impl NewPairs<'_> {
         (left, NewPairs { pairs, parents, first: self.first + middle as u32 })
     }
 
-    /// Makes two clusters siblings in one of the two pairs reserved for them. The merged cluster keeps the other pair.
+    /// Merges two clusters: makes their nodes siblings. The nodes fill one of the two pairs reserved for the clusters;
+    /// the merged cluster keeps the other pair in reserve.
     fn join(&mut self, a: &Cluster, b: &Cluster) -> Cluster {
         let (pair, free) = (a.pair.min(b.pair), a.pair.max(b.pair));
         self.pairs[(pair - self.first) as usize] = Pair([a.node, b.node]);
@@ -119,8 +120,8 @@ impl Range<'_> {
         Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW_CLUSTERS, self.level))
     }
 
-    /// Returns where to split the range: at the first leaf whose Morton code has the highest differing bit set. A
-    /// range of equal codes is halved.
+    /// Returns the position at which to split the range: the first leaf with a 1 in the highest bit in which the
+    /// Morton codes of the range differ. A range of equal codes is halved.
     fn middle(&self) -> usize {
         let (first, last) = (self.order[0].0, self.order[self.order.len() - 1].0);
         if first == last {
@@ -172,12 +173,12 @@ const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 /// Bounds of the clusters' boxes in SoA layout. Sentinel boxes on both sides are too large to be chosen as partners.
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
-/// Half the side of a sentinel box, larger than any coordinate: scenes are scaled to unit size, though they may lie
-/// 2^24 times as far from the origin. [convention]
+/// Half the side of a sentinel box. It is larger than any coordinate: scaled scenes have an extent of about 1, and lie
+/// at most about 2^24 from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
-/// For each cluster `i` and its neighbour `i - SEARCH_RADIUS + k`: the bits in which the two indices differ. They are
-/// stored at `[i / LANES][k][i % LANES]`.
+/// The entry `[i / LANES][k][i % LANES]` holds the bits in which the index of cluster `i` differs from the index of
+/// its neighbour, `i - SEARCH_RADIUS + k`.
 static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
     let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;

@@ -212,8 +212,8 @@ impl Choice<'_> {
         Ok(())
     }
 
-    /// Expected benefit of a child for an any-hit query: surface area of its leaves per unit of traversal cost.
-    /// Children are sorted by this benefit in ascending order, because such a query visits the last lane first.
+    /// Expected benefit of a child for an any-hit query: surface area of its leaves per unit of traversal cost. The
+    /// children of a node are sorted by ascending benefit, because any-hit queries visit the last lane first.
     fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]
@@ -226,16 +226,16 @@ impl Choice<'_> {
     /// Collects the up to eight children of a branch that becomes a wide node; returns their number.
     fn members(&self, node: Place, members: &mut [Place; 8]) -> usize {
         let mut len = 0;
-        // Stack of (branch, maximum number of wide subtrees for it). At most one right half per level of the tree
-        // waits.
+        // Stack of branches, each with the maximum number of wide subtrees that may represent it. At most one right
+        // half per level of the tree waits on the stack.
         let mut open = [(node, 8); 8];
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
             let ((binary, at), mut roots) = open[waiting];
             let branch = self.branch((binary, at));
-            // Use fewer wide subtrees if they cost the same. The root of the node itself (`roots` = 8) must be
-            // divided.
+            // The branch may become up to `roots` wide subtrees. Choose fewer if they cost the same. The branch of the
+            // node itself (`roots` = 8) is always divided.
             while roots < 8 && roots > 1 && branch.cost[roots - 2] <= branch.cost[roots - 1] {
                 roots -= 1;
             }
@@ -264,8 +264,8 @@ impl Choice<'_> {
         len
     }
 
-    /// Collects and prefetches the triangles of a branch, which may continue in another part; returns them and their
-    /// number.
+    /// Returns the indices of the triangles below a branch and their number, and prefetches the triangles. The branch
+    /// may extend into other parts of the tree.
     fn triangles(&self, at: Place) -> ([u32; WIDTH], usize) {
         let mut ids = [0; WIDTH];
         let mut len = 0;

@@ -1,8 +1,8 @@
 //! Expected traversal cost of each subtree of the binary tree when it is represented by one to seven wide subtrees.
 //!
-//! By the surface area heuristic, a ray that hits a parent's box hits a child's box with a probability of the child's
-//! surface area over the parent's. The costs of a subtree follow from those of its two halves (Ylitie et al. 2017,
-//! section 3.1).
+//! By the surface area heuristic, the probability that a ray which hits a parent's box also hits a child's box is the
+//! ratio of the child's surface area to the parent's. The costs of a subtree follow from those of its two halves
+//! (Ylitie et al. 2017, section 3.1).
 
 use super::packet::WIDTH;
 use super::pages;
@@ -36,7 +36,7 @@ pub(super) enum Content {
     Halves(u32),
     /// A leaf of one or two triangles: index of the first.
     Leaf(u32),
-    /// The root of another part of the tree, which is cut into parts for parallel work: index of that part.
+    /// The root of another part: index of that part. (The tree is cut into parts for parallel work.)
     Part(u32),
 }
 
@@ -48,8 +48,8 @@ pub(super) struct Branch {
     count: u32,
     /// Half the surface area of this branch's box.
     pub area: f32,
-    /// Sum of the half areas of the boxes of all leaves below. This approximates the area of their triangles, as most
-    /// leaf boxes are flat.
+    /// Half the total surface area of all leaf boxes below this branch. It approximates the area of the leaves'
+    /// triangles, because most leaf boxes are flat.
     pub surface: f32,
     /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it.
     pub cost: [f32; 7],
@@ -62,13 +62,13 @@ impl Branch {
         Self { shape, content, count: node.prim_count, area, surface: area, cost: [area * PACKET_COST; 7] }
     }
 
-    /// Estimated number of cache lines for this branch's packets and nodes: packets are rarely full, and nodes add a
-    /// tenth.
+    /// Estimated number of cache lines for this branch's packets and nodes. Full packets would fill 5 lines for every
+    /// 8 triangles; the estimate is twice as much, because packets are rarely full and nodes add a tenth.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }
 
-    /// Range of the triangles of a leaf, the first of which is `first`.
+    /// Returns the indices of a leaf's triangles. `first` is the index of its first triangle.
     pub fn triangles(&self, first: u32) -> Range<u32> {
         first..first + self.count
     }
@@ -122,7 +122,8 @@ impl Binary {
     fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);
-        // `halves[i]`: cost of both halves with `i + 2` wide subtrees in total. A leaf costs the same for any number.
+        // `halves[i]` is the cost if `i + 2` wide subtrees in total represent the two halves. The cost of a leaf does
+        // not depend on the number.
         let halves = match (l.content, r.content) {
             (Content::Leaf(_), _) => r.cost.map(|cost| cost + l.cost[0]),
             (_, Content::Leaf(_)) => l.cost.map(|cost| cost + r.cost[0]),
@@ -139,8 +140,8 @@ impl Binary {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether to store the branch as a packet of triangles if a single wide subtree represents it. A packet must then
-    /// be possible, and at most as costly as a node.
+    /// Whether the branch becomes a packet of triangles if it is represented by a single wide subtree. It does if it
+    /// has at most eight triangles, and if a packet costs at most as much as a node.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32
@@ -148,8 +149,8 @@ impl Binary {
     }
 }
 
-/// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. Written without branches,
-/// which would be unpredictable.
+/// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. The code has no branches,
+/// because their outcomes would be unpredictable.
 fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {
@@ -165,8 +166,8 @@ fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Returns the minimum cost of two halves with `roots` wide subtrees in total, and how many of these the left half
-/// gets.
+/// Divides `roots` wide subtrees between two halves at minimum cost. Returns this cost and the number of wide subtrees
+/// for the left half.
 pub(super) fn distribute(left: &[f32; 7], right: &[f32; 7], roots: usize) -> (f32, usize) {
     let mut best = (left[0] + right[(roots - 2).min(6)], 1);
     for k in 2..roots {

@@ -39,8 +39,8 @@ pub(super) trait Lanes: Copy {
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Returns an integer whose bit `i` is set if lane `i` is true.
     fn bits(mask: Self::Mask) -> u32;
-    /// Writes `payload[i]` for every lane `i` in `mask`, in lane order without gaps, as `u64` each. The entries after
-    /// the last one written, up to eight in all, receive arbitrary values.
+    /// Writes `payload[i]` as a `u64` for every lane `i` in `mask`, in lane order and without gaps. It may overwrite
+    /// all eight entries at `to`: those that the mask does not fill receive arbitrary values.
     ///
     /// # Safety
     /// Eight entries must be writable at `to`.

@@ -19,8 +19,8 @@ use rayon::prelude::*;
 const CHUNK: usize = 4096;
 /// Bits per coordinate in a Morton code.
 const BITS: u32 = 21;
-/// Lower bound of the extent along an axis, relative to the scene's size. It avoids a division by zero; a scene that
-/// is flat along an axis has one layer of grid cells there. [rounding]
+/// Lower bound of the scene's extent along an axis, relative to its largest extent. It avoids a division by zero if
+/// the scene is flat along an axis. [rounding]
 const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
@@ -92,7 +92,7 @@ impl Chunk {
     fn gather(triangles: &[[Vec3; 3]], first: u32) -> Result<Self> {
         let leaves = try_with_capacity(triangles.len())?;
         let mut chunk = Self { leaves, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, dropped: 0 };
-        // Half the surface area of the previous triangle's box, unless that triangle already belongs to a pair.
+        // Half the surface area of the previous triangle's box; `None` if that triangle is already in a pair.
         let mut alone: Option<f32> = None;
         for (i, corners) in triangles.iter().enumerate() {
             if !has_area(corners) {
@@ -128,7 +128,7 @@ fn has_area(corners: &[Vec3; 3]) -> bool {
     doubled.is_finite() && doubled > 0.0
 }
 
-/// The grid whose cells the Morton codes number. It has the same number of cells along each axis.
+/// The grid of cells to which the Morton codes refer. It has the same number of cells along each axis.
 struct Grid {
     scale: f32,
     /// Lower corner of the grid in scaled units.
@@ -141,7 +141,8 @@ impl Grid {
         let extent = high.as_dvec3() - low.as_dvec3();
         let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
         let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
-        // `MIN_EXTENT` gives a scene that is flat along an axis one layer of cells there.
+        // Bound the extent from below: along an axis on which the scene is flat, all boxes then lie in one layer of
+        // cells.
         let per_unit = (max_cell / (extent * scale).max(DVec3::splat(MIN_EXTENT))).as_vec3a();
         Self { scale: scale as f32, low: Vec3A::from(low) * scale as f32, per_unit }
     }

@@ -1,7 +1,8 @@
 //! Storage for the nodes and packets of the acceleration structure in one list of cache lines.
 //!
-//! Deep in the tree, nodes are no longer in the processor's caches: each step of a ray waits for memory, and longer if
-//! it leads to another page. Each node is therefore followed by its packets, and nodes visited together share a page.
+//! Deep in the tree, nodes are no longer in the processor's caches, so each step of a ray waits for memory. It waits
+//! longer if the step leads to another page of memory. Each node is therefore followed by its packets, and nodes that
+//! are likely to be visited together share a page.
 
 use super::node::Node;
 use super::packet::Packet;
@@ -89,7 +90,8 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Prefetches the node or packet at `line`, as many cache lines as a packet has. A node has one line fewer.
+    /// Prefetches the node or packet at `line`. It fetches as many cache lines as a packet fills; a node fills one
+    /// less.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
         pages::prefetch(self.at(line), lines_of::<Packet>());

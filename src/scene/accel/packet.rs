@@ -5,8 +5,8 @@ use super::lanes::{Lanes, Row};
 use super::ray::Hit;
 use glam::Vec3;
 
-/// Smallest distance of a hit, relative to the triangle's largest depth along the ray. Nearer hits are rounding
-/// errors: sixteen errors of 2^-24 each. [rounding]
+/// Minimum distance of a hit, relative to the largest depth of the triangle's corners along the ray. Nearer hits are
+/// refused, because the distance could be a rounding error (sixteen errors of 2^-24 each). [rounding]
 const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Maximum number of triangles in a packet.
@@ -153,7 +153,7 @@ impl HitRows {
 
 /// A ray prepared for triangle tests. Its axes are permuted so that the dominant axis is the third.
 pub(super) struct TriangleRay {
-    /// The origin in the permuted axes; `shear` uses them too.
+    /// The origin, with its coordinates in the order of `axes`. The entries of `shear` have the same order.
     origin: [f32; 3],
     axes: [usize; 3],
     shear: [f32; 3],

@@ -1,10 +1,14 @@
 //! Optimisation of the binary tree by reinsertion (Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume
 //! Hierarchy Optimization"): subtrees are moved to where the total surface area of all boxes is smallest.
 //!
-//! Each round first searches in parallel for the best new position of many subtrees, in the unchanged tree. Then it
-//! makes these moves one after another, largest gain first, and skips moves that touch nodes which an earlier move of
-//! the round has changed. The search order differs from the paper: of two children the more promising is entered
-//! first, and neither child is entered if it promises no gain.
+//! Each round has two steps:
+//!
+//! 1. In the unchanged tree, search in parallel for the best new position of many subtrees.
+//! 2. Make these moves one after another, largest gain first. Skip a move if an earlier move of the round has changed
+//!    one of its nodes.
+//!
+//! The search order differs from the paper: of two children the more promising is entered first, and neither child is
+//! entered if it promises no gain.
 
 use super::pages;
 use super::tree::{Pair, Tree, half_area};
@@ -58,8 +62,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// Returns an area threshold for each share. At most this share of all nodes have an area of at least the
-    /// threshold; the threshold is the lowest boundary between histogram bins with this property.
+    /// Returns an area threshold for each share of the nodes. The nodes whose area is at least the threshold make up
+    /// at most this share. Thresholds are boundaries of histogram bins, so fewer nodes may reach them.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
@@ -123,8 +127,8 @@ impl<'a> Reinsertion<'a> {
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // The gain so far on the way up to `pivot`, and the box that remains below `pivot` without the subtree. `None`
-        // once that box is as large as before.
+        // `gained` is the half area saved by removing the subtree, so far up to `pivot`. `rest` is the box of the
+        // nodes below `pivot` without the subtree; it becomes `None` when a box on the way up does not shrink.
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {
@@ -137,8 +141,7 @@ impl<'a> Reinsertion<'a> {
                 gained += less;
                 rest = (less > 0.0).then_some(smaller);
             }
-            // Stop where no gain is possible. Even if no other box grows, the new parent is at least as large as the
-            // subtree.
+            // Stop if no position farther up can be better: the new parent costs at least the area of the subtree.
             if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
                 return search.best;
             }
@@ -154,9 +157,9 @@ impl<'a> Reinsertion<'a> {
             return;
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
-        // Three slots are rewritten. The sibling of the subtree `from` moves into the slot of their parent, and the
-        // node at `to` moves into the sibling's slot, next to the subtree. Slot `to` gets a new node, the parent of
-        // these two.
+        // Rewrite three slots. The sibling of the subtree `from` moves up into the slot of their parent. The node at
+        // `to` moves into the sibling's old slot, next to the subtree. A new node at `to` becomes the parent of the
+        // moved node and the subtree.
         let stays = self.tree[beside];
         let joined = self.tree[to];
         self.put(parent, stays);
@@ -187,8 +190,8 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings still to be examined as places for the subtree: the gain without the area of the new parent, and
-/// the index of the first sibling.
+/// A pair of siblings beside which the subtree may be placed. The second number is the index of the first sibling. The
+/// first number is the gain at these positions before the area of the new parent is subtracted.
 type Waiting = (f32, u32);
 
 /// The search for the best position of one subtree.
@@ -201,8 +204,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Examines all positions beside `node` or below it. `gained` is the decrease of the total area of all boxes,
-    /// without the area of the new parent.
+    /// Examines all positions beside `node` or below it. `gained` is the gain of a position beside `node` before the
+    /// area of the new parent is subtracted.
     fn below(&mut self, gained: f32, node: u32) {
         self.beside(gained, node);
         while let Some((gained, first)) = self.waiting.pop() {
@@ -223,8 +226,9 @@ impl Search<'_> {
         }
     }
 
-    /// Examines the position beside the node `to`. Pushes the children of `to` if a position below could beat the best
-    /// one, given that a new parent there has at least the area of the subtree.
+    /// Examines the position beside the node `to`, with `gained` as in [`Self::below`]. Pushes the children of `to` if
+    /// a position beside one of them could be better than the best one. Such a position costs at least the area of the
+    /// subtree, because the new parent contains the subtree.
     #[inline(always)]
     fn beside(&mut self, gained: f32, to: u32) {
         let node = &self.tree[to];

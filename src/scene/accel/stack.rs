@@ -6,8 +6,9 @@ use super::lanes::{Lanes, Row, take_lowest};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
-/// An entry: the child in the low 32 bits, and the bits of its entry distance in the high 32 bits. Non-negative
-/// distances sort as their bits do, so entries sort by distance.
+/// A child on the stack. The low 32 bits hold the reference to the child, the high 32 bits the distance at which the
+/// ray enters its box, as the bits of a float. Non-negative floats sort as their bits do, so these integers sort by
+/// distance.
 pub(super) type Waiting = u64;
 
 /// Number of entries above the top that [`Stack::push_all`] may overwrite.
@@ -25,7 +26,7 @@ impl<'a> Stack<'a> {
         Self { entries, len: 0 }
     }
 
-    /// Removes and returns the child on top, with its entry distance.
+    /// Removes the child on top. Returns the child and the distance at which the ray enters its box.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<(f32, Child)> {
         let top = self.top()?;

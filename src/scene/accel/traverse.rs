@@ -110,8 +110,8 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Traverses the tree, visiting the nearest child first. With `ANY`, it visits children from the last lane to the
-    /// first, which is the order of decreasing benefit.
+    /// Traverses the tree. It visits the nearest child first or, with `ANY`, the child in the last lane, because later
+    /// lanes are more likely to end the search (`collapse` sorts them).
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,
@@ -133,8 +133,8 @@ impl Accel {
                     return best.hit;
                 }
             } else {
-                // Test the eight boxes and descend into a box that the ray hits: the nearest, or the last lane with
-                // `ANY`. SAFETY: children refer to the lines at which nodes and packets were written.
+                // Test the eight boxes and descend into one that the ray hits: the nearest or, with `ANY`, the one in
+                // the last lane. SAFETY: children refer to the lines at which nodes and packets were written.
                 let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, best.t_max);
                 if mask != 0 {
@@ -177,10 +177,10 @@ impl Accel {
     }
 }
 
-/// The nearest accepted hit so far, and the farthest distance at which a further hit is of interest.
+/// The nearest accepted hit so far, and the maximum distance of further hits.
 struct Best {
     hit: Option<Hit>,
-    /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.
+    /// Maximum distance of further hits: the distance of the best hit, or `ray_t_max` before the first hit.
     t_max: f32,
     ray_t_max: f32,
 }

@@ -47,8 +47,8 @@ impl IndexMut<u32> for Tree {
     }
 }
 
-/// Half the surface area of a box. The fourth lane of a node's bounds holds an integer, whose bits are a denormal
-/// float that would slow a multiplication many times; here it is replaced by zero.
+/// Half the surface area of a box. In a node, the fourth lane of the bounds holds an integer. As a float it would be
+/// denormal and slow the multiplication, so it is replaced by zero.
 #[inline(always)]
 pub(super) fn half_area(shape: &Aabb) -> f32 {
     let d = (shape.max - shape.min).extend(0.0);

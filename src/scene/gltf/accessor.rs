@@ -87,7 +87,7 @@ impl<'a> Strided<'a> {
     }
 }
 
-/// Returns the value of an integer type that stands for 1 in normalised accessors.
+/// Returns the integer that represents 1 if integers of this type are normalised.
 fn largest_of(kind: ComponentType) -> f32 {
     match kind {
         ComponentType::I8 => 127.0,
@@ -130,7 +130,7 @@ pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize
     Ok(layout(find(file, index)?)?.1)
 }
 
-/// Returns the integer that stands for 1 if the accessor holds normalised integers; `None` otherwise.
+/// If an accessor holds normalised integers, returns the integer that represents 1; otherwise returns `None`.
 pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
     let accessor = find(file, index)?;
     let (kind, _) = layout(accessor)?;

@@ -32,8 +32,8 @@ pub struct File<'a> {
     pub unrendered: Vec<Unrendered>,
     /// The translation of each node in f64.
     pub translations: Vec<DVec3>,
-    /// The bytes of each buffer. `None` for a buffer without data: the fallback of compressed buffer views, or an
-    /// unused buffer.
+    /// The bytes of each buffer. `None` for a buffer without data, which is unused or is the fallback of compressed
+    /// buffer views.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
     /// The decoded compressed buffer views, each with its index, in ascending order.
     unpacked: Vec<(usize, Vec<u8>)>,

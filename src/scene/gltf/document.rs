@@ -87,8 +87,8 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Adds members that glTF lets files omit but the crate `gltf` requires. Removes animations, which are not read and
-/// whose targets may lack such members.
+/// Adds members that a glTF file may omit but that the crate `gltf` requires. Removes the animations: they are not
+/// read, and their targets may lack such members.
 fn complete(root: &mut Map<String, Value>) {
     root.remove("animations");
     for scene in objects(root, "scenes") {

@@ -91,8 +91,8 @@ fn decode(file: &File, budget: &dyn Budget, primitive: &Primitive, settings: &Va
     };
     let numbers = named.iter().map(number).collect::<Result<Vec<_>>>()?;
 
-    // The accessors state the sizes of the decoded data. The limits below are computed from them, so a stream cannot
-    // take more memory.
+    // The accessors state the sizes of the decoded data. Limit the decoder to these sizes, so that a malicious stream
+    // cannot take more memory.
     let count = |index| accessor::count(file, index);
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
     let vertices = count(positions.ok_or_else(|| Error::format("a primitive has no POSITION"))?)?;

@@ -38,8 +38,8 @@ pub const READ: [&str; 15] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions without an effect on the picture, and an extension for which a file also contains a fallback image in a
-/// format that this importer reads.
+/// Extensions that need not be read to get the right picture. (With `MSFT_texture_dds`, the file also contains the
+/// image in a format that this importer reads.)
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
 /// A property of an extension, and the default value with which the extension has no effect.

@@ -31,7 +31,7 @@ pub fn is_convertible(settings: &PbrSpecularGlossiness) -> bool {
     }
 }
 
-/// Returns the set of texture coordinates that a texture uses, and the numbers of its texture transform.
+/// Returns the index of the texture coordinates that a texture uses, and the five numbers of its texture transform.
 fn coordinates(info: &texture::Info) -> (u32, Option<[f32; 5]>) {
     let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
     let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
@@ -114,9 +114,9 @@ mod tests {
         assert!(metallic < 1e-3 && (base - paint).abs().max_element() < 1e-3, "{base} {metallic}");
         let (base, metallic) = convert(Vec3::ZERO, gold);
         assert!(metallic > 0.999 && (base - gold).abs().max_element() < 1e-3, "{base} {metallic}");
-        // Between the two extremes, two colours are kept approximately: the specular colour 0.04 (1 - m) + m · base,
-        // and the diffuse colour (1 - m) · base. The latter is the given diffuse colour times (1 - max specular) / (1
-        // - 0.04).
+        // Between these two extremes, both colours are kept approximately. With the metalness m, the specular colour
+        // is 0.04 (1 - m) + m · base. The diffuse colour, (1 - m) · base, is the given diffuse colour times (1 - 0.4)
+        // / (1 - 0.04).
         let (base, metallic) = convert(Vec3::splat(0.3), Vec3::splat(0.4));
         let diffuse = base * (1.0 - metallic);
         let specular = Vec3::splat(DIELECTRIC * (1.0 - metallic)) + base * metallic;

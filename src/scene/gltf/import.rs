@@ -275,8 +275,8 @@ impl Importer<'_> {
             None => map_indexed(positions, |_, p| point(whole, p))?,
         };
 
-        // A reflection reverses the winding of triangles, which `triangles` undoes. It also negates the result of
-        // `cofactor`, which `side` undoes.
+        // A reflection reverses the winding of the triangles and negates the result of `cofactor`. The function
+        // `triangles` restores the winding, and the factor `side` restores the sign.
         let is_mirrored =
             skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
         let side = if is_mirrored { -1.0 } else { 1.0 };

@@ -238,7 +238,7 @@ impl<'a> Materials<'a> {
         io::decode(bytes, encoding)
     }
 
-    /// Checks the pixels and samples of a texture against the limits, together with those of earlier textures.
+    /// Adds a texture to the totals, and returns an error if all textures so far exceed [`MAX_PIXELS`] or the budget.
     fn count(&mut self, pixels: u64, samples: u64) -> Result<()> {
         self.pixels += pixels;
         if self.pixels > MAX_PIXELS {

@@ -1,8 +1,8 @@
 //! Chooses a new origin for a scene that lies far from the origin of its file.
 //!
-//! A file places a building on a national grid by the translations of nodes, which JSON holds in f64; the vertices are
-//! in f32 near the origins of their nodes. If vertices were transformed to world space in f32, they would be rounded
-//! to metres at 10,000 km. The importer therefore subtracts the new origin in f64 before it rounds.
+//! On a national grid, a building may lie 10,000 km from the origin, where `f32` rounds to metres. Such a file stores
+//! the vertices in `f32` relative to their nodes, and places the nodes by translations, which JSON holds in `f64`. The
+//! importer therefore transforms vertices in `f64` and subtracts the new origin before it rounds them to `f32`.
 
 use super::container::File;
 use super::instances::instances;
@@ -18,14 +18,15 @@ use gltf::json::validation::Checked;
 /// New origins are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
-/// A scene counts as far from the origin if its distance exceeds this multiple of its own extent. [convention]
+/// A scene counts as far from the origin if its distance along an axis exceeds this multiple of its half-extent
+/// ([`detail`]). [convention]
 const FAR: f64 = 4.0;
 
 /// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
-/// The collected corners are thinned out to between this number and twice this number of corners, which fit into the
-/// library's small memory reserve. [convention]
+/// If more corners than this are collected, only every n-th one is used, so that at least this many and fewer than
+/// twice as many remain. They fit into the library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
 /// Returns the new origin of the scene, in metres, in coordinates transformed by `world`; zero if the scene lies near

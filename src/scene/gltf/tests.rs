@@ -116,8 +116,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
         assert_eq!((&a.name, a.alpha_mode, a.double_sided), (&b.name, b.alpha_mode, b.double_sided));
         let numbers = |m: &Material| [m.alpha, m.metallic, m.roughness, m.normal_scale, m.transmission, m.ior];
         assert_eq!((a.base_color, numbers(a)), (b.base_color, numbers(b)));
-        // The export may divide a texture by a number and multiply its factor by that number. 8-bit sRGB resolves 1 %
-        // of the peak.
+        // Compare products of texture and factor, because the export may divide a texture by its peak and multiply the
+        // factor by this peak. Steps of 8-bit sRGB are smaller than 1 % of the peak.
         for v in 0..8 {
             let uv = Vec2::new(v as f32 / 8.0, 0.6);
             let look = |scene: &Scene, reference: Option<TextureRef>| {

@@ -103,7 +103,7 @@ struct Sums {
     /// Sum of the triangles' areas times the heights of their centres.
     moment: f64,
     level_moment: f64,
-    /// Sum of the area vectors of triangles: their normals, each as long as the triangle's area.
+    /// Sum of the triangles' normals, each as long as the triangle's area.
     area_vector: DVec3,
     low: DVec3,
     high: DVec3,

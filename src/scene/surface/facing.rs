@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 /// Number of rays cast from each side of each plane.
 const RAYS: usize = 128;
-/// Number of triangles in one bounding box.
+/// Number of triangles of a [`Chunk`], which share one bounding box.
 const CHUNK: usize = 64;
 /// Weight of the cameras: the score of a side is multiplied by 1 plus this weight times the share of cameras in front
 /// of the side. [origin not recorded]
@@ -19,9 +19,13 @@ const CAMERA_WEIGHT: f64 = 4.0;
 ///
 /// A side faces the room if rays leaving it travel far, relative to the size of the plane, and then hit a surface.
 /// (Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once.) The score of a side is the
-/// product of its area, the mean of `min(1, distance / √area)` over the rays, where a ray that hits nothing counts 0,
-/// and a factor for the cameras in front of the side. In an otherwise empty scene all scores are 0, and the result is
-/// the front side of the first plane.
+/// product of three factors:
+///
+/// - its area,
+/// - the mean of `min(1, distance / √area)` over the rays; a ray that hits nothing counts as 0,
+/// - a factor for the cameras in front of it ([`CAMERA_WEIGHT`]).
+///
+/// In an otherwise empty scene all scores are 0, and the result is the front side of the first plane.
 pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let chunks = chunks(scene);
     let mut best: Option<(f64, usize, DVec3)> = None;

@@ -3,8 +3,8 @@
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Cosine of 1°. If the rectangle's axes differ by less than this angle from the axes aligned with the world, the
-/// latter are used. [convention]
+/// Cosine of 1°. If the axes of the smallest rectangle differ by less than this angle from the axes aligned with the
+/// world, the aligned axes are used instead. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
 /// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
 /// recorded]
@@ -31,7 +31,7 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     if aligned { aligned_frame } else { turned_frame }
 }
 
-/// Returns the direction of u that is aligned with the world axes.
+/// Returns the u axis of the rectangle that is aligned with the world axes.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
         // On a wall, v points down as far as possible, and u = normal × v.
@@ -60,8 +60,9 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame 
     Frame { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
 }
 
-/// Returns the direction of u of the bounding rectangle of minimum area, which differs from `upright` by at most 45°.
-/// One side of that rectangle lies along an edge of the convex hull (Freeman and Shapira 1975).
+/// Returns the u axis of the bounding rectangle of minimum area. Of the four directions of its sides, this is the one
+/// that differs from `upright` by at most 45°. One side of this rectangle lies along an edge of the convex hull
+/// (Freeman and Shapira 1975).
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);
     let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));

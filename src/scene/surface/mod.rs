@@ -28,8 +28,8 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// A planar patch of the scene, with the frame of its bounding rectangle.
 ///
-/// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored: `u ×
-/// v = -normal`. On walls, v points down as far as possible. On floors and ceilings, u points along +x as far as
+/// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored:
+/// `u × v = -normal`. On walls, v points down as far as possible. On floors and ceilings, u points along +x as far as
 /// possible. A person who faces -z and looks up thus sees a ceiling's texture upright.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
@@ -46,8 +46,8 @@ pub struct Surface {
     pub size: Vec2,
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area in m² of the named object's other triangles that are inclined to this plane by 5 to 75 degrees, as in a
-    /// vault. They get no light texture.
+    /// Area in m² of the triangles of the same object that are inclined to this plane by 5 to 75 degrees, as in a
+    /// vault. They do not belong to the patch and get no light texture.
     pub bent: f32,
 }
 
@@ -74,9 +74,13 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
 
 /// Finds the planar patch that faces the room, among the triangles of the object or material with the given name.
 ///
-/// First an object, then a material is searched for that has exactly this name; then one whose name is equal
-/// regardless of case; then one whose name contains the given name, if only one name does. The scene must be valid.
-/// Errors: `NotFound`, listing the existing names; `Degenerate` if the object has no area.
+/// The names are searched in three steps, and in each step first the objects, then the materials:
+///
+/// 1. a name equal to the given name,
+/// 2. a name equal to it if upper and lower case are ignored,
+/// 3. a name that contains the given name, if there is only one.
+///
+/// The scene must be valid. Errors: `NotFound`, listing the existing names; `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =

@@ -20,8 +20,8 @@ const DIRECTIONS: usize = 32;
 const PLANES: usize = 16;
 const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and 5 degrees, between which a triangle is sloped: steeper triangles are the edges of a slab, flatter
-/// triangles belong to the plane. [convention: luxfer_surface]
+/// A triangle counts as sloped if it is inclined to the plane by 5 to 75 degrees; these are the cosines of 75 and 5
+/// degrees. Steeper triangles are the edges of a slab, flatter ones belong to the plane. [convention: luxfer_surface]
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Triangles that lie in one plane, within tolerances.
@@ -40,7 +40,7 @@ pub struct Patch {
 #[derive(Clone, Copy)]
 struct Facet {
     id: (usize, usize),
-    /// The triangle's normal, as long as its area.
+    /// Normal of the triangle; its length is the triangle's area.
     area_vector: DVec3,
     area: f64,
     centre: DVec3,
@@ -101,7 +101,7 @@ pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
         SLOPED[0] < cosine && cosine < SLOPED[1]
     };
-    // Use `fold`, because `sum` starts at -0.
+    // Use `fold`, because the `sum` of an empty list is -0.
     triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).fold(0.0, |sum, f| sum + f.area)
 }
 

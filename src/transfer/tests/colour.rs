@@ -86,8 +86,8 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let camera = Camera { up: Vec3::Z, ..Camera::look_at(eye, eye + Vec3::Y, fov) };
     let params = render::Params { width: SIDE, height: SIDE, samples: 100, ..render::Params::default() };
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
-    // Expose the photo so that blue, the weakest channel, is just not clipped: where all channels are clipped, nothing
-    // is known.
+    // Expose the photo so that the brightest blue, the weakest channel, stays just below white. Then no pixel is
+    // clipped in all channels, and every clipped value can be estimated.
     let of_channel = |c: usize| film.beauty.data.iter().skip(c).step_by(3).copied();
     let white = 1.02 * of_channel(2).fold(0.0, f32::max);
     let clipped = of_channel(0).filter(|v| *v > white).count();
@@ -107,8 +107,8 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
     assert!(off(&recovered) < 0.02 && off(&as_it_is) > 3.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
 
-    // Expose the photo so that all of red is clipped and no other channel: with a lower bound for red, the lamp keeps
-    // its colour.
+    // Expose the photo so that red is clipped everywhere. If the target for red is a lower bound, the lamp must keep
+    // its colour; if it is exact, the lamp must lose red.
     let white = 0.9 * of_channel(0).fold(f32::INFINITY, f32::min);
     let colour = (mean(&film.beauty) / white).with_x(1.0);
     let least = solve(colour, white, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);
