@@ -198,9 +198,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// Builds the metadata image of the texture: `patch_map` copies the exemplar's metadata (confidence, x and y distance
-/// to the nearest light) in the same way as its pixels. Pixels without a patch get confidence 0 and the largest
-/// distance.
+/// Builds the metadata image of the texture (confidence, x and y distance to the nearest light): copies the exemplar's
+/// metadata by the shifts of `patch_map`. Pixels without a patch get confidence 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {
