@@ -98,7 +98,8 @@ impl Statistics {
         Self {
             lit: ratio(lit, sum(&|_| 1.0)),
             luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
-            // For each pattern, the number of lamps per area is the lit share divided by the area of a lamp.
+            // The number of lamps per area is the lit share divided by the area of a lamp. Divide the sum of the lit
+            // shares by the sum of these numbers.
             area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
             spacing: 0.0,
             whole: parts.iter().map(|(part, _)| part.whole).sum(),

@@ -6,8 +6,8 @@
 //! 1. The pattern of each exemplar is planned over the whole texture.
 //! 2. Each lamp gets a random number in [0, 1). Lamps of different exemplars that would overlap share one number.
 //! 3. The weights at the lamp's centre divide [0, 1) into one interval per exemplar. The lamp is kept if its number
-//!    lies in the interval of its own exemplar. Of lamps that overlap, exactly one is kept, and the mean light per
-//!    area follows the weights.
+//!    lies in the interval of its own exemplar. Of two overlapping lamps with equal weights, at most one is kept, and
+//!    the mean light per area follows the weights.
 //!
 //! If many lamps overlap several others, all lamps in a square of the texture share one number, and the style changes
 //! from square to square. If two kept lamps overlap all the same, the lamp of the exemplar that comes first in the

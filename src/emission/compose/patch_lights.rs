@@ -134,8 +134,8 @@ struct Light {
 }
 
 impl Light {
-    /// Adds an area of light that belongs to the light's texel `[x, y]` but may lie in a neighbouring texel. `[u, v]`
-    /// is the step to the texel that holds the area; the area is in texels.
+    /// Adds `area`, in texels, of light in the texel `[x + u, y + v]`. `[x, y]` is the texel of this light to which
+    /// the area is attributed; `[u, v]` is 0 or the step to an adjacent texel.
     fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
         let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
         self.area += area;

@@ -5,8 +5,8 @@
 //! point (Catmull and Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
 //!
 //! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, but is
-//! less exact. At its published width, the Gaussian also weighs parts of the photo that belong to other texels; a
-//! Gaussian as narrow as a texel does not have the texel's shape. It is closer to the truth only at extreme
+//! less exact. At its published width, its Gaussian also weighs parts of the photo that belong to other texels; a
+//! Gaussian as narrow as a texel does not have the texel's shape. The usual method is better only at extreme
 //! magnification, where tens of texels along one side share a photo pixel. `cargo bench --bench emission -- recovery`
 //! compares both methods with the truth.
 

@@ -74,8 +74,8 @@ pub struct Lines<'a> {
     across: usize,
     along: usize,
     widest: usize,
-    /// Share by which each pixel is darker than the light beside it, at least 0. On each side, the brightest lit pixel
-    /// within `widest` positions counts, and of both sides the darker one. NaN if a side has no light.
+    /// Share by which each pixel is darker than the light beside it, at least 0; NaN if there is no light on one side.
+    /// The light of a side is the brightest lit pixel within `widest` positions; the darker side counts.
     depth: Vec<f32>,
 }
 

@@ -30,8 +30,8 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// Length of a photo pixel in unwarped pixels, measured along x and along y: if an edge perpendicular to that axis
-    /// moves by one pixel in the photo, it moves by this length in the unwarped image.
+    /// Length of a photo pixel in unwarped pixels, along each axis: if an edge perpendicular to the axis moves by one
+    /// pixel in the photo, it moves by this length in the unwarped image.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());

@@ -40,8 +40,8 @@ const SAME_WAY: f64 = 0.93;
 /// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
 /// is the area of the intersection divided by the area of the union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// The length of a rectangle's side is its mean over the middle part of the rectangle, away from the rounded corners.
-/// This is the width of that part, as a share of the other side. [judged on 20 photos]
+/// One side of a rectangle is measured as a mean over the middle part of the other side, away from the rounded
+/// corners. This is the length of that part, as a share of the other side. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
@@ -290,8 +290,8 @@ fn common_axis(members: &[&Member]) -> DVec2 {
 }
 
 /// The common side of lamps, without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a
-/// lamp, and the length of a photo pixel there, both in unwarped pixels. Least squares solve side = s + 2 bloom ×
-/// photo pixel for s and the bloom, with a normal prior on the bloom.
+/// lamp, and the length of a photo pixel there, both in unwarped pixels. Solves side = s + 2 bloom × photo pixel for s
+/// and the bloom by least squares, with a normal prior on the bloom.
 fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     // Normal equations for s and the bloom.
     let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);

@@ -91,9 +91,9 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. A lamp is skipped if its pixels are
-    /// already taken: without a lattice, any of its pixels or of the pixels around it; on a lattice, more than the
-    /// share [`LATTICE_SLACK`] of its pixels.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. A lamp is skipped if its place is
+    /// taken. Without a lattice, one taken pixel in the lamp or beside it suffices; on a lattice, more than the share
+    /// [`LATTICE_SLACK`] of its pixels must be taken.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;

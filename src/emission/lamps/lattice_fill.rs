@@ -31,9 +31,9 @@ const SHARP: f64 = 0.4;
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
-/// `offset`. A site that nearly always has a lamp gets one in every cell. Of `shown`, the lamps that the copied
-/// patches contain, lamps at such a site are dropped, lamps near another site move exactly onto it, and all others
-/// stay where they are.
+/// `offset`. A site that nearly always has a lamp gets one in every cell. `shown` holds the lamps that the copied
+/// patches contain: at such a site they are dropped, near another site they move exactly onto it, and elsewhere they
+/// stay unmoved.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,

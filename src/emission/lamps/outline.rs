@@ -107,7 +107,7 @@ impl Ring {
     }
 }
 
-/// Tolerance, in texels, of the outline along the corners of texels for a lamp that is `narrow` texels wide.
+/// Tolerance, in texels, for simplifying an outline along the corners of texels; the lamp is `narrow` texels wide.
 pub fn staircase(narrow: f64) -> f64 {
     STAIRCASE.min(0.3 * narrow)
 }

@@ -11,8 +11,8 @@ const MAX_LAMPS: usize = 400;
 /// share of the first period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 
-/// Returns a period that is nearly parallel to an image axis exactly parallel to it, with the same length. In a row of
-/// few lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.
+/// Makes a period that is nearly parallel to an image axis exactly parallel, and keeps its length. In a row of few
+/// lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.
 pub fn straight(period: DVec2) -> DVec2 {
     match () {
         _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),

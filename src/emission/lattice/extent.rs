@@ -95,8 +95,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether the photo shows the places beyond both ends of a row where the next lamps would be, since it need not show
-/// a rectangle. Without a photo, all places count as shown.
+/// Whether the photo shows the places beyond both ends of a row at which the next lamps would lie. Without a photo,
+/// all places count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

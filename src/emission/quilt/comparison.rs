@@ -11,9 +11,8 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches count as equally good if their error is at most the first value times the lowest error, plus a constant.
-/// The constant is the second value or, on a lattice, `Comparison::slack` if that is larger. The original paper allows
-/// 10 %.
+/// Patches count as equally good if their error is at most the first value times the lowest error (the original paper
+/// allows 10 %), plus a constant: the second value or, on a lattice, `Comparison::slack` if that is larger.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
@@ -207,7 +206,7 @@ impl<'a> Comparison<'a> {
                     at += part.len();
                 }
             }
-            // Stop as soon as the mean must exceed `limit`, even if all `filled` pixels are compared.
+            // Stop if the mean exceeds `limit` even when the sum is divided by all `filled` pixels.
             if sum > most {
                 return f32::INFINITY;
             }
