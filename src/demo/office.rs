@@ -141,8 +141,8 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     Ok(())
 }
 
-/// Returns the lower and upper corner of each window in the wall at x = 0. The coordinates of a corner are its
-/// distance along -z from z = 9 and its height y, in metres.
+/// Returns the lower and upper corner of each window in the wall at x = 0. Corners are in metres: the first coordinate
+/// is the distance from the end at z = 9, along -z; the second is the height.
 fn windows() -> [[Vec2; 2]; 4] {
     std::array::from_fn(|i| {
         let start = 0.5 + 2.1 * i as f32;

@@ -41,8 +41,8 @@ impl Default for Params {
     }
 }
 
-/// Takes the photo of `scene`. Returns linear RGB in `[0, 1]` after quantisation to 8-bit sRGB, in which lamps are
-/// clipped to white, and the exposure: the linear value of 1 cd/m².
+/// Takes the photo of `scene`. Returns the photo and its exposure. The photo is linear RGB in `[0, 1]` after
+/// quantisation to 8-bit sRGB, with lamps clipped to white. The exposure is the linear value of 1 cd/m².
 pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job) -> Result<(Image, f32)> {
     let world = World::build(scene, job.part(0.0, 0.05))?;
     let settings = render::Params {

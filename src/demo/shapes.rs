@@ -1,7 +1,7 @@
 //! Shapes of the demonstration scenes: sheets, boxes and bodies of revolution.
 //!
-//! Texture coordinates are in metres along the surface. Flat shapes have no normals but round shapes have, so the two
-//! kinds must not share a mesh.
+//! Texture coordinates are in metres along the surface. Round shapes have normals and flat shapes have none, so the
+//! two kinds must not share a mesh.
 
 use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};
@@ -33,8 +33,9 @@ pub fn sheet(mesh: &mut Mesh, corner: Vec3, u: Vec3, v: Vec3, cells: [u32; 2]) {
     }
 }
 
-/// Adds a rectangle with rectangular openings, each given by its lower and upper corner in metres along `u` and `v`.
-/// `size` is the extent of the rectangle along these unit directions. Its cells are at most `cell` metres wide.
+/// Adds a rectangle with rectangular openings. `u` and `v` are unit directions, and `size` is the rectangle's extent
+/// along them. Each opening is given by its lower and upper corner in metres along `u` and `v`. The mesh cells are at
+/// most `cell` metres wide.
 pub fn pierced(mesh: &mut Mesh, corner: Vec3, [u, v]: [Vec3; 2], size: Vec2, openings: &[[Vec2; 2]], cell: f32) {
     let cuts = |axis: usize| {
         let mut cuts: Vec<f32> = openings.iter().flatten().map(|p| p[axis]).chain([0.0, size[axis]]).collect();

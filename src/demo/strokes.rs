@@ -25,9 +25,9 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Strokes for the plane. Positive strokes lie on the ceiling: along the room between two columns of lamps, both
-    // far and near, and across the room between two rows. Negative strokes lie on the walls and on objects in front of
-    // them. No two strokes cross, so that a single drawing can hold them all.
+    // Strokes for the plane. Positive strokes lie on the ceiling: along the room between two columns of lamps, once
+    // far and once near, and across the room between two rows. Negative strokes lie on the walls, and on objects in
+    // front of them. No two strokes cross, so that a single drawing can hold them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
         let middle = Vec2::new(0.0, 0.5) * grid.period;

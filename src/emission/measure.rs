@@ -16,7 +16,7 @@ pub struct Measure {
     /// Medians, over the lamps that the exemplar shows completely (whole lamps), of the longer side and of the shorter
     /// side. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Median over the whole lamps of the share of the bounding box that a lamp covers: 1 for rectangles along the
+    /// Share of its bounding box that a lamp covers, as a median over the whole lamps: 1 for rectangles along the
     /// axes, π/4 for discs. 0 without a whole lamp.
     pub lamp_fill: f64,
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the

@@ -11,8 +11,8 @@
 //! 3. [`quilt`] computes metadata (confidence, signed x and y distance to the nearest light), and quilts colour and
 //!    metadata with minimum-error seams. On a lattice, patches are shifted by whole periods only. The amount of light
 //!    is kept in balance.
-//! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it; measures its
-//!    outline, kind and colour.
+//! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it. It also
+//!    measures the lamp's outline, kind and colour.
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
 //!    lists the lamps.
 //! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
@@ -21,12 +21,17 @@
 //! A texture that fits inside the exemplar is copied from it. The exception is an exemplar whose lamps have ragged
 //! outlines and lie on a lattice: such lamps are placed and drawn anew.
 //!
-//! Beyond the paper: the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns
-//! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that must
-//! stay free of lamps ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
-//! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
-//! exemplars; a pattern that continues across the edge between two planes; and exact edges of crossing lines in
-//! tileable textures, where stretching the lattice may displace them.
+//! Beyond the paper:
+//!
+//! - the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns drift and cuts
+//!   lamps;
+//! - the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]);
+//! - zones that must stay free of lamps ([`compose::placement`]);
+//! - textures of any size, rendered in tiles of a [`Composition`];
+//! - textures blended from several exemplars ([`compose::draw`]).
+//!
+//! Not modelled: lamps that mix the designs of two exemplars; a pattern that continues across the edge between two
+//! planes; and exact edges of crossing lines in tileable textures, where stretching the lattice may displace them.
 
 mod agreement;
 mod compose;
@@ -198,9 +203,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// Builds the metadata image of the texture: `patch_map` copies the exemplar's metadata (confidence, x and y distance
-/// to the nearest light) in the same way as its pixels. Pixels without a patch get confidence 0 and the largest
-/// distance.
+/// Builds the metadata image of the texture (confidence, x and y distance to the nearest light): copies the exemplar's
+/// metadata by the shifts of `patch_map`. Pixels without a patch get confidence 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

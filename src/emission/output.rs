@@ -28,15 +28,15 @@ pub struct Emission {
     pub choice: Choice,
     /// Two sets of statistics in texels: those expected from the exemplars, and those of the texture.
     pub statistics: [Statistics; 2],
-    /// Largest relative difference between the two `statistics`; luminance is not compared. The fewer whole lamps the
-    /// exemplar shows (`exemplar_lamps`), the less the difference means, because lamps cut by the border then weigh
-    /// more. Without whole lamps only the lit share is compared.
+    /// Largest relative difference between the two `statistics`, without luminance. It means less the fewer whole
+    /// lamps the exemplar shows (`exemplar_lamps`), because cut lamps at the border then have more influence. Without
+    /// whole lamps, only the lit share is compared.
     pub error: f64,
-    /// Estimate of the sampling error of the exemplar's statistics: the exemplar shows only a part of its ceiling. The
-    /// estimate is the root mean square difference between the whole texture and parts of it that are as large as the
-    /// exemplar. No method can be expected to have a smaller `error`. 0 for blended exemplars, and if the texture
-    /// shows nothing that the exemplar does not.
+    /// Sampling error of the exemplar's statistics, which arises because the exemplar shows only a part of its
+    /// ceiling. No method can be expected to have a smaller `error`. It is estimated as the root mean square
+    /// difference between the whole texture and parts of the texture as large as the exemplar. 0 for blended
+    /// exemplars, and if the texture shows nothing that the exemplar does not.
     pub sampling_error: f64,
-    /// Number of lamps that the exemplars show whole.
+    /// Number of lamps that the photos of the exemplars show completely.
     pub exemplar_lamps: usize,
 }

@@ -27,10 +27,10 @@ pub struct Input<'a> {
 /// patches without a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// The continuation that predicts the lamps of the photo best. The one found by autocorrelation is kept unless
+    /// The continuation that best predicts the lamps of the photo. The one found by autocorrelation is kept unless
     /// another one scores clearly higher.
     Best,
-    /// The continuation found by the autocorrelation of the lights, with `min_regularity` as its threshold.
+    /// The continuation that the autocorrelation of the lights finds with the threshold `min_regularity`.
     Correlation,
     /// The lattice (for `Row`, the row of lamps) found by the autocorrelation. If it finds none, other lattices (rows)
     /// are proposed, and the best is chosen.
@@ -53,8 +53,8 @@ pub struct Params {
     /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
     /// lights.
     pub block: usize,
-    /// Where no lattice restricts the choice, this many patches of the exemplar are drawn at random and compared for
-    /// each block of the texture, besides the patches that continue neighbouring blocks. In `[1, 65536]`.
+    /// Number of random patches that are compared for each block of the texture, besides the patches that continue
+    /// neighbouring blocks; only for patterns without a lattice. In `[1, 65536]`.
     pub candidates: usize,
     /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,
@@ -62,8 +62,8 @@ pub struct Params {
     /// colour; 0 is plain quilting.
     pub metadata_weight: f32,
     /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
-    /// `[-1e6, 1e6]`. A pattern without a lattice has no origin: there the offset shifts the lamps of a tileable
-    /// texture, and must be 0 in other textures.
+    /// `[-1e6, 1e6]`. Without a lattice there is no origin: the offset then shifts the lamps of a tileable texture,
+    /// and must be 0 in other textures.
     pub offset: DVec2,
     /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
     /// exactly; at 1, none is, and patches are placed without a lattice.
@@ -77,22 +77,20 @@ pub struct Params {
     pub whole_lamps: bool,
     /// Every lamp shines evenly, in its mean colour.
     pub even_lamps: bool,
-    /// Gives all lamps of a kind one size and one outline that is exact at any resolution, and places them at the
-    /// sites of their lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the light
-    /// mask.
+    /// Gives all lamps of a kind one size and one outline that is exact at any resolution, and places them exactly on
+    /// their lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the light mask.
     pub clean_lamps: bool,
-    /// Makes a tileable texture: a lamp that leaves it on one side re-enters on the opposite side. Lattices are
-    /// stretched so that the texture holds a whole number of periods; the stretch is below half a period over the
-    /// whole texture. Needs `whole_lamps`. Lights that the edge of the exemplar cuts do not count as whole lamps; they
-    /// join across the border of the texture only if they lie on a lattice.
+    /// Makes a tileable texture: a lamp that leaves it on one side re-enters on the opposite side. Needs
+    /// `whole_lamps`. A lattice is stretched, by less than half a period over the whole texture, so that a whole
+    /// number of periods fits. Lights that the border of the exemplar cuts do not count as whole lamps: they continue
+    /// across the border of the texture only if they lie on a lattice.
     pub tileable: bool,
     /// Centres the lattice in the texture: a lamp, or the middle between two lamps, lies at the texture's centre, so
     /// that the border cuts as few lamps as possible. The offset shifts the lattice from there.
     pub centred: bool,
-    /// Channel value at or above which a pixel of the unwarped photo counts as clipped, in `[0, 1]`; clipped parts of
-    /// a lamp get the colour of its rim. 0: nothing counts as clipped. The level should lie below the largest 8-bit
-    /// value, at which the photo itself is clipped, because an unwarped pixel is a mean of clipped and unclipped
-    /// pixels.
+    /// Channel value, in `[0, 1]`, at or above which a pixel of the unwarped photo counts as clipped; 0 if no pixel is
+    /// to count as clipped. Clipped parts of a lamp get the colour of its rim. The level should lie below the largest
+    /// 8-bit value, because an unwarped pixel is a mean of clipped and unclipped photo pixels.
     pub clip_level: f32,
     pub seed: u64,
 }

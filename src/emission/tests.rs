@@ -227,9 +227,9 @@ fn scattered_lamps_stay_whole_and_as_many() {
     assert_eq!(result.continuation, Continuation::Free);
     let s = score(&result, per_area, (least, mean, most), None);
     // Patches repeat contiguous parts of the exemplar, so the texture's statistics are no more precise than those of a
-    // sample of as many lamps as the exemplar has. Lamp areas vary by a third. The mean area, and the number of lamps
-    // at a given lit share, therefore have a standard deviation of a third divided by the root of the number of lamps.
-    // Allow three standard deviations. The lit share itself is kept more closely.
+    // sample of as many lamps as the exemplar has. Lamp areas have a standard deviation of about a third. Allow three
+    // standard errors of the mean area, and as much for the number of lamps, which follows from mean area and lit
+    // share. The lit share itself is kept more closely.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");

@@ -8,11 +8,11 @@ const MAX_ERROR: f64 = 0.25;
 /// A warning is given if the lamps lie on no lattice and the statistics differ by more than this share.
 /// [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
-/// Relative difference of a texture without any light: its lit share differs by all of the photo's lit share. A larger
-/// difference gives the warning that there is no pattern. [convention]
+/// Error of a texture without any light, whose lit share differs from the photo's by 100 %. If the error is larger,
+/// the warning says that there is no pattern. [convention]
 const UNLIT_ERROR: f64 = 1.0;
-/// A warning is given if the exemplars show fewer whole lamps than this, too few to measure a lamp size and a spacing.
-/// [convention]
+/// If the exemplars show fewer whole lamps than this, a warning says that they are too few for measuring size and
+/// spacing. [convention]
 const MIN_LAMPS: usize = 2;
 
 impl Emission {

@@ -63,7 +63,8 @@ impl Canvas {
     /// Paints a round dab of thick paint.
     pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
-            // A loaded brush covers everything; a dry one covers only places where the surface texture is low.
+            // At high opacity the paint covers everything, like a loaded brush. At low opacity it covers only places
+            // where the surface texture is low, like a dry brush.
             let coverage = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
             canvas.colour[i] = canvas.colour[i].lerp(colour, cover * coverage);
             canvas.relief[i] += (thickness - canvas.relief[i]) * cover * coverage;

@@ -66,8 +66,8 @@ mod tests {
                 y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| art.rgb(x, y)).sum::<Vec3>() / count
             };
             let tone = |c: Vec3| luminance(c);
-            // Make three comparisons: of the lit table with the shadow; of the lit with the dark side of the ball; and
-            // of the table beside the ball, which receives red light, with the lit table.
+            // Compare three pairs of places: the lit table and the shadow; the lit side and the dark side of the ball;
+            // and the table beside the ball, which receives red light, and the lit table.
             let (lit, shadow) = (mean(190..230, 130..170), mean(60..100, 128..142));
             assert!(tone(lit) > 1.5 * tone(shadow), "{style:?}: {lit} {shadow}");
             let (day, night) = (mean(128..140, 42..56), mean(90..115, 100..115));

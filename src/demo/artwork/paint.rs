@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 
 const GROUND: Vec3 = Vec3::new(0.80, 0.52, 0.34);
 
-/// A brush size. One unit is a pixel of a picture 800 pixels wide.
+/// A brush size. One unit is a pixel in a picture 800 pixels wide.
 struct Brush {
     /// Half the width of the brush, and the length of its strokes, in units.
     radius: f32,
@@ -24,8 +24,8 @@ const BRUSHES: [Brush; 3] = [
     Brush { radius: 2.6, length: 30.0, detail: 0.22 },
 ];
 
-/// Returns the colour that the painter mixes for a place. The palette differs from the scene's colours but follows its
-/// light.
+/// Returns the colour that the painter mixes for a pixel. The paints are not those of the scene, but become lighter
+/// and darker with its light.
 fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;

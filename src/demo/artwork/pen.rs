@@ -18,7 +18,7 @@ struct Set {
     weight: fn(&Appearance) -> f32,
     /// Angle in radians between these lines and strokes that follow the form (`Appearance::along`).
     turn: f32,
-    /// Distance between lines, and their maximum length, in units of a pixel of a picture 800 pixels wide.
+    /// Distance between lines, and their maximum length, in pixels, for a picture 800 pixels wide.
     spacing: f32,
     length: f32,
     ink: Vec3,

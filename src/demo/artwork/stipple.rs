@@ -17,7 +17,7 @@ struct Ink {
     /// Wanted darkness at a place of the picture, in `[0, 1]`.
     darkness: fn(&Appearance) -> f32,
     colour: Vec3,
-    /// Radius of a dot, in units of a pixel of a picture 800 pixels wide.
+    /// Radius of a dot in pixels, for a picture 800 pixels wide.
     radius: f32,
 }
 
@@ -50,7 +50,8 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Maximum distance between dots, in radii of a dot: dots farther apart do not read as a tone. [convention]
+/// Maximum distance between dots, in radii of a dot. Dots farther apart look like single spots and not like a tone.
+/// [convention]
 const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {

@@ -6,8 +6,8 @@ use crate::image::colour::{linear_to_srgb, luminance};
 use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
-/// The axis in camera space around which the strokes on objects run, and the direction in the picture of strokes on
-/// the table.
+/// `AXIS`: axis in camera space, around which the strokes on objects run. `TABLE`: direction in the picture of the
+/// strokes on the table.
 const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
 const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
@@ -20,7 +20,7 @@ pub struct Appearance {
     pub lit: f32,
     /// Lightness of the highlight (specular light), in `[0, 1]`.
     pub shine: f32,
-    /// Redness of the indirect light, which other objects reflect.
+    /// Redness of the indirect light, which other objects have reflected onto this pixel.
     pub bleed: f32,
     /// Whether the pixel shows an object, as opposed to table or wall.
     pub is_object: bool,
@@ -33,7 +33,7 @@ pub struct Appearance {
 pub struct Subject {
     pub width: usize,
     pub height: usize,
-    /// Unit of stroke sizes: the size in pixels of one pixel of a picture 800 pixels wide.
+    /// Unit of stroke sizes, in pixels. It is 1 in a picture 800 pixels wide.
     pub unit: f32,
     appearances: Vec<Appearance>,
 }
@@ -47,7 +47,8 @@ impl Subject {
         };
         // Take the material in the top-left corner as the background.
         let background = guides.materials.pixel(0, 0);
-        // Normalise tones by the object's own colour, so that its brightest part is light even if its paint is dark.
+        // Scale the object's tones by its own brightest light, so that a dark paint is drawn no darker than a light
+        // one.
         let objects =
             direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
         let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;

@@ -35,7 +35,7 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
 }
 
-/// Computes the density of pairs at each step of distance, up to a constant factor: `g(r) r`.
+/// Computes, for each step of distance, the density of pairs of points, up to a constant factor: `g(r) r`.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
     let (reach, width) = (REACH * spacing, KERNEL * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();

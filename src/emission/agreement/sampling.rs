@@ -16,9 +16,10 @@ use glam::DVec2;
 /// Number of parts of the texture whose statistics are compared with those of the whole texture.
 const PARTS: usize = 6;
 
-/// Root mean square, over parts of the texture, of the largest relative difference between a part's statistics and the
-/// texture's statistics `whole`. `None` if the texture is too small for several parts. `scale` is the number of
-/// unwarped pixels per texel; `periods` are in unwarped pixels.
+/// Sampling error of the statistics, from parts of the texture as large as the exemplar. For each part, takes the
+/// largest relative difference between its statistics and `whole`, those of the texture; returns the root mean square
+/// over the parts. `None` if the texture is too small for several parts. `scale` is the number of unwarped pixels per
+/// texel; `periods` are in unwarped pixels.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),

@@ -1,11 +1,12 @@
 //! Statistics of a light pattern. They measure how well a texture agrees with its exemplar.
 //!
-//! The border of a window cuts the pattern at an arbitrary place. Plain means in the window vary with the lamps that
-//! happen to lie on the border, and vary more the fewer lamps there are. Every mean here is therefore weighted by
-//! position. Along an axis with a known period, a sub-window of a whole number of periods slides over the window; the
-//! weight of a position is the share of sub-window placements that contain the position. Each part of the period then
-//! has the same total weight, wherever the border cuts the pattern. Along other axes, the weights are a Hann window,
-//! which falls to 0 at the border (Harris 1978).
+//! The border of a window cuts the pattern at an arbitrary place, so plain means depend on the lamps that happen to
+//! lie on the border, and the more so the fewer lamps there are. Every mean is therefore weighted by position:
+//!
+//! - Along an axis with a known period, imagine a shorter window of a whole number of periods that slides over the
+//!   window. The weight of a position is the share of placements that contain the position. Each part of the period
+//!   then has the same total weight, wherever the border cuts the pattern.
+//! - Along other axes, the weights are a Hann window, which falls to 0 at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
 use crate::image::colour::luminance;
@@ -85,8 +86,8 @@ impl Statistics {
         }
     }
 
-    /// The statistics of a mixture of patterns with the given weights. The spacing between lamps of different patterns
-    /// is unknown, so the spacing of several patterns is 0.
+    /// The statistics of a mixture of patterns with the given weights. The spacing of several patterns is 0, because
+    /// the distance between lamps of different patterns is unknown.
     pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
         let parts: Vec<(Self, f64)> = parts.collect();
         if let [(only, _)] = parts[..] {
@@ -97,7 +98,8 @@ impl Statistics {
         Self {
             lit: ratio(lit, sum(&|_| 1.0)),
             luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
-            // The number of lamps is their lit area over the area of one lamp.
+            // The number of lamps per area is the lit share divided by the area of a lamp. Divide the sum of the lit
+            // shares by the sum of these numbers.
             area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
             spacing: 0.0,
             whole: parts.iter().map(|(part, _)| part.whole).sum(),
@@ -215,7 +217,7 @@ mod tests {
                 assert!(seen.difference(&truth) < 1e-9, "{width} x {height}, {shift:?}: {seen:?}");
             }
         }
-        // Plain counts would deviate by a tenth.
+        // Without the weights, the lit share would be wrong by more than a tenth.
         let counted = 4.0 * 4.0 * 45.0 / (67.0 * 61.0) / truth.lit;
         assert!((counted - 1.0f64).abs() > 0.1, "{counted}");
     }

@@ -7,8 +7,8 @@ use glam::DVec2;
 /// Number of rows of texels that share one list of lamps. [bench emission:seconds]
 const BAND: usize = 16;
 
-/// For each band of rows, the lamps that may touch it. An entry is the index of a lamp, and the texels `[x0, y0, x1,
-/// y1)` that the lamp may touch.
+/// For each band of rows, the lamps that may touch it. An entry holds the index of a lamp, and the texels
+/// `[x0, y0, x1, y1)` that the lamp may touch.
 #[derive(Default)]
 pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
 

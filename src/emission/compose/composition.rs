@@ -89,13 +89,13 @@ impl Composition {
     }
 
     /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period). Also
-    /// returns the score of this continuation and its best alternative.
+    /// returns how well this continuation predicts the lamps, and the best alternative.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
     }
 
-    /// The number of lamps that the photos of the exemplars show completely, in all exemplars together.
+    /// The number of lamps that the photos show completely, summed over all exemplars.
     pub fn exemplar_lamps(&self) -> usize {
         self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
     }
@@ -106,8 +106,8 @@ impl Composition {
     /// exemplars have changed.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
-        // A crumb that touches the tile lies within this margin, and so does any light that connects the crumb to a
-        // larger piece.
+        // Render a margin around the tile as well. It is wide enough for every crumb that touches the tile, and for
+        // every light that would connect the crumb to a larger piece.
         let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
         let (mut texture, mut mask) = self.render(input, styles, around, job)?;
@@ -137,8 +137,8 @@ impl Composition {
         Ok((texture, coverage, found))
     }
 
-    /// Removes crumbs from a tile. A piece that touches the border of the texture is kept: it is the rest of a lamp
-    /// that the border cuts.
+    /// Removes crumbs from a tile. A small piece at the border of the texture is kept, because it may be the rest of a
+    /// lamp that the border cuts.
     fn remove_crumbs(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
         let is_cut = |min: [usize; 2], max: [usize; 2]| {
             let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);

@@ -1,15 +1,21 @@
 //! Blends several exemplars in one texture: the mixture of styles that the paper leaves to future work (§8).
 //!
-//! A lamp halfway between two designs would belong to neither, so lamps are chosen at random. Each exemplar's pattern
-//! is planned over the whole texture. Each of its lamps is kept with a probability equal to the exemplar's weight at
-//! the lamp's centre. Lamps of different exemplars that would overlap share one random number, so that exactly one of
-//! them is kept; every other lamp has a random number of its own. The mean light per area then blends linearly. If
-//! many lamps overlap several others, neighbouring lamps share a random number too, and the style changes from one
-//! square of the texture to the next. If two kept lamps overlap in that case, the lamp of the later exemplar is
-//! dropped. Lights that run beyond the border of their exemplar do not count as lamps: the weight dims them instead.
+//! A lamp halfway between two designs would belong to neither, so each lamp is taken from one exemplar, chosen at
+//! random:
 //!
-//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], all of
-//! them have a site or a midpoint between sites at the texture's centre.
+//! 1. The pattern of each exemplar is planned over the whole texture.
+//! 2. Each lamp gets a random number in [0, 1). Lamps of different exemplars that would overlap share one number.
+//! 3. The weights at the lamp's centre divide [0, 1) into one interval per exemplar. The lamp is kept if its number
+//!    lies in the interval of its own exemplar. Of two overlapping lamps with equal weights, at most one is kept, and
+//!    the mean light per area follows the weights.
+//!
+//! If many lamps overlap several others, all lamps in a square of the texture share one number, and the style changes
+//! from square to square. If two kept lamps overlap all the same, the lamp of the exemplar that comes first in the
+//! list stays. Lights that run beyond the border of their exemplar are not chosen at random: the weight dims them
+//! instead.
+//!
+//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], each
+//! lattice has a site, or a midpoint between sites, at the texture's centre.
 
 use super::layer::Layer;
 use super::weights::Weights;
@@ -19,11 +25,11 @@ use crate::rng::Rng;
 use glam::DVec2;
 use std::collections::HashMap;
 
-/// Side of the squares whose lamps share a random number where lamps are dense, as a multiple of the longest lamp's
-/// length.
+/// Where lamps are dense, all lamps in one square of the texture share a random number. This is the square's side, as
+/// a multiple of the longest lamp's length.
 const PATCH: f64 = 3.0;
-/// Consider the lamps of all exemplars but the first. Lamps are dense if more than this share of them each overlap
-/// several lamps of exemplars that come earlier in the list than their own.
+/// Lamps are dense if more than this share of the lamps of all exemplars but the first each overlap several lamps of
+/// preceding exemplars.
 const DENSE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.
@@ -67,8 +73,9 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let several = below.iter().flatten().filter(|b| b.len() > 1).count();
     let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
-    // A lamp takes the random number of the lamp of an earlier layer that it overlaps most. If it overlaps none, it
-    // gets a number of its own or, if lamps are dense, the number of the square of the texture that holds its centre.
+    // Give each lamp its random number. A lamp that overlaps lamps of earlier layers takes the number of the lamp that
+    // it overlaps most. Any other lamp gets a number of its own or, where lamps are dense, the number of the square
+    // that contains its centre.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
             let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
@@ -82,7 +89,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         }
     }
 
-    // Decide which lamps to keep. Of chosen lamps that overlap, the lamp of the earliest layer is kept.
+    // Decide which lamps to keep. If chosen lamps overlap, keep the lamp of the earliest layer.
     let size = DVec2::new(params.width as f64, params.height as f64);
     let mut stays: Vec<Vec<bool>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {

@@ -1,10 +1,11 @@
 //! Lists the lamps of a composition without rendering the whole texture.
 //!
 //! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and a position for
-//! each lamp. If a texel is not exactly one unwarped pixel, the outlines are more exact than those of the texture,
-//! which consist of whole texels. Some lights are copied patch by patch and not as a whole: lights that run through
-//! their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. Their outlines are measured in
-//! the texture.
+//! each lamp. If a texel is not exactly one unwarped pixel, these outlines are more exact than outlines measured in
+//! the texture, which consist of whole texels.
+//!
+//! Some lights are copied patch by patch and not as a whole: lights that run through their exemplar and, without
+//! [`crate::emission::Params::whole_lamps`], all lights. Only their outlines are measured in the texture.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
@@ -37,8 +38,8 @@ pub struct LampList {
 }
 
 impl LampList {
-    /// Lists the lamps of a composition, from the exemplars for which it was planned. Errors: as for
-    /// [`Composition::tile`].
+    /// Lists the lamps of a composition. `input` and `styles` must be the exemplars for which the composition was
+    /// planned. Errors: as for [`Composition::tile`].
     pub fn new(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Self> {
         composition.check_exemplars(input, styles)?;
         let mut list = Self { shapes: Vec::new(), shown: Vec::new(), others: Vec::new(), flux: 0.0 };
@@ -57,7 +58,7 @@ impl LampList {
         }
         for (k, layer) in composition.layers.iter().enumerate() {
             job.check()?;
-            // A texture that is a copied part of the exemplar shows all components of the exemplar at one shift.
+            // If the texture is a copied part of the exemplar, all components of the exemplar are moved by one shift.
             let copied = layer.patch_map.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
             let copies = copied.map(|shift| {
                 let instance = |component| Instance { component, shift: shift.exact };
@@ -77,8 +78,8 @@ impl LampList {
         Ok(list)
     }
 
-    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that are copied
-    /// patch by patch.
+    /// Groups lamps of equal shape into kinds, and gives each kind a number. The kinds comprise the lamps of all
+    /// exemplars and the lights that are copied patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {

@@ -69,8 +69,8 @@ struct Setting<'a> {
     offset: DVec2,
     /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
-    /// Side of a patch, and the distance to a light from which on the x and y distances in the metadata stay at 1;
-    /// both in working pixels.
+    /// `block`: side of a patch. `cap`: distance to the nearest light, along x or y, at which the distances in the
+    /// metadata saturate at 1. Both in working pixels.
     block: usize,
     cap: f64,
 }
@@ -150,19 +150,21 @@ impl Layer {
         if self.scale == 1.0 { shift.round() } else { shift }
     }
 
-    /// Area in texels below which a piece of light is a crumb; 0 if no lamps are copied as a whole.
+    /// Area in texels below which a piece of light is a crumb (a fragment broken off by resampling) and is removed; 0
+    /// if no lamps are copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
-/// A texture that fits inside the exemplar is a copy of a part of the photo, ragged outlines included. Lamps with
-/// clean outlines replace the copy only if the lamps lie on a lattice with at least this score. [bench photos:tune]
+/// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the
+/// exemplar. At a lower score, the texture is a copy of a part of the photo, ragged outlines included.
+/// [bench photos:tune]
 const SURE: f64 = 0.6;
 
-/// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.
-/// [convention]
+/// Outlines count as ragged if a photo pixel is at least this many unwarped pixels long, because they then show the
+/// steps between photo pixels. [convention]
 const RAGGED: f64 = 2.0;
 
 /// The exemplar from which a texture is made, and how its pattern continues: on a lattice, in a row, by repetition or
@@ -189,7 +191,8 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     let stays = params.tileable || params.centred;
     let mut window = if stays { None } else { Window::find(&exemplar, params)? };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
-    // If the photo shows lamps coarsely, their ragged outlines are cleaned, provided that a lattice places the lamps.
+    // If a photo pixel spans several unwarped pixels, outlines are ragged. Lamps with ragged outlines are drawn anew,
+    // provided that a lattice gives their positions.
     let may_be_cleaned =
         is_inside && params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
     let copied = || (Continuation::Copy, 0.0, Choice::only(Continuation::Copy));
@@ -214,8 +217,8 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     Ok((window, Source { exemplar, found, regularity, choice }))
 }
 
-/// Whether outlines are ragged: the median length of a photo pixel at the whole lamps is at least [`RAGGED`] unwarped
-/// pixels.
+/// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
+/// least [`RAGGED`] unwarped pixels.
 fn is_ragged(exemplar: &Exemplar) -> bool {
     let lamps = exemplar.evidence(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
@@ -239,7 +242,8 @@ impl<'a> Setting<'a> {
         Ok(Self { params, found, continuation, offset, canvas, block, cap })
     }
 
-    /// For a tileable texture, the lattice as found and as stretched; `None` for other textures.
+    /// The two lattices of a tileable texture: as found in the exemplar, and stretched so that a whole number of
+    /// periods fits into the texture. `None` for other textures.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
         let lattices = self.found.lattice().zip(self.continuation.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
@@ -266,7 +270,8 @@ impl<'a> Setting<'a> {
             _ => None,
         };
         let size = row.map_or(canvas, |r| r.1);
-        // A row that ends within the exemplar also ends in the texture, and begins again after a constant distance.
+        // If both ends of a row lie within the exemplar, the texture repeats the whole row, with its free ends, at a
+        // constant period.
         let laid = match continuation {
             Continuation::Row([along, across]) if !params.tileable => {
                 Continuation::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
@@ -280,8 +285,8 @@ impl<'a> Setting<'a> {
         })
     }
 
-    /// Places lamps at the exact sites of their lattice. Returns `shown` unchanged if there are no designs or no
-    /// sites, and for a row that ends within the exemplar.
+    /// Moves lamps to the exact sites of their lattice. `shown` holds the lamps that the copied patches contain; it is
+    /// returned unchanged if there are no designs or no sites, and for a row that ends within the exemplar.
     fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
         let &Self { params, continuation, offset, .. } = self;
         let ends = match continuation {
@@ -334,8 +339,9 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Shifts the lamps of a pattern without a lattice by `params.offset`. Such a pattern has no origin. Therefore an
-/// offset other than 0 is an error, unless the texture is tileable and no light is copied patch by patch.
+/// Shifts the lamps of a pattern without a lattice by `params.offset`. An offset other than 0 is an error, because
+/// such a pattern has no origin. Only if the texture is tileable and no light is copied patch by patch is any offset
+/// allowed.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);
@@ -355,9 +361,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// Default side of a patch in working pixels (at the reduced size of the synthesis), large enough for a lamp and parts
-/// of its neighbours. It is one and a half times the longer period of a lattice; without a lattice, it is a quarter of
-/// the exemplar's shorter side.
+/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours: on a lattice, one
+/// and a half times the longer period; without a lattice, a quarter of the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -1,9 +1,8 @@
-//! Finds the lights that are copied patch by patch, without holding the whole texture in memory: a light that runs
+//! Finds the lights that are copied patch by patch, without holding the whole texture in memory. A light that runs
 //! through the exemplar is as long as the texture.
 //!
-//! A sweep renders the texture in bands from top to bottom. For every connected light, it keeps running sums, and the
-//! first and the last texel in each row. The outline encloses everything between these two texels, in steps of whole
-//! texels.
+//! The texture is rendered in bands from top to bottom. Each connected light keeps running sums, and the first and the
+//! last texel in each row. Its outline encloses everything between these two texels, in steps of whole texels.
 
 use super::composition::Composition;
 use super::render::Lights;
@@ -24,11 +23,11 @@ use glam::{DVec2, DVec3, Vec3};
 /// (`BESIDE`). The further rows are needed to compute which part of each texel is light.
 const BAND: usize = 64;
 const BESIDE: usize = 2;
-/// Index of the light at a texel without light.
+/// Value of a texel without light, in place of the index of its light.
 const NONE: u32 = u32::MAX;
 
-/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. Their shares
-/// of flux are 0.
+/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. The field
+/// `flux_share` is left at 0.
 pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Vec<Luminaire>> {
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());
@@ -135,7 +134,8 @@ struct Light {
 }
 
 impl Light {
-    /// Adds the lit `area` of the texel at `[x + u, y + v]`; `[x, y]` is a texel of the light.
+    /// Adds `area`, in texels, of light in the texel `[x + u, y + v]`. `[x, y]` is the texel of this light to which
+    /// the area is attributed; `[u, v]` is 0 or the step to an adjacent texel.
     fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
         let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
         self.area += area;
@@ -162,7 +162,7 @@ impl Light {
         }
     }
 
-    /// Ends the last row: if it has the same ends as the span above, merges it into that span.
+    /// Merges the last row into the span above if both cover the same columns.
     fn close(&mut self) {
         if let [.., before, last] = &mut self.spans[..]
             && (before.left, before.right, before.row + before.rows) == (last.left, last.right, last.row)

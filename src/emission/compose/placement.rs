@@ -19,13 +19,12 @@ pub enum Placement {
 }
 
 impl Emission {
-    /// Removes light where `ground` does not allow it; `ground` has one entry per texel. The statistics of the
-    /// emission are not updated: they describe the pattern before this removal.
+    /// Removes light where `ground`, which has one entry per texel, does not allow it. The statistics of the emission
+    /// still describe the pattern before the removal.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
-        // First mark the lamps that will be removed as a whole, then remove hidden light: the hidden parts of a lamp
-        // count too when it is marked.
+        // Mark the lamps to be removed as a whole before hidden light is removed, while every lamp is still connected.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {
@@ -45,7 +44,7 @@ impl Emission {
                 found.list.len()
             )));
         }
-        // Complete lamps keep their outline and size; the other lamps are measured again from the mask.
+        // Lamps that lost no light keep their outline and size; the other lamps are measured again from the mask.
         let mask = &self.mask;
         let mut lamps = luminaires::find(&self.texture, &left, &|i| mask.data[i], job)?;
         for (label, (lamp, component)) in (1..).zip(lamps.iter_mut().zip(&left.list)) {

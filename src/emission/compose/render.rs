@@ -2,9 +2,11 @@
 //! the unwarped image ("Lighting Style Transfer", §6, Fig. 12h).
 //!
 //! The position of a texel minus its shift is a point of the unwarped image. The homography maps that point into the
-//! photo, where the colour is averaged over the area that the texel covers. The unwarped image decides whether a texel
-//! is light. If that image is magnified, its confidence is interpolated between pixels, so that outlines show no
-//! staircase. If it is reduced, the lit share of the texel's area decides.
+//! photo, where the colour is averaged over the area that the texel covers.
+//!
+//! The unwarped light mask decides whether a texel is light. If a texel is smaller than an unwarped pixel, the
+//! confidence is interpolated between pixels, so that outlines show no staircase. If a texel is larger, the lit share
+//! of its area decides.
 
 use super::bands::Bands;
 use super::source::{Source, Texel};

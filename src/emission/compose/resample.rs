@@ -1,24 +1,24 @@
 //! Resamples the photo under a texel: computes its mean colour over a small square of the unwarped image.
 //!
-//! The homography maps the square to a quadrangle in the photo. Its sides are divided into steps of about one photo
-//! pixel, and the colours at these points are averaged. Cubic interpolation gives the colour at a point (Catmull and
-//! Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
+//! The homography maps the square to a quadrangle in the photo. The sides of the quadrangle are divided into steps of
+//! about one photo pixel, and the colours at these points are averaged. Cubic interpolation gives the colour at a
+//! point (Catmull and Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
 //!
 //! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, but is
-//! less exact. At its published width, the Gaussian also weighs parts of the photo that belong to other texels; a
-//! Gaussian as narrow as a texel does not have the texel's shape. Its blur is closer to the truth only at extreme
-//! magnification, where tens of texels along one side share a photo pixel and no detail is left to recover. `cargo
-//! bench --bench emission -- recovery` compares both methods with the truth.
+//! less exact. At its published width, its Gaussian also weighs parts of the photo that belong to other texels; a
+//! Gaussian as narrow as a texel does not have the texel's shape. The usual method is better only at extreme
+//! magnification, where tens of texels along one side share a photo pixel. `cargo bench --bench emission -- recovery`
+//! compares both methods with the truth.
 
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::{DVec2, Vec3};
 
-/// Maximum number of points along each side. It limits the cost of texels near the horizon.
+/// Maximum number of sample points along each side of the square. It limits the time for texels near the horizon.
 const MAX_POINTS: f64 = 32.0;
 
-/// Mean colour of a photo over a square of the unwarped image, given by its centre and side. Only points within the
-/// photo count. `None` if there are none, or if the mean is not finite.
+/// Mean colour of a photo over a square of the unwarped image, given by its centre `middle` and its side. Only sample
+/// points within the photo count. `None` if there are none, or if the mean is not finite.
 pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> Option<Vec3> {
     let at = |step: DVec2| to_photo.apply(middle + step * side);
     // At the horizon the length is NaN, which the cast turns into 0 points.
@@ -96,11 +96,12 @@ mod tests {
         let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0)));
         let found = mean(&photo, &wide, DVec2::new(4.5, 5.5), 1.0).unwrap();
         assert!((found.x - (54.0 + 165.0)).abs() < 1e-3, "{found}");
-        // If half of the square lies outside the photo, the mean is that of the other half.
+        // If half of the square lies outside the photo, only the other half counts.
         let found = mean(&photo, &wide, DVec2::new(0.0, 5.5), 1.0).unwrap();
         assert!((found.x - (3.0 + 165.0)).abs() < 0.2, "{found}");
         assert_eq!(mean(&photo, &wide, DVec2::new(-1.0, 5.5), 1.0), None);
-        // The mean of a texel at the horizon must not take long, because the number of sample points is limited.
+        // At the horizon the square covers unboundedly many photo pixels, but the limit on the sample points keeps the
+        // time short.
         let horizon = Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);

@@ -32,12 +32,13 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// The colour of a designed lamp is read inside its blurred rim. `RIM` is the width of the rim in photo pixels;
-/// `MIN_INNER` is the minimum size of the inner part, as a share of the lamp's sides. [judged on 20 photos]
+/// Only the inner part of a lamp in the photo gives the colour of a lamp drawn from its design, because the rim is
+/// blurred. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum size of the inner part, as a share of the
+/// lamp's sides. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
-/// The colour and coverage of a texel, computed from a part of the lights.
+/// The colour and coverage that one lamp, or a group of lights, gives to a texel.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
@@ -63,7 +64,8 @@ impl Source<'_> {
         patch_map.shift(u, v).map(|s| s.exact)
     }
 
-    /// The light averaged over a texel, from the components for whose label `is_shown` is true.
+    /// The colour and coverage of a texel, averaged over samples. Only components for whose label `is_shown` returns
+    /// true count as light.
     pub fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
         let scale = self.layer.scale;
         let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
@@ -91,7 +93,8 @@ impl Source<'_> {
         Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
     }
 
-    /// The light of a lamp that is drawn from its design, at a texel; `None` if the component has no design.
+    /// The colour and coverage of a texel of a lamp that is drawn from its design; `None` if the component has no
+    /// design. `shift` is the lamp's position in the texture minus its position in the exemplar.
     pub fn designed_texel(&self, x: usize, y: usize, shift: DVec2, component: usize) -> Option<Texel> {
         let (design, fitted) = self.layer.designs.of(component)?;
         let scale = self.layer.scale;
@@ -100,8 +103,8 @@ impl Source<'_> {
         if share <= 0.0 {
             return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
         }
-        // Read the colour at the corresponding point of the lamp in the photo. The photo's lamp is enlarged by bloom,
-        // and its blurred rim is avoided.
+        // Read the colour at the corresponding point of the lamp in the photo. The whole design is mapped onto the
+        // inner part of that lamp, because its rim is blurred and bloom enlarges it.
         let axes = [design.axis, design.axis.perp()];
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
@@ -115,7 +118,7 @@ impl Source<'_> {
         Some(Texel { colour: colour * share, share, coverage: share })
     }
 
-    /// The colour of the light at a point, from the photo or, outside it, from the unwarped image.
+    /// The colour of the light at a point: from the photo or, outside the photo, from the unwarped image.
     fn colour(
         &self,
         p: DVec2,
@@ -154,9 +157,8 @@ impl Source<'_> {
         label != 0 && is_shown(label)
     }
 
-    /// The share of an unwarped pixel that is covered by the components for which `is_shown` is true. Pixels beside
-    /// lamps, where the confidence fades out, count for every lamp; a pixel of a component counts for that component
-    /// only.
+    /// The share of an unwarped pixel that is covered by the selected components, for whose labels `is_shown` returns
+    /// true. An unlit pixel beside a lamp counts for every selection, because the confidence fades out there.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
@@ -182,7 +184,8 @@ impl Source<'_> {
         ]
     }
 
-    /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side.
+    /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side. `None` without a
+    /// photo, and outside it.
     fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
         let (photo, to_photo) = self.input.photo?;
         resample::mean(photo, &to_photo, p, side)

@@ -54,8 +54,7 @@ impl Weights {
         Ok(Self(maps))
     }
 
-    /// The weight of an exemplar at a point of the texture, interpolated; coordinates run from 0 to 1 over the
-    /// texture.
+    /// The interpolated weight of an exemplar at a point of the texture, whose coordinates run from 0 to 1.
     pub fn at(&self, exemplar: usize, at: DVec2) -> f32 {
         let Some(map) = self.0.get(exemplar) else { return 1.0 };
         let last = DVec2::new(map.width as f64, map.height as f64) - 1.0;

@@ -1,9 +1,9 @@
 //! Detects the bars between the panes of a luminous ceiling.
 //!
 //! The bars of a skylight or of a luminous ceiling run straight along the axes of the unwarped image. Far from the
-//! camera they are thinner than a photo pixel, or the bloom of the panes covers them. Yet over all of its length, a
-//! bar is darker than the panes on both sides. The median over a whole line therefore detects it where single pixels
-//! do not. Bars beyond the last visible one are predicted by the period of the bars.
+//! camera they are thinner than a photo pixel, or hidden by the bloom of the panes. Yet on average a bar is darker
+//! than the panes on both sides over all of its length. The median over a whole line therefore detects bars that
+//! single pixels do not show. Bars beyond the last visible one are predicted from the period of the bars.
 
 use super::foreshortening::LocalMap;
 use crate::error::Result;
@@ -21,13 +21,12 @@ const MIN_DEPTH: f32 = 0.03;
 /// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
 /// [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
-/// Number of sections ([`Stretch`]) into which a bar is divided along its length; each is tested separately.
-/// [convention]
+/// Number of sections ([`Stretch`]) along a bar, each of which is tested separately. [convention]
 const STRETCHES: usize = 24;
-/// Where another bar crosses, it hides at most this many consecutive sections ([`Stretch`]) of a bar, even if the
-/// crossing bar has the maximum width. [convention]
+/// Maximum number of consecutive sections ([`Stretch`]) of a bar that a crossing bar may hide. It suffices for a
+/// crossing bar of the maximum width. [convention]
 const CROSSING: usize = 2;
-/// A section ([`Stretch`]) that the photo shows sharply has no bar if its depth is below this share of the whole bar's
+/// Where the photo is sharp, a section ([`Stretch`]) shows no bar if its depth is below this share of the whole bar's
 /// depth. [bench photos:tune]
 const ABSENT: f32 = 0.25;
 /// Bars have a period if the distances between them deviate from their mean by at most this share. [bench photos:tune]
@@ -75,9 +74,8 @@ pub struct Lines<'a> {
     across: usize,
     along: usize,
     widest: usize,
-    /// Share by which each pixel is darker than the light beside it; at least 0. The light of a side is the brightest
-    /// lit pixel within `widest` positions on that side. The darker of the two sides counts. NaN if a side has no
-    /// light.
+    /// Share by which each pixel is darker than the light beside it, at least 0; NaN if there is no light on one side.
+    /// The light of a side is the brightest lit pixel within `widest` positions; the darker side counts.
     depth: Vec<f32>,
 }
 
@@ -120,8 +118,8 @@ impl<'a> Lines<'a> {
     }
 
     /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness. `None`
-    /// if fewer than `least` pixels have light on both sides. A bar is dark over all of its length; a bar that crosses
-    /// it is dark in a few places only.
+    /// if fewer than `least` pixels have light on both sides. The median ignores bars that cross, because they are
+    /// dark at a few of these pixels only.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.stretch()) {
@@ -167,8 +165,8 @@ impl<'a> Lines<'a> {
         bars
     }
 
-    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns none if they have no
-    /// period.
+    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns no bars if the found
+    /// bars have no period.
     pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
         let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
@@ -203,13 +201,13 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Removes a bar from the light, except in sections where the photo shows no bar although its sharpness is at
-    /// least `bluntest`. Returns whether any lit pixel was removed.
+    /// Removes a bar from the light. Sections that show no bar stay light if the photo is sharp enough there: if its
+    /// sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, this bar does not stand out from the other one, so the section seems to have no
-        // bar.
+        // A section in which another bar crosses seems to have no bar, because both bars are equally dark. Remove it
+        // nevertheless.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;
@@ -237,7 +235,7 @@ pub struct Stretch {
     sharpness: f64,
 }
 
-/// The least sharpness among the sections in which a bar is visible.
+/// The lowest sharpness of the sections in which a bar is visible.
 pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
     let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)

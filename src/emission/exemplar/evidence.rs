@@ -5,20 +5,20 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Two lamps are of one kind if each side differs by at most this share, in addition to measurement error and bloom.
-/// [judged on 20 photos]
+/// Two lamps are of one kind if each side differs by at most this share, plus an allowance for measurement error and
+/// bloom. [judged on 20 photos]
 const LIKE: f64 = 0.2;
-/// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the
-/// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]
+/// Allowances when sides are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`: lengthening of
+/// a side by bloom, which differs between lamps if unwarping magnifies them differently. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
-/// Lamps are possibly of one kind if their sides differ by at most the share `MAYBE_LIKE` and, for each of the two
-/// lamps, `MAYBE_BLUR` photo pixels of measurement error. Other evidence, such as their position on a lattice, must
-/// confirm it. [judged on 20 photos]
+/// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
+/// `MAYBE_LIKE`: maximum difference of a side as a share. `MAYBE_BLUR`: measurement error of each lamp, in photo
+/// pixels. [judged on 20 photos]
 const MAYBE_LIKE: f64 = 0.33;
 const MAYBE_BLUR: f64 = 2.5;
 
-/// A lamp of the exemplar as evidence: index of its component, position and size in unwarped pixels.
+/// A lamp of the exemplar, as evidence for kinds of lamps and for a lattice. Position and size are in unwarped pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence {
     pub component: usize,
@@ -26,7 +26,8 @@ pub struct Evidence {
     pub size: DVec2,
     /// Number of photo pixels that show the lamp.
     pub weight: f64,
-    /// Blur of the lamp's edges along x and y: one photo pixel, measured across the edge in unwarped pixels.
+    /// Length of a photo pixel at the lamp, in unwarped pixels along x and along y. The lamp's edges are blurred by
+    /// about this length.
     pub blur: DVec2,
 }
 
@@ -37,8 +38,7 @@ impl Evidence {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups lamps that have equal sizes apart from blur. Within a group, the lamps with most photo pixels come
-    /// first.
+    /// Groups lamps that have equal sizes apart from blur. Each group lists the lamps with most photo pixels first.
     pub fn kinds(lamps: &[Self]) -> Vec<Vec<Self>> {
         // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur.
         let mut order = lamps.to_vec();
@@ -58,7 +58,7 @@ impl Evidence {
         kinds
     }
 
-    /// Whether two lamps may have equal sizes, considering their blur.
+    /// Whether two lamps may have equal sizes, given their blur.
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
         let slack = self.size.max(other.size) * LIKE + blur;

@@ -30,8 +30,8 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// Distance in unwarped pixels by which edges perpendicular to x, and edges perpendicular to y, move if they move
-    /// by one pixel in the photo.
+    /// Length of a photo pixel in unwarped pixels, along each axis: if an edge perpendicular to the axis moves by one
+    /// pixel in the photo, it moves by this length in the unwarped image.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
@@ -44,7 +44,7 @@ impl LocalMap {
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,
-    /// Largest allowed value of the homography's denominator. Magnification in length is proportional to the
+    /// Largest allowed value of the homography's denominator. The magnification of lengths is proportional to the
     /// denominator to the power of 3/2.
     max_denominator: f64,
 }

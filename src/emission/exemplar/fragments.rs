@@ -1,9 +1,12 @@
 //! Detects fragments: specks, and pieces of light that are only parts of a lamp, for example between the blades of a
 //! louvre.
 //!
-//! A photo usually shows several lamps of a kind. A piece of light is a fragment if it covers far fewer photo pixels
-//! than a lamp of the smallest kind would cover in its place. In addition, it must lie close to another light, or be
-//! one of few pieces of its kind. Fragments count as light in the pattern, but the texture does not show them.
+//! A photo usually shows several lamps of a kind. A piece of light is a fragment if two conditions hold:
+//!
+//! - It covers far fewer photo pixels than a lamp of the smallest kind would cover in its place.
+//! - It lies close to another light, or only few pieces are similar to it.
+//!
+//! Fragments count as light in the pattern, but the texture does not show them.
 
 use super::components::{Component, Components};
 use super::evidence::Evidence;
@@ -12,16 +15,16 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// A group of similar pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
+/// A group of similar pieces is a major kind of lamps if it has at least this share of the photo pixels of all lamps.
 /// [judged on 20 photos]
 const MIN_KIND: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
-/// A fragment is close to the light that it broke off if their distance is at most this multiple of the longer side of
-/// a lamp. [judged on 20 photos]
+/// A fragment is close to another light if their distance is at most this multiple of a lamp's longer side.
+/// [judged on 20 photos]
 const CLOSE: f64 = 0.35;
-/// At least this many similar pieces count as a kind of lamps, however small they are, unless they lie close to other
-/// lights. [judged on 20 photos]
+/// A group of at least this many similar small pieces counts as a kind of lamps; only the pieces close to other lights
+/// are then fragments. [judged on 20 photos]
 const MANY: usize = 3;
 
 /// Gives the fragments among the whole lamps the role [`Role::Cut`].

@@ -51,8 +51,8 @@ pub struct Exemplar {
 }
 
 impl Exemplar {
-    /// Analyses the input. If `max_magnification` is above 0, parts with a larger magnification are left out. Errors:
-    /// no valid pixel, no light (`Degenerate`).
+    /// Analyses the input. If `max_magnification` is above 0, parts that unwarping magnifies more are left out.
+    /// Errors: no valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, .. } = *input;
         let (width, height) = (image.width, image.height);
@@ -90,11 +90,11 @@ impl Exemplar {
     /// The statistics of the pattern, with lengths in unwarped pixels. `periods` has the meaning of
     /// [`Pattern::periods`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
-        // Components that the texture may show as one piece count as lamps.
+        // Count every component that is copied as one piece as a lamp.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
-        // The pattern of a luminous ceiling continues without the dark border around its panes, so measure within the
-        // bounding box of the panes.
+        // The pattern of a luminous ceiling continues without the dark border around its panes, so measure only inside
+        // the bounding box of the panes.
         let [low, high] = if self.is_luminous_ceiling() { self.box_of_lights() } else { [[0, 0], [*width, *height]] };
         let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
         let colour = |i: usize| {
@@ -104,9 +104,9 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
-    /// The share of an unwarped pixel that light covers: the confidence in `light`. Pixels of components count, and
-    /// unlit pixels beside them, where the confidence fades out. Pixels that are lit but belong to no component give
-    /// 0, and so does an index beyond the last pixel.
+    /// The share of an unwarped pixel that light covers, equal to the confidence in `light`. It is 0 for a pixel that
+    /// the photo does not show, for a lit pixel without a component, and for an index beyond the last pixel. Unlit
+    /// pixels keep their confidence, which fades out beside lamps.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
@@ -134,8 +134,8 @@ impl Exemplar {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }
 
-    /// The components whose role fulfils `has_role`, as evidence for a lattice; those with most photo pixels come
-    /// first.
+    /// The components whose role fulfils `has_role`, as evidence for a lattice, in descending order of their photo
+    /// pixels.
     pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
         let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
         let mut all: Vec<Evidence> =

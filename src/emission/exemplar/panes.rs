@@ -1,8 +1,8 @@
 //! Separates the panes of a luminous ceiling along the bars between them, and fills gaps within each pane.
 //!
-//! The light mask joins panes where bloom covers the bars between them. Where the camera is near, it cuts panes to
-//! pieces along the lead strips inside them (their leading). The detected bars ([`super::bars`]) define the panes,
-//! near and far.
+//! The light mask has two faults. Where bloom covers the bars, it joins neighbouring panes. Near the camera, it cuts
+//! panes to pieces along the lead strips inside them (their leading). The detected bars ([`super::bars`]) give the
+//! true borders of the panes.
 
 use super::LUMINOUS;
 use super::bars::{self, Bar, Lines, LitPlane};
@@ -18,7 +18,7 @@ const PANE: f64 = 0.35;
 /// A pixel outside the mask is added to its pane if it has at least this luminance, relative to the pane's median.
 /// [bench photos:real]
 const BRIGHT: f32 = 0.5;
-/// A dark line inside a pane is filled, as a lead strip, if it is at most this wide, as a share of the pane's side.
+/// A dark line inside a pane is a lead strip, and is filled, if its width is at most this share of the pane's side.
 /// [bench photos:real]
 const LEADING: f64 = 0.06;
 
@@ -61,8 +61,8 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
         bluntest = bluntest.min(own);
         is_changed |= lines.cut(bar, &stretches, own, light);
     }
-    // The photo may show no bar where the period predicts one. Such a bar is kept as light if the photo is at least as
-    // sharp there as in the least sharp view of a visible bar.
+    // Remove the bars that the period predicts, too. A predicted bar stays light where the photo is sharp enough to
+    // show a bar but shows none. Sharp enough means: as sharp as in the least sharp section of a visible bar.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
         is_changed |= lines.cut(bar, &lines.stretches(bar), bluntest, light);

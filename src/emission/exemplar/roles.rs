@@ -5,13 +5,13 @@ use super::components::{Component, Components};
 /// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
 /// [judged on 5 photos]
 const CUT_LAMP_SLACK: f64 = 1.35;
-/// A lamp counts as whole if the number of its pixels at the border is at most this share of its width, because masks
-/// fray. Its width is the ratio of its area to the diagonal of its bounding box. A square lamp that the border cuts
-/// exceeds the limit. A disc meets it until the border touches a third of its diameter, which cuts off less than a
-/// hundredth of the disc. [judged on 5 photos]
+/// A lamp at the border counts as whole if the number of its border pixels is at most this share of its width, because
+/// masks fray. The width is the lamp's area divided by the diagonal of its bounding box. A square lamp that the border
+/// cuts exceeds the limit. A disc does not exceed it as long as less than about a hundredth of its area is cut off.
+/// [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through the exemplar if its length is at least this share of the part of the row or column through its
-/// centre that the photo shows. [rounding]
+/// A light runs through the exemplar if it spans at least this share of the row or column through its centre, as far
+/// as the photo shows that row or column. [rounding]
 const RUNS_THROUGH: f64 = 0.97;
 
 /// The role of a component of the exemplar.
@@ -77,8 +77,8 @@ fn contacts(components: &Components, shown: &[bool], width: usize, height: usize
     contacts
 }
 
-/// Whether a component is about as long as the part of the row, or of the column, through its centre that the photo
-/// shows.
+/// Whether a component spans nearly the whole row or column through its centre, as far as the photo shows that row or
+/// column.
 fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
     let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
     let row = (0..width).filter(|u| shown[y * width + u]).count();

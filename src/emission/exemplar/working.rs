@@ -7,9 +7,9 @@ use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`; the surroundings
-/// are the box scaled by `OUTER`, without the box itself. A pixel belongs to the surroundings if lights cover less
-/// than the share `UNLIT` of it. [judged on 20 photos]
+/// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`. The surroundings
+/// are the box scaled by `OUTER`, without the box itself; only pixels of which lights cover less than the share
+/// `UNLIT` count. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;
@@ -54,8 +54,8 @@ impl Working {
         let (width, height) = (reduce(image.width), reduce(image.height));
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
-        // Reduce colour, confidence, light and validity together. Pixels that are not usable count as 0 in channels 0
-        // to 5.
+        // Reduce nine channels together: colour (0 to 2), confidence, coverage, usable, shown, shown coverage and
+        // luminance. Pixels that are not usable count as 0 in channels 0 to 5.
         const CHANNELS: usize = 9;
         let mut full = Image::new(image.width, image.height, CHANNELS)?;
         let mut brightest = 0f32;

@@ -7,19 +7,19 @@ use crate::image::try_vec;
 /// Steps from a texel to the eight texels around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Function from a texel index to its coverage, the share of the texel that light covers: at least 0.5 for texels of a
-/// lamp, less for others.
+/// Function from a texel's index to its coverage, the share of the texel that light covers. Coverage is at least 0.5
+/// for texels of a lamp and less for all other texels.
 pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 
 /// The lamps of a texture, with the coverage of each texel.
 pub struct Lights<'a> {
     width: usize,
     height: usize,
-    /// For each texel 0, or the number of its lamp.
+    /// For each texel, the number of its lamp, or 0.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number, the lamp's largest coverage. It stands for a texel that light covers entirely, because
-    /// the confidence need not reach 1.
+    /// For each lamp number, the lamp's largest coverage. It counts as full coverage, because the confidence may stay
+    /// below 1.
     full: Vec<f32>,
 }
 
@@ -42,8 +42,8 @@ impl<'a> Lights<'a> {
         self.index(at).map(|i| self.labels[i])
     }
 
-    /// Coverage of a texel, relative to the largest coverage of its lamp or of the lamps around it; `None` outside the
-    /// texture.
+    /// Coverage of a texel divided by the largest coverage of its lamp or, for an unlit texel, of the lamps beside it.
+    /// `None` outside the texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));
@@ -55,10 +55,10 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// Calls `add` for each lit area that a texel contributes to its lamp. The arguments of `add` are the step from
-    /// the texel to the texel that holds the area, and the area in texels. A texel deep in the lamp contributes itself
-    /// as a whole. A texel at the edge contributes its own lit part, and its share of the light in adjacent texels
-    /// that light covers by less than half.
+    /// Calls `add` for each lit area that counts towards a lamp texel. A texel deep inside the lamp contributes all of
+    /// itself. A texel at the edge contributes its own lit part, and its share of the light in adjacent unlit texels
+    /// (covered by less than half). The arguments of `add` are the step from the lamp texel to the texel that holds
+    /// the area, and the area in texels.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -76,9 +76,9 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// The share of a texel at a lamp's edge that light covers. If coverage takes more than two texels to rise from 0
-    /// to 1, the edge is blurred. The distance from the edge then follows from the coverage, and the share from that
-    /// distance.
+    /// The share of an edge texel that light would cover if the lamp's edge were sharp. If coverage needs more than
+    /// two texels to rise from 0 to 1, the edge is blurred. The coverage then gives the distance from the edge, and
+    /// the distance gives the share.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -8,9 +8,9 @@ pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Removes every connected piece of light with an area below `crumb` texels and a length of at most [`reach`]. Keeps
-/// pieces for which `is_cut` returns true, given their first and last column and row: they are the visible part of a
-/// larger light.
+/// Removes every connected piece of light with an area below `crumb` texels and a length of at most [`reach`]. Keeps a
+/// piece if it is the visible part of a larger light, that is, if `is_cut` returns true for its first and last column
+/// and row.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -30,8 +30,9 @@ pub fn remove(
     }
 }
 
-/// Removes the texels for which `goes`, called with the lamp and the texel, returns true. Texels at a lamp's rim that
-/// light covers by less than half belong to no lamp; they are removed if all lamp texels next to them are removed.
+/// Removes the lamp texels for which `goes` returns true; its arguments are the index of the lamp and of the texel.
+/// Also removes texels at the rim of lamps, which light covers by less than half, if all lamp texels next to them are
+/// removed.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

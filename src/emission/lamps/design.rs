@@ -1,11 +1,15 @@
 //! Designs: one size and one outline for all lamps of a kind, estimated from the photo.
 //!
-//! In a photo, distant lamps are small and blurred, and unwarping magnifies their blur. Of equal lamps, the distant
-//! ones therefore come out larger and ragged. Lamps that are equal apart from blur form a kind. Shape (rectangle or
-//! ellipse) and size of a kind are estimated from all its lamps, weighted by the number of photo pixels that show
-//! them. Bloom adds a constant number of photo pixels to every lamp. It therefore appears as a size that grows with
-//! magnification, and is subtracted as far as the lamps show it. The resulting outline is exact at any resolution.
-//! Lamps of another shape keep their own outline.
+//! In a photo, distant lamps are small and blurred, and unwarping magnifies the blur. Of several equal lamps, the
+//! distant ones therefore become larger and ragged.
+//!
+//! 1. Lamps that are equal apart from blur form a kind.
+//! 2. The shape (rectangle or ellipse) and the size of a kind are estimated from all its lamps, weighted by their
+//!    number of photo pixels.
+//! 3. Bloom adds a constant number of photo pixels to every lamp. The size therefore grows with magnification. This
+//!    growth is estimated from the lamps and subtracted.
+//!
+//! The resulting outline is exact at any resolution. Lamps of another shape keep their own outline.
 //!
 //! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
@@ -18,26 +22,26 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width: blur elongates discs, but longer
-/// shapes are tubes with round ends. Its agreement with the lamps must also exceed that of a rectangle by `ROUNDER`,
-/// because blur rounds the corners of a rectangle. [judged on 20 photos]
+/// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width, because blur elongates discs, but
+/// longer shapes are tubes with round ends. It must also agree with the lamps better than a rectangle by at least
+/// `ROUNDER`, because blur rounds the corners of a rectangle. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const ROUNDER: f64 = 0.03;
-/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area of such a lamp in photo pixels. `SMEAR`:
-/// minimum ratio of the axes of an elongated lamp, and of its blur. `ALONG`: minimum cosine of the angle between the
-/// long axes of lamp and blur. [judged on 20 photos]
+/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area in photo pixels. `SMEAR`: the long axis must
+/// exceed the short axis by this factor, for the lamp and for its blur. `ALONG`: minimum cosine of the angle between
+/// the long axes of lamp and blur. [judged on 20 photos]
 const MAX_SMEARED: f64 = 160.0;
 const SMEAR: f64 = 1.25;
 const ALONG: f64 = 0.9;
-/// Lamps are elongated in a common direction if the mean of the unit vectors at twice the angles of their long axes is
-/// longer than this; its length is 1 if all axes are parallel. Lamps that are each elongated along their own blur, in
-/// different directions, are discs of any size. [judged on 20 photos]
+/// Lamps count as elongated in one common direction if the mean of unit vectors at twice the angles of their long axes
+/// is longer than this. Its length is 1 if all axes are parallel. If lamps are elongated along their own blur but not
+/// in a common direction, they are discs, whatever their size. [judged on 20 photos]
 const SAME_WAY: f64 = 0.93;
-/// Minimum agreement of the lamps of a kind with their shape, on average: the area of the intersection divided by the
-/// area of the union. Below it, the kind has no design. [judged on 20 photos]
+/// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
+/// is the area of the intersection divided by the area of the union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// A side of a rectangle is measured across the middle part of the other side; this is the share of the other side
-/// that the middle part covers. [judged on 20 photos]
+/// One side of a rectangle is measured as a mean over the middle part of the other side, away from the rounded
+/// corners. This is the length of that part, as a share of the other side. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
@@ -46,10 +50,9 @@ const ALIGNED: f64 = 0.07;
 /// (`BLOOM`), both in photo pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// Prior standard deviation of the bloom, in photo pixels, if the lamps show bloom. At least `MIN_JUDGES` lamps show
-/// bloom if it explains at least the share `EXPLAINED` of the variation of their sides. Lamps of several lengths, and
-/// partly hidden lamps, do not show it: their sides do not grow with magnification.
-/// [bench photos:tune, photos:real]
+/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_JUDGES` of them, and bloom
+/// explains at least the share `EXPLAINED` of the variation of their sides. Lamps of several lengths, and partly
+/// hidden lamps, fail this test, because their sides do not grow with magnification. [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
 const MIN_JUDGES: usize = 4;
@@ -130,7 +133,7 @@ impl Designs {
         if shown > 0.0 { designed / shown } else { 1.0 }
     }
 
-    /// The design of a component, and the component's fit to it; `None` if it has no design.
+    /// The design of a component, and how the component fits it; `None` if the component has no design.
     pub fn of(&self, component: usize) -> Option<(&Design, &Fitted)> {
         let fitted = self.lamps.get(component)?.as_ref()?;
         Some((&self.kinds[fitted.kind], fitted))
@@ -186,8 +189,8 @@ impl Member {
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// Sides along and across an axis, assuming the given shape. A side of a rectangle is measured in the middle of
-    /// the other side, because blur rounds the corners.
+    /// Sides along and across an axis, assuming the given shape. A rectangle is measured in its middle part only,
+    /// because blur rounds its corners.
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -246,9 +249,9 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps if they are discs that blur has elongated; else `None`. They count as such discs if at least
-/// half of them, by weight, are elongated along their blur, and if they are either small in the photo or not all
-/// elongated in the same direction. The diameter is measured along the shorter axis.
+/// The diameter of lamps that are discs elongated by blur, measured along the shorter axis; `None` if they are not.
+/// Lamps count as such discs if two conditions hold: at least half of them, by weight, are elongated along their blur;
+/// and they are small in the photo, or not all elongated in the same direction.
 fn smeared_disc(members: &[&Member]) -> Option<f64> {
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
@@ -268,8 +271,8 @@ fn smeared_disc(members: &[&Member]) -> Option<f64> {
     }))
 }
 
-/// Standard deviations along the short and the long principal axis, and the unit vector of the long axis: `[[short,
-/// x], [long, y]]`.
+/// Returns `[[short, x], [long, y]]`: the standard deviations along the short and the long principal axis, and the
+/// unit vector (x, y) of the long axis.
 fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     let (xx, xy, yy) = (moments.x_axis.x, moments.x_axis.y, moments.y_axis.y);
     let (mean, spread) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
@@ -278,7 +281,7 @@ fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     [[(mean - spread).max(0.0).sqrt(), axis.x], [(mean + spread).sqrt(), axis.y]]
 }
 
-/// The common axis of the enclosing rectangles of lamps: the mean of their angles modulo a right angle. The x axis if
+/// The common axis of lamps: the mean angle of their enclosing rectangles, modulo a right angle. Returns the x axis if
 /// the mean is nearly aligned with it.
 fn common_axis(members: &[&Member]) -> DVec2 {
     let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
@@ -286,9 +289,9 @@ fn common_axis(members: &[&Member]) -> DVec2 {
     if angle.abs() <= ALIGNED { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The common side of lamps without bloom. Each lamp gives a pair: its side, and the length of a photo pixel there,
-/// both in unwarped pixels. Solves side = s + 2 bloom × photo pixel for s by least squares, with a normal prior on the
-/// bloom.
+/// The common side of lamps, without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a
+/// lamp, and the length of a photo pixel there, both in unwarped pixels. Solves side = s + 2 bloom × photo pixel for s
+/// and the bloom by least squares, with a normal prior on the bloom.
 fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     // Normal equations for s and the bloom.
     let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);
@@ -304,7 +307,7 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let mean = sums.x / gram.x_axis.x;
     let fit = |deviation: f64| (gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * sums;
     let shown = fit(SHOWN_BLOOM);
-    // Sums of squared residuals: of the fit with bloom, and of the mean alone.
+    // Sums of squared residuals of two models: with bloom (`left`), and with the mean side alone (`all`).
     let (left, all) = (square - 2.0 * shown.dot(sums) + shown.dot(gram * shown), square - mean * sums.x);
     let is_shown = count >= MIN_JUDGES && left < (1.0 - EXPLAINED) * all;
     let fitted = if is_shown { shown } else { fit(BLOOM) };

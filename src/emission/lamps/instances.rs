@@ -1,9 +1,8 @@
 //! Finds the lamps of the exemplar that a quilted texture shows, and places each as a whole.
 //!
-//! The texture is black outside the lights (Fig. 12c), so a patch contributes nothing but its lamps. If a lamp is
-//! wider than the overlap of patches, a seam must cross it and leaves only a part of it. Therefore a lamp is placed as
-//! a whole if patches with one shift show enough of it. It is left out if they show less, or if another lamp occupies
-//! its place.
+//! The texture is black outside the lights (Fig. 12c), so a patch contributes nothing but its lamps. A seam between
+//! patches may cut a lamp and leave only a part of it. Therefore a lamp is placed as a whole if patches with one shift
+//! show enough of it, and left out if they show less, or if another lamp occupies its place.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -16,7 +15,7 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// A lamp is placed only if patches with one shift copy at least this share of it.
+/// A lamp is placed only if patches that have the same shift copy at least this share of it.
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
 /// through rounding.
@@ -92,9 +91,9 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free (on a
-    /// lattice, at most the share [`LATTICE_SLACK`] of them may be taken). Lamps without a lattice keep a gap of one
-    /// pixel between them.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. A lamp is skipped if its place is
+    /// taken. Without a lattice, one taken pixel in the lamp or beside it suffices; on a lattice, more than the share
+    /// [`LATTICE_SLACK`] of its pixels must be taken.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;
@@ -116,14 +115,16 @@ impl Canvas<'_> {
     }
 }
 
-/// Places the lamps of an exemplar that repeats as a whole. Each lamp is placed once for each repetition in which the
-/// texture shows a part of it; in a tileable texture, once for each repetition that begins in the texture.
+/// Places the lamps of an exemplar that repeats as a whole, with the periods `a` and `b`. Each lamp is placed in every
+/// repetition that shows a part of it in the texture. In a tileable texture, it is placed once for every repetition
+/// whose origin lies in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // Find the shifts that move a part of the lamp into the texture, and the lattice cells around these shifts.
+        // Find the range of shifts for which the lamp lies at least partly in the texture, then the lattice vectors in
+        // this range.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;

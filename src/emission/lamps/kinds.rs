@@ -1,9 +1,10 @@
 //! Groups lamps into kinds: lamps of about equal size and shape, regardless of colour and orientation.
 //!
-//! Lamps are compared by their area and by the smallest enclosing rectangle of their outline. A square fills all of
-//! that rectangle, a disc π/4 of it, a triangle half. The lamp that resembles most other lamps forms a kind with them;
-//! this is repeated for the remaining lamps. For lamps smaller than about twenty texels, the outline cannot
+//! Lamps are compared by their area and by the smallest rectangle that encloses their outline. A square fills all of
+//! that rectangle, a disc π/4 of it, a triangle half. For lamps smaller than about twenty texels, the outline cannot
 //! distinguish a square from a disc of equal width.
+//!
+//! The lamp that resembles most other lamps forms a kind with them. This is repeated for the remaining lamps.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
@@ -15,10 +16,11 @@ const LIKE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
 /// most this value.
 const FILL: f64 = 0.1;
-/// Maximum difference, in texels, between the sides of two equal lamps, caused by rounding and by the simplification
-/// of the outlines.
+/// Tolerance, in texels, for the sides of two equal lamps, which differ by rounding and by the simplification of their
+/// outlines.
 const ROUNDING: f64 = 2.0;
-/// Number of bins per factor of e. Before comparison, lamps are binned by the logarithms of area and sides.
+/// Number of bins per factor of e, for binning lamps by the logarithms of their area and sides before they are
+/// compared.
 const STEPS: f64 = 20.0;
 
 /// The measures by which lamps are compared; lengths are in texels.
@@ -60,8 +62,9 @@ struct Step<'a> {
     count: usize,
 }
 
-/// Numbers the kinds of lamps from 1; the kind with most lamps comes first. Each lamp comes with the number of lamps
-/// that it represents. A lamp with count 0, such as one that the border cuts, gets kind 0, which means no kind.
+/// Gives every lamp the number of its kind, from 1; the kind with most lamps has number 1. Each lamp comes with a
+/// count, the number of lamps in the texture that it stands for. A lamp with count 0, such as one that the border
+/// cuts, gets number 0, which means no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
     for (lamp, count) in lamps {

@@ -1,9 +1,10 @@
-//! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo.
+//! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo. A site is a
+//! position within the lattice cell at which lamps lie.
 //!
-//! Patches reproduce the disorder of the photo: distant lamps that the mask missed, and positions displaced by
-//! perspective. The sites of the lattice (positions in its cell at which lamps lie), averaged with the lamps' photo
-//! pixels as weights, give the true positions. A site that nearly always has a lamp gets one in every cell. At other
-//! sites the patches decide whether there is a lamp, and the lamp moves to the exact site.
+//! Patches repeat the errors of the photo: they lack distant lamps that the mask missed, and perspective has displaced
+//! others. The mean position of a site's lamps, weighted by their photo pixels, is more exact. A site that nearly
+//! always has a lamp gets one in every cell. At other sites the patches decide whether there is a lamp, and the lamp
+//! moves to the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -15,11 +16,11 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine in at least this share of its
-/// visible copies, weighted by photo pixels. [bench emission:perspective]
+/// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine there in at least this share of
+/// the visible cells, weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// If at most `FEW_DARK` copies of a site have no shining lamp, a smaller share of copies with shining lamps suffices,
-/// `MOSTLY` instead of `ALWAYS`: something may hide the missing lamps. [judged on 20 photos]
+/// If at most `FEW_DARK` visible cells have no shining lamp at a site, the share `MOSTLY` suffices instead of
+/// `ALWAYS`, because something may hide the missing lamps. [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
@@ -30,8 +31,9 @@ const SHARP: f64 = 0.4;
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
-/// `offset`. `shown` holds the lamps that the copied patches contain. Lamps at sites that get a lamp in every cell are
-/// dropped from it, lamps near other sites move to the exact site, and lamps far from every site stay unmoved.
+/// `offset`. A site that nearly always has a lamp gets one in every cell. `shown` holds the lamps that the copied
+/// patches contain: at such a site they are dropped, near another site they move exactly onto it, and elsewhere they
+/// stay unmoved.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -62,8 +64,8 @@ pub fn place(
             }
         }
     }
-    // Add the lamps that the copied patches contain. Skip lamps at sites that get a lamp in every cell, which are
-    // filled by now. Move lamps near any other site exactly onto it. Leave lamps far from every site where they are.
+    // Add the lamps that the copied patches contain. Skip lamps at sites that already have a lamp in every cell. Move
+    // lamps near another site exactly onto it. Leave all others where they are.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
@@ -103,8 +105,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// Returns the components of the whole lamps of a site that are sharp in the photo; if there are none, the component
-/// of the site's first lamp.
+/// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo or, if there are
+/// none, its first lamp.
 fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
     let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);

@@ -17,19 +17,20 @@ pub struct Luminaire {
     pub colour: Vec3,
     /// Share of the luminous flux of all lamps in the texture, in `[0, 1]`.
     pub flux_share: f64,
-    /// Corners of the outline in texels, in the order from x towards y. Light would cover half of a texel that is
-    /// centred on a point of the outline. Let u be the side of a texel or of an unwarped pixel, whichever is
-    /// larger. If the lamp is wider than two texels, and the confidence of the lights takes values between 0 and 1,
-    /// the sides of the outline are exact to 0.25 u, and corners of at least 90 degrees are exact to 0.71 u. Otherwise
-    /// the outline follows the sides of texels.
+    /// Corners of the outline in texels, in the order from x towards y. A texel centred on a point of the outline
+    /// would be half covered by light.
+    ///
+    /// Accuracy: let u be the side of a texel or of an unwarped pixel, whichever is larger. The sides of the outline
+    /// are exact to 0.25 u, and corners of at least 90 degrees to 0.71 u. This holds if the lamp is wider than two
+    /// texels and the confidence also takes values between 0 and 1. Otherwise the outline follows the sides of texels.
     pub outline: Vec<DVec2>,
-    /// Number of the lamp's kind ([`super::kinds`]), counted from 1, kinds with most lamps first; 0 for a lamp that
-    /// the border cuts.
+    /// Number of the lamp's kind ([`super::kinds`]), counted from 1; the kind with most lamps has number 1. 0 for a
+    /// lamp that the border cuts.
     pub kind: u32,
 }
 
 impl Luminaire {
-    /// Returns the lamp after a shift, followed by scaling with a factor.
+    /// Returns the lamp after it is moved by `shift` and then scaled by `factor`.
     pub fn moved(&self, shift: DVec2, factor: f64) -> Self {
         Self {
             centre: (self.centre + shift) * factor,

@@ -42,7 +42,8 @@ pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     }));
 }
 
-/// Measures a lamp. Its `flux_share` holds luminance times texels for now, and is divided by the total later.
+/// Measures a lamp. Its `flux_share` is luminance times number of texels, which the caller divides by the total of all
+/// lamps.
 fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Luminaire {
     let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
     let is_in = |at: [isize; 2]| lights.label(at) == Some(label);

@@ -1,12 +1,15 @@
-//! The outline of a lamp at sub-texel precision: light would cover half of a texel that is centred on a point of the
-//! outline.
+//! The outline of a lamp at sub-texel precision: a texel centred on a point of the outline would be half covered by
+//! light.
 //!
 //! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
-//! a lit texel and an adjacent unlit one. If two texels of the lamp touch at a corner only, the outline keeps them
-//! connected, as the lamp's labels do. The coverages of both texels determine where the outline crosses the line
-//! between their centres. For a straight edge that crosses only these two texels, the sum of both coverages gives the
-//! exact position, whereas a level set of interpolated values is off by up to 0.09 texels. A lamp's corners are
-//! sharper than texels can show, so two sides that are a few texels long are extended until they meet.
+//! each lit texel and each adjacent unlit one; texels of a lamp that touch at a corner only stay connected.
+//!
+//! The coverages of the two texels determine where the outline crosses the line between their centres. For a straight
+//! edge that crosses only these two texels, the sum of both coverages gives the exact position, whereas a level set of
+//! interpolated values is off by up to 0.09 texels.
+//!
+//! A lamp's corners are sharper than texels can show, so two sides that are a few texels long are extended until they
+//! meet.
 
 use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
@@ -14,27 +17,27 @@ use glam::DVec2;
 
 /// Maximum distance in texels by which simplification may move an outline that runs between the centres of texels.
 const TOLERANCE: f64 = 0.1;
-/// Maximum distance in texels by which simplification may move an outline along the corners of texels, used if each
-/// texel is either fully lit or unlit. This distance turns a staircase into a line.
+/// Like `TOLERANCE`, but for an outline along the corners of texels, which is used if every texel is either fully lit
+/// or unlit. This distance turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// The outline of a lamp of at most this width, in texels, runs along the corners of its texels. An outline between
-/// texel centres would enclose only half of a single texel.
+/// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
+/// centres would enclose only half of a single texel.
 const NARROW: f64 = 2.0;
-/// Limits for sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`: maximum
-/// length of a blunt corner between two sides. `MAX_EXTENDED`: maximum length by which a side is extended. `CORNER`:
-/// cosine of the minimum turn from one side to the next, 60°; no disc with sides of length `SIDE` turns that much.
+/// Limits for restoring sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`:
+/// maximum length of the blunt part between two sides. `MAX_EXTENDED`: maximum length by which a side is extended.
+/// `CORNER`: cosine of 60°, the minimum angle by which the outline must turn from one side to the next. A disc turns
+/// by less from one side of length `SIDE` to the next, so it gets no corners.
 const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
 const CORNER: f64 = 0.5;
-/// A corner lies on the border of the texture, up to rounding, if its distance from the border is at most this, in
-/// texels.
+/// Tolerance, in texels, within which a restored corner may lie outside the texture because of rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, walked with the lamp on the right. For each texel edge along the walk, `crossings`
-/// holds where the outline crosses between the centres of both texels, and `corners` holds the texel corner where the
-/// edge begins. Points are relative to the lamp's first column and row, so that they have the same bits wherever the
-/// lamp lies.
+/// The outer boundary of a lamp, traversed with the lamp on the right. For each texel edge on the way, `crossings`
+/// holds the point at which the outline crosses the line between the centres of the two texels at that edge, and
+/// `corners` holds the texel corner at which the edge begins. Points are relative to the lamp's first column and row,
+/// so that equal lamps have equal bits anywhere in the texture.
 pub struct Ring {
     crossings: Vec<DVec2>,
     corners: Vec<DVec2>,
@@ -88,8 +91,7 @@ impl Ring {
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > NARROW {
-            // Begin at the point farthest from the centre, so that the result does not depend on the lamp's
-            // orientation.
+            // Begin at the point farthest from the centre, so that a rotated lamp begins at the corresponding point.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);
@@ -105,12 +107,13 @@ impl Ring {
     }
 }
 
-/// Maximum distance between the outline and the corners of texels, for a lamp of width `narrow`.
+/// Tolerance, in texels, for simplifying an outline along the corners of texels; the lamp is `narrow` texels wide.
 pub fn staircase(narrow: f64) -> f64 {
     STAIRCASE.min(0.3 * narrow)
 }
 
-/// The texel ahead of a corner: on the right for `side` = 1, on the left for -1.
+/// The texel diagonally ahead of the texel corner `at` for a walk in direction `heading`: on the right if `side` is 1,
+/// on the left if it is -1.
 fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     [
         at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2),
@@ -118,9 +121,9 @@ fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     ]
 }
 
-/// The position where the outline crosses, as a share of the way from the centre of a lit texel to the centre of an
-/// adjacent unlit one. If `beyond` is NaN, the adjacent texel lies outside the texture, and the outline follows the
-/// border.
+/// Where the outline crosses the line from the centre of a lit texel to the centre of an adjacent unlit texel, as a
+/// share of that line. The arguments are the coverages of both texels. `beyond` is NaN outside the texture, where the
+/// outline follows the border.
 fn crossing(light: f64, beyond: f64) -> f64 {
     let step = light - beyond;
     match () {

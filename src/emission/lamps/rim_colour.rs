@@ -1,9 +1,9 @@
 //! Restores the colour of lamps that the photo shows clipped.
 //!
-//! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At its rim, where
-//! the lens blurs the lamp into the dark surroundings, all channels are below white, so the rim shows the lamp's
-//! colour. The core gets the rim's colour, at the minimum brightness that its clipped channels allow. How much
-//! brighter the core is cannot be read from the photo; relighting solves for it.
+//! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At the rim, where
+//! the lens blurs the lamp into the dark surroundings, all channels are below white and show the lamp's colour. The
+//! core gets the colour of the rim, with the minimum brightness that its clipped channels allow. How much brighter the
+//! core is cannot be read from the photo; relighting solves for it.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -11,7 +11,7 @@ use crate::emission::exemplar::components::Components;
 use crate::image::Image;
 use glam::{DVec3, Vec3};
 
-/// An image with lit values above this is not clipped, but has a high dynamic range.
+/// An image in which a lit pixel exceeds this value has a high dynamic range and is not clipped.
 const MAX_CLIPPED: f32 = 1.05;
 /// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
 const BRIGHT: f32 = 0.5;
@@ -30,9 +30,9 @@ pub struct RimColours {
 }
 
 impl RimColours {
-    /// Reads the rims of the lamps of an image in which channel values of at least `level` are clipped. `None` if
-    /// `level` is 0, if no lit pixel is clipped, or if lit pixels exceed `MAX_CLIPPED`, because such an image is not
-    /// clipped.
+    /// Reads the colour of each lamp from its rim, in an image in which channel values of at least `level` are
+    /// clipped. Returns `None` if nothing is clipped: if `level` is 0, if no lit pixel reaches it, or if a lit pixel
+    /// exceeds `MAX_CLIPPED`.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
@@ -66,8 +66,8 @@ impl RimColours {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {
             Some(colour) if clipped.any() => {
-                // Find the scale of the rim's colour: clipped channels are lower bounds, unclipped channels give it
-                // directly.
+                // Find the brightness at which the rim's colour agrees with `value`. Each channel gives a brightness;
+                // a clipped channel gives only a lower bound.
                 let strength = value / colour;
                 let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
@@ -78,7 +78,7 @@ impl RimColours {
     }
 }
 
-/// The label of a pixel or, if it has none, of a pixel within [`REACH`].
+/// The label of a pixel or, if the pixel has no label, of a labelled pixel within [`REACH`].
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);

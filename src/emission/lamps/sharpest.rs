@@ -7,12 +7,11 @@ use crate::emission::exemplar::roles::Role;
 use crate::rng::Rng;
 use std::collections::BTreeMap;
 
-/// Maximum relative difference between similar lamps in area, in each side, and in the ratio of their sides.
+/// Two lamps are similar if their areas, their sides and their aspect ratios each differ by at most this share.
 const LIKE: f64 = 0.25;
 
-/// Number of photo pixels (`BLUR`) by which the sides of similar lamps may differ in addition to `LIKE`: blur and
-/// bloom lengthen a lamp with few photo pixels. `MIN_LIKE` is the upper limit of the sum of both tolerances, as a
-/// relative difference.
+/// `BLUR`: number of photo pixels by which sides may differ in addition to `LIKE`, because blur and bloom lengthen a
+/// lamp with few photo pixels. `MIN_LIKE`: maximum of both tolerances together, as a relative difference.
 const BLUR: f64 = 2.0;
 
 const MIN_LIKE: f64 = 0.5;
@@ -20,8 +19,8 @@ const MIN_LIKE: f64 = 0.5;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
 const SHARP: f64 = 0.4;
 
-/// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several, one is chosen at
-/// random, so that the texture keeps their variety.
+/// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several such lamps, one is
+/// chosen at random, so that the texture keeps their variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -49,8 +48,8 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Like [`show_sharpest`], but for lamps with a design: a lamp that is not sharp in the photo is replaced by a sharp
-/// one of its kind, centred on the lamp that it replaces.
+/// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp in the photo by a sharp
+/// lamp of its kind, with the same centre.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let area = |k: usize| exemplar.photo_area[k];
     let clear = |kind: usize| {

@@ -1,8 +1,8 @@
 //! Places lamps on a stretched lattice, cell by cell.
 //!
-//! Patches show lamps at the distances of the exemplar. If the lattice is stretched for a tileable texture, lamps
-//! would keep these distances within a patch and jump from one patch to the next. Therefore each cell of the stretched
-//! lattice gets the lamps of one cell of the exemplar: the cell that the patch at its centre shows.
+//! Within a patch, lamps keep the distances of the exemplar. If the lattice is stretched for a tileable texture, the
+//! distances would be wrong within patches and jump between them. Therefore each cell of the stretched lattice gets
+//! the lamps of one whole cell of the exemplar: the cell that the patch at its centre shows.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -15,7 +15,7 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Places the lamps in a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's
+/// Places the lamps in a texture of `size` unwarped pixels, on the lattice `stretched` in place of the exemplar's
 /// lattice `own`. The stretched lattice begins at `offset`. `None` if the exemplar shows no lamp or no complete cell.
 pub fn place(
     exemplar: &Exemplar,
@@ -28,7 +28,7 @@ pub fn place(
     let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
     let (to_own, to_stretched) = (own.inverse(), stretched.inverse());
 
-    // Cells are centred on the lamp nearest to the exemplar's centre, and on its lattice neighbours.
+    // Centre cell (0, 0) on the lamp nearest to the exemplar's centre.
     let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
     let first = exemplar
         .pieces()
@@ -37,8 +37,8 @@ pub fn place(
     let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
-    // Collect the lamps of each cell, then the complete cells. A complete cell has no cut lamp, and the photo shows
-    // the position of its central lamp.
+    // Collect the lamps of each cell, then the complete cells. A cell is complete if it has no cut lamp and the photo
+    // shows the position of its central lamp.
     let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
     let components = exemplar.components.list.iter().zip(&exemplar.roles);
@@ -52,8 +52,8 @@ pub fn place(
     }
     let known: BTreeSet<Cell> = whole.iter().copied().collect();
 
-    // Fill the cells whose centre lies in the texture; the parts of them beyond the border re-enter on the opposite
-    // side.
+    // Fill the cells whose centre lies in the texture. Lamps of these cells that cross the border re-enter on the
+    // opposite side.
     let start = first.centre + offset;
     let mut instances = Vec::new();
     for cell in cells::between(to_stretched, DVec2::ZERO - start, size - start) {

@@ -7,13 +7,12 @@ use glam::{DMat2, DVec2};
 /// Maximum number of lamps whose pairs are compared; of more lamps, an even selection is taken.
 /// [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
-/// A pair of lamps contributes to the fit if the vector between them differs from a lattice vector by less than this,
-/// as a share of the first period. [bench emission:patterns]
+/// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
+/// share of the first period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 
-/// Aligns a period that nearly follows an image axis with that axis. A row of few lamps cannot distinguish a slant of
-/// a few percent from disorder of its lamps. In a long row, such a slant would drift away from the axis, along which
-/// the photo was unwarped.
+/// Makes a period that is nearly parallel to an image axis exactly parallel, and keeps its length. In a row of few
+/// lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.
 pub fn straight(period: DVec2) -> DVec2 {
     match () {
         _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
@@ -22,10 +21,10 @@ pub fn straight(period: DVec2) -> DVec2 {
     }
 }
 
-/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps
-/// contributes (votes) if its difference is about `i a + j b` with integers `i` and `j`. Close pairs come first, so
-/// that the steps between distant lamps are counted with an accurate basis. A vote is weighted by the area of the
-/// smaller lamp, because small fragments resemble each other everywhere.
+/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps takes
+/// part if the vector between them is about `i a + j b` with integers `i` and `j`. Three passes use ever more distant
+/// pairs, because `i` and `j` of a distant pair are correct only if the basis is accurate. A pair is weighted by the
+/// area of the smaller lamp, because small fragments resemble each other everywhere.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();

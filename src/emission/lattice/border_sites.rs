@@ -1,8 +1,8 @@
-//! Excludes dark sites at the border of the exemplar: lattice sites that the border cuts and that have no lamp.
+//! Excludes dark sites at the border of the exemplar: lattice sites that have no lamp and that the border cuts.
 //!
 //! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Dark sites that the
-//! border cuts must be left out too. If patches could show these but not the lit ones, the texture would lack lamps
-//! more often than the exemplar does.
+//! border cuts must be left out as well. Otherwise patches could show these dark sites but not the lit ones, and the
+//! texture would lack lamps more often than the exemplar does.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -13,11 +13,11 @@ use glam::{DMat2, DVec2};
 /// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
 /// than this, in periods.
 const SAME: f64 = 0.2;
-/// A position in the lattice cell counts as a site of lamps if at least this share of its fully visible copies has a
-/// lamp.
+/// A position in the lattice cell counts as a site of lamps if a lamp lies there in at least this share of the cells
+/// in which the position is fully visible.
 const MADE_FOR: f64 = 0.5;
 
-/// Marks dark sites that the border cuts as unusable, so that patches do not show them.
+/// Marks parts of the exemplar as unusable for patches: the lattice sites that have no lamp and that the border cuts.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();
@@ -58,7 +58,8 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Returns one lamp for each position in the lattice cell. `inverse` maps unwarped pixels to lattice steps.
+/// Returns one lamp for each position in the lattice cell at which lamps lie. `inverse` maps unwarped pixels to
+/// lattice steps.
 fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     let mut first: Vec<&Component> = Vec::new();
     for lamp in exemplar.lamps() {

@@ -2,8 +2,8 @@
 
 use glam::{DMat2, DVec2};
 
-/// The cells whose position, relative to cell (0, 0), lies between the corners `low` and `high`; some cells around
-/// them may be included. `to_cells` maps positions to cells.
+/// Returns all cells whose origin, relative to the origin of cell (0, 0), lies between the corners `low` and `high`,
+/// and possibly some cells around them. `to_cells` maps positions to cell coordinates.
 pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
     let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| to_cells * c);
     let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();

@@ -5,7 +5,8 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// In a texture with more lattice cells than this, a lamp is centred without counting the lamps that the border cuts.
+/// In a texture with more lattice cells than this, counting the lamps that the border cuts would take too long. A lamp
+/// is then moved to the texture's centre without comparison.
 const MAX_CELLS: f64 = 1e6;
 
 /// A bounding box of lights.
@@ -30,9 +31,10 @@ impl Bounds {
     }
 }
 
-/// The shift that centres a lattice in a texture of `size` unwarped pixels: it moves a lamp, or the midpoint between
-/// two lamps, to the texture's centre. Of these shifts, it is the one with the fewest lamps cut by the border, then
-/// with the largest distance of the other lamps from the border. `None` without a lattice.
+/// The shift that centres a lattice in a texture of `size` unwarped pixels. Four shifts are compared: they move a
+/// lamp, or a midpoint between two or four lamps, to the texture's centre. The shift with the fewest lamps cut by the
+/// border is chosen; among equals, the one that keeps the other lamps farthest from the border. `None` without a
+/// lattice.
 pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
     let [a, b] = continuation.lattice()?;
     let motif = motif(exemplar, continuation);
@@ -51,8 +53,9 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
     Some(shifts[best])
 }
 
-/// The boxes that a lattice repeats: the lamps of one cell, beginning with the lamp nearest to the exemplar's centre.
-/// Along an axis whose period is the exemplar's whole extent, all lamps share one box.
+/// The bounding boxes of the lamps of one cell, which the lattice repeats; the box nearest to the exemplar's centre
+/// comes first. If the period along an axis is the exemplar's extent, all lamps along that axis are merged into one
+/// box.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
@@ -84,7 +87,7 @@ fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (u
     let (mut cut, mut room) = (0, f64::INFINITY);
     for lamp in motif {
         let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-        // Find the lattice cells that move the lamp close to the texture.
+        // Find the lattice vectors that move the lamp into the texture or near it.
         let half = (lamp.high - lamp.low) / 2.0;
         let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
         let cells = corners.map(|c| inverse * (c - lamp.centre()));

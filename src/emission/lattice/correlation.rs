@@ -26,7 +26,7 @@ pub struct Autocorrelation {
     /// Sides of the zero-padded grid, powers of two.
     columns: usize,
     rows: usize,
-    /// Correlation and number of overlapping pixels for every shift; negative shifts wrap around.
+    /// For every shift, the correlation and the number of overlapping pixels. Negative shifts wrap around.
     value: Vec<f32>,
     overlap: Vec<f32>,
 }
@@ -47,16 +47,16 @@ impl Autocorrelation {
         let m = spectrum(&|i| (f64::from(values[i]), 0.0))?;
         let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
 
-        // The inverse transform of conj(A) B gives the sums of a(p) b(p + shift). One transform computes two real
-        // results: v·v + i m·m, and m·v + i s·v. The latter are sums over the first pixel of each pair; the sums over
-        // the second pixel stand at the opposite shift.
+        // Compute the sums over p of a(p) b(p + shift), for all shifts, as the inverse transform of conj(A) B. Such
+        // sums are real, so one complex transform gives two of them: v·v + i m·m, and m·v + i s·v. The sums m·v and
+        // s·v run over the first pixel of each pair; those over the second pixel are found at the opposite shift.
         let cross = |a: &[Complex], b: &[Complex], c: &[Complex], d: &[Complex]| -> Result<Vec<Complex>> {
             let mut grid = try_vec(columns * rows, Complex::default())?;
             for (i, out) in grid.iter_mut().enumerate() {
                 let ab = Complex { re: a[i].re, im: -a[i].im } * b[i];
                 let cd = Complex { re: c[i].re, im: -c[i].im } * d[i];
-                // Conjugate the product: the inverse transform is the conjugate of the forward transform of the
-                // conjugate.
+                // Store the conjugate of the product, because the inverse transform is computed as the conjugate of
+                // the forward transform of the conjugate.
                 *out = Complex { re: ab.re - cd.im, im: -(ab.im + cd.re) };
             }
             transform(grid, columns, rows, job)

@@ -12,8 +12,9 @@ const CELL_GAP: f64 = 4.0;
 /// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Lamps count as one isolated group if, along both axes, the free space on both sides of them together exceeds this
-/// many times the longest distance from a lamp to its nearest neighbour. [judged on 5 photos]
+/// All lamps form one isolated group if the free space around them, along both axes, exceeds this multiple of the
+/// longest distance from a lamp to its nearest neighbour. Along an axis, the free space on both sides is added up.
+/// [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
 /// Width and height of the usable box of the exemplar, in unwarped pixels.
@@ -33,9 +34,9 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The periods along x and y with which an exemplar repeats as a whole. They are chosen so that the texture has the
-/// lit share of the part of the plane that the photo shows. They are therefore shorter than the exemplar's extent if
-/// the extent includes corners that the photo does not show, or cut lamps that are left out.
+/// The periods along x and y with which an exemplar repeats as a whole, chosen so that the texture keeps the lit share
+/// of the visible part of the plane. The periods are shorter than the exemplar if its corners are not visible, or if
+/// cut lamps are left out.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
@@ -54,8 +55,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
-/// Whether the lamps lie close together, far from the sides of the exemplar along both axes. They are then one object,
-/// such as a chandelier.
+/// Whether the lamps lie close together and far from the border, so that they are one object, such as a chandelier.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
     let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
@@ -66,9 +66,10 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// Returns the period along a row with which the whole row repeats, if it ends within the exemplar: the length of the
-/// exemplar along the row, including the free space at both ends, rounded to whole periods of the row. `None` if the
-/// row may continue beyond the exemplar, because there is no space for another lamp at one of its ends.
+/// The period with which a whole row of lamps repeats, if both ends of the row lie within the exemplar. It is the
+/// length of the exemplar along the row, including the free space at both ends, rounded to a multiple of `period`.
+/// `None` if the row may continue beyond the exemplar, because there is no free space for another lamp at one of its
+/// ends.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;
@@ -94,8 +95,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether the photo shows the positions of the next lamp beyond both ends of a row. The part of the plane that the
-/// photo shows need not be a rectangle. Without a photo, all positions count as shown.
+/// Whether the photo shows the places beyond both ends of a row at which the next lamps would lie. Without a photo,
+/// all places count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

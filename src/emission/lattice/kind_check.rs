@@ -12,8 +12,8 @@ const MAX_UNLIKE: f64 = 0.4;
 /// Maximum number of lamps that are tested. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;
 
-/// Whether a shift moves lamps onto lamps of their kind; lamps that it moves onto no lamp are ignored. Lights also
-/// correlate at a shift that moves a row of narrow panes onto a row of wide panes, but such a shift is not a period.
+/// Whether a shift moves lamps onto lamps of their kind. Lamps that it moves onto no lamp are ignored. The test is
+/// needed because lights also correlate at a shift that moves a row of narrow panes onto a row of wide panes.
 pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     let all: Vec<_> = exemplar.lamps().collect();
     let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);

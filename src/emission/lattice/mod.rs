@@ -2,9 +2,10 @@
 //!
 //! If a shift maps the mask nearly exactly onto itself, the lamps repeat with that shift. The two shortest such shifts
 //! form the lattice, which may be rectangular, hexagonal or skewed. Missing lamps lower the correlation only by their
-//! share. On a lattice, patches are shifted by lattice vectors only. If there is only one such shift, or only a
-//! handful of lamps, the extent of the exemplar serves as the missing period, because the exemplar does not show how
-//! its design continues beside itself. Many lamps without any such shift are placed without a lattice.
+//! share. On a lattice, patches are shifted by lattice vectors only.
+//!
+//! If there is only one such shift, or if there are only a few lamps, the extent of the exemplar serves in place of
+//! the missing periods. If there are many lamps but no such shift, patches are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -25,8 +26,8 @@ use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Minimum correlation of a period, relative to the highest correlation. Shifts with a lower correlation move lamps
-/// onto lamps of another kind. [bench emission:patterns]
+/// Minimum correlation of a period, relative to the highest correlation. A shift with a lower correlation probably
+/// moves lamps onto lamps of another kind. [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
 /// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
@@ -60,7 +61,7 @@ pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
     Continuation::Row([basis::straight(period), across])
 }
 
-/// The continuation of lights without a period: few lamps repeat as a whole, many are placed without a lattice.
+/// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
 pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
     if !extent::has_few_lamps(exemplar, extent) {
         return Continuation::Free;
@@ -117,9 +118,9 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
 }
 
-/// The shortest shifts that map the lights onto themselves, with their correlations. Axes along which the lights do
-/// not change come first, as shifts of one pixel. Then follow shifts between lamps of one kind. Their correlation is
-/// at least `least`, and at least `relative` times the highest.
+/// The shortest shifts that map the lights onto themselves, with their correlations. A shift must move lamps onto
+/// lamps of the same kind, and its correlation must be at least `least`, and at least `relative` times the highest. If
+/// the lights do not change along an axis, a shift of one pixel along that axis comes first.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

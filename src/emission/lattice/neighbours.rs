@@ -28,8 +28,8 @@ fn periods(lamps: &[Evidence]) -> [Vec<f64>; 2] {
     })
 }
 
-/// Distance along an axis from a lamp to its `order`-th neighbour in the axis's positive direction, among the lamps in
-/// its row or column. `None` if there are fewer neighbours.
+/// Distance along an axis from a lamp to its `order`-th neighbour in the positive direction, within the lamp's row or
+/// column. `None` if there are fewer neighbours.
 fn distance(lamps: &[Evidence], lamp: &Evidence, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &Evidence| other.centre - lamp.centre;
     let is_beside = |other: &&Evidence| {

@@ -3,18 +3,18 @@
 use super::correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Number of standard errors that are subtracted from the highest correlation, because the maximum over many shifts,
-/// some of which compare few lamps, is too high by chance.
+/// Number of standard errors that are subtracted from each correlation before the highest one is sought. Without this,
+/// shifts that compare few lamps would often have the highest correlation by chance.
 const CHANCE: f32 = 2.0;
 
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
 const UNCHANGING: f32 = 0.95;
 
-/// Beside a period, the correlation must fall by the second value within the number of pixels given by the first. If
-/// it stays higher, the lights do not repeat but only continue along the shift.
+/// A peak counts only if the correlation falls by `FLAT.1` within `FLAT.0` pixels on both sides of it, along x or y,
+/// whichever is closer to the shift. Otherwise the lights do not repeat but run on in that direction.
 const FLAT: (isize, f32) = (8, 0.02);
 
-/// A shift that moves lights onto lights.
+/// A shift that moves lights onto lights, found as a peak of the autocorrelation.
 pub struct Repeat {
     pub shift: DVec2,
     /// The correlation at this shift, and the number of pixels that are compared.
@@ -23,22 +23,24 @@ pub struct Repeat {
 }
 
 impl Repeat {
-    /// A lower bound of the correlation that allows for chance, if `lights` lights are compared.
+    /// The correlation minus [`CHANCE`] standard errors, because it may be too high by chance. `lights` is the number
+    /// of lights that are compared.
     pub fn lower_bound(&self, lights: f32) -> f32 {
         self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 
-/// Whether the lights do not change under any shift along an axis, as long as enough pixels overlap (2.5 times
-/// `least`).
+/// Whether the lights do not change under any shift along an axis. Shifts with an overlap of fewer than 2.5 `least`
+/// pixels are not tested.
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
     !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
 }
 
-/// Finds the local maxima of the correlation in one half-plane of shifts, at sub-pixel precision. Along a direction in
-/// which the lights do not change, the maxima are ridges; only shifts perpendicular to that direction are then tested.
+/// Finds the local maxima of the correlation at sub-pixel precision, in one half-plane of shifts. `unchanging` is a
+/// direction along which the lights do not change. The maxima are ridges along that direction, so only shifts
+/// perpendicular to it are then tested.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
@@ -59,7 +61,7 @@ pub fn peaks(
                 _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),
             };
             let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-            // Of equal neighbours, the first one in reading order is the peak.
+            // If neighbours are equal, the first one in reading order is the peak.
             let is_peak = ring.iter().enumerate().all(|(i, &(dx, dy))| {
                 let other = at(dx, dy);
                 if i < 4 { value > other } else { value >= other }
@@ -91,8 +93,8 @@ pub fn peaks(
     found
 }
 
-/// Refines every shift by the farthest peak that is a multiple of it: the position error of that peak is divided by
-/// the multiple.
+/// Refines every shift. If there are also peaks at multiples of the shift, the shift is the position of the farthest
+/// such peak divided by its multiple, which divides the position error as well.
 pub fn sharpen(peaks: &mut [Repeat]) {
     let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
     for Repeat { shift, .. } in peaks {

@@ -1,17 +1,16 @@
 //! Balances the light in a texture, so that the lit share of the texture stays close to a target.
 //!
-//! Without balance, the parts of the exemplar that match most often would determine how much light the texture has
-//! and, in a pattern with missing lamps, how many lamps are missing. So each block passes its excess or lack of light
-//! on to its neighbours that are not filled yet, beside and below it, as in error diffusion (Floyd and Steinberg
-//! 1976). Then not only the whole texture has the right share of light, but also every part of it.
+//! Without balance, the amount of light and the number of missing lamps would depend on which parts of the exemplar
+//! match most often. So each block passes its excess or lack of light on to its unfilled neighbours, beside and below
+//! it, as in error diffusion (Floyd and Steinberg 1976). Then every part of the texture has the right share of light.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp. On a
-/// lattice, the weight equals the squared difference in colour, confidence and distances that a lamp in the wrong
-/// position causes. Without a lattice, the weight must stay below a third: a larger weight would select patches that
-/// bring the right amount of light but violate the distances between lamps.
+/// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp.
+/// `ON_LATTICE` equals the squared difference that a lamp in the wrong position causes in colour, confidence and
+/// distances. `ANYWHERE`, for patterns without a lattice, must stay below a third. A larger weight would select
+/// patches that bring the right amount of light but wrong distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 

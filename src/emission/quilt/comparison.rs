@@ -11,8 +11,8 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches are equally good if their error is at most the first value times the least error (the original paper allows
-/// 10 %), plus the second value or, on a lattice, the larger `Comparison::slack`.
+/// Patches count as equally good if their error is at most the first value times the lowest error (the original paper
+/// allows 10 %), plus a constant: the second value or, on a lattice, `Comparison::slack` if that is larger.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
@@ -80,8 +80,8 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The part of a run that lies within the exemplar after a shift: the number of pixels of the run before that
-    /// part, its number of pixels, and the position of its first pixel in the exemplar.
+    /// The part of a run that lies within the exemplar after a shift; `None` if there is no such part. Returns the
+    /// number of pixels before the part, its length, and the position of its first pixel in the exemplar.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
@@ -92,7 +92,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// For each shift, returns the number of empty pixels of a block that it fills, or 0 if another shift fills far
-    /// more. Also returns whether the shift would show usable pixels in the whole block.
+    /// more pixels. Also returns whether the shift would show usable pixels in the whole block.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -180,8 +180,9 @@ impl<'a> Comparison<'a> {
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference of a shift from the `filled` known pixels; infinite as soon as it exceeds `limit`.
-    /// `is_whole` states that the shift shows usable pixels in the whole block.
+    /// Mean squared difference between the known pixels of a block and the pixels that a shift shows there; infinite
+    /// if it exceeds `limit`. `filled` is the number of known pixels. `is_whole` states that the shift shows usable
+    /// pixels in the whole block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
@@ -205,7 +206,7 @@ impl<'a> Comparison<'a> {
                     at += part.len();
                 }
             }
-            // If fewer than `filled` pixels are compared, the mean is even larger.
+            // Stop if the mean exceeds `limit` even when the sum is divided by all `filled` pixels.
             if sum > most {
                 return f32::INFINITY;
             }
@@ -213,9 +214,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, the light that it adds to the empty pixels of a block above a target, as a number of lit
-    /// pixels. On a lattice, the target is the mean over all given shifts, because lamps always lie at the same
-    /// positions of a block; otherwise it follows from the lit share of the exemplar.
+    /// For each shift, the light that it adds to the empty pixels of a block beyond a target, as a number of lit
+    /// pixels. On a lattice, lamps lie at the same positions of the block whatever the shift, so the target is the
+    /// mean over all given shifts. Otherwise it is the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));
@@ -233,7 +234,7 @@ impl<'a> Comparison<'a> {
         lights.into_iter().map(|[light, all]| light - share * all).collect()
     }
 
-    /// The largest error that counts as equally good as the error `error`.
+    /// The largest error that counts as equally good as `error`.
     pub fn equally_good(&self, error: f32) -> f32 {
         error * TOLERANCE.0 + self.slack
     }

@@ -37,9 +37,9 @@ impl Guide<'_> {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// The period of each metadata channel (confidence, x and y distance to the nearest light); values that differ by
-    /// a period are equivalent. Distances wrap around: a distance of `cap` to the left of a light is equivalent to a
-    /// distance of `cap` to its right.
+    /// The period of each metadata channel (confidence, x and y distance to the nearest light); infinite for the
+    /// confidence. Values that differ by a period are equivalent: a distance of `cap` to the left of a light means the
+    /// same as a distance of `cap` to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)

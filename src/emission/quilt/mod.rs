@@ -1,11 +1,14 @@
 //! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata (the confidence, and the x and y
 //! distance to the nearest light; "Lighting Style Transfer", §6).
 //!
-//! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
-//! those with the best agreement with the pixels already placed are kept, and one of them is chosen at random. Pixels
-//! that a patch cannot show, because the photo does not show them, are filled by further patches in the same block. On
-//! a lattice, only lattice vectors are tried as shifts. The lamps then stay in phase whichever shift is chosen, and
-//! errors do not accumulate from patch to patch, because every shift is measured from the origin.
+//! A patch is a shift of the exemplar. Blocks of the texture are filled in scanline order:
+//!
+//! 1. Of the shifts that cover most of the block, keep those that agree best with the pixels already placed.
+//! 2. Choose one of them at random.
+//! 3. If pixels remain empty, because the photo does not show their source, fill them by further patches.
+//!
+//! On a lattice, only lattice vectors are tried as shifts, so the lamps stay in phase whichever shift is chosen.
+//! Errors do not accumulate from patch to patch, because every shift is measured from the origin.
 
 pub mod balance;
 pub mod block;
@@ -49,16 +52,16 @@ struct Quilt<'a> {
     continuation: Continuation,
     /// Position of the lattice's origin, in unwarped pixels.
     offset: DVec2,
-    /// The bounding box of the usable pixels; and, without a lattice, the top left corners of all blocks of usable
-    /// pixels.
+    /// `bounds`: bounding box of the usable pixels. `admissible`, only without a lattice: the top left corner of every
+    /// position at which a block consists of usable pixels only.
     bounds: [usize; 4],
     admissible: Vec<u32>,
     balance: Balance,
     seed: u64,
 }
 
-/// Fills `width` × `height` working pixels with patches of side `block`. `offset` is the position of the lattice's
-/// origin in unwarped pixels.
+/// Fills a texture of `width` × `height` working pixels with patches of side `block`. `offset` is the position of the
+/// lattice's origin in unwarped pixels.
 pub fn place(
     guide: &Guide,
     continuation: Continuation,
@@ -107,8 +110,9 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// Returns the sides of a block, and the top left corners in the exemplar at which the whole block consists of usable
-/// pixels. Patches without a lattice need at least one such corner, so the block shrinks until there is one.
+/// Returns the sides of a block, and the top left corner of every position in the exemplar at which the block consists
+/// of usable pixels only. Patches without a lattice need at least one such position, so the block shrinks until there
+/// is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -255,9 +259,9 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts whose error exceeds the least error by no more than the tolerance. In a row
-    /// of lamps, the first block takes the shift nearest to the start of the exemplar, and later blocks keep the shift
-    /// of a neighbour if its error is within the tolerance.
+    /// Chooses at random among the shifts that are equally good: their error exceeds the lowest error by no more than
+    /// the tolerance. In a row of lamps, the first block takes the shift nearest to the start of the exemplar, and
+    /// each later block keeps the shift of a neighbour if that shift is equally good.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {
@@ -295,8 +299,8 @@ impl Quilt<'_> {
         Ok(best)
     }
 
-    /// Writes a shift to the empty pixels of a block and, if an overlap is given, to the known pixels beyond the
-    /// seams.
+    /// Writes a shift to the empty pixels of a block. If an overlap is given, also overwrites the known pixels on the
+    /// new patch's side of the seams.
     fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
         let (working, rect, known) = (self.comparison.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {
@@ -317,7 +321,7 @@ impl Quilt<'_> {
             }
         };
 
-        // Find the seams: the first column of the new patch in each row, and its first row in each column.
+        // Find the seams: for each row the first column of the new patch, and for each column its first row.
         let mut from_column = vec![0; rect.h];
         let mut from_row = vec![0; rect.w];
         if let Some([ow, oh]) = overlap {

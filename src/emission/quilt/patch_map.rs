@@ -73,8 +73,8 @@ impl PatchMap {
         self.ends.push(self.runs.len());
     }
 
-    /// Repeats the patch map over `width` × `height` pixels. `across` is the period in unwarped pixels, along one
-    /// axis. Equal shifts get one label, even from different repetitions.
+    /// Repeats the patch map over `width` × `height` pixels, along one axis. `across` is the period in unwarped
+    /// pixels. Equal shifts from different repetitions get one label.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
         let mut shifts = Shifts::default();
@@ -128,8 +128,8 @@ impl PatchMap {
         self.shifts.get(row.get(run)?.1 as usize)
     }
 
-    /// The index of the exemplar's working pixel that the texture shows at `(x, y)`, if the patch there has the given
-    /// label; `None` outside the exemplar.
+    /// The index of the exemplar's working pixel that is shown at `(x, y)` by the patch with the given label; `None`
+    /// outside the exemplar.
     pub fn source(&self, x: usize, y: usize, label: u32, working: &Working) -> Option<usize> {
         let [dx, dy] = self.shifts.get(label as usize)?.working;
         working.index(x as i32 - dx, y as i32 - dy)

@@ -7,10 +7,10 @@ use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
 
-/// Adapts the patch map to the lattice `stretched` instead of the exemplar's lattice `own`. Each cell of the stretched
-/// lattice shows the patch at its centre; pixels where that patch shows nothing usable keep their own patch. Along an
-/// axis in which the lights do not change, there are no cells. A texture of `size` unwarped pixels holds a whole
-/// number of cells, so the patch map continues seamlessly from each side to the opposite side.
+/// Adapts the patch map to the lattice `stretched` in place of the exemplar's lattice `own`. Each cell of the
+/// stretched lattice shows the patch at its centre. Pixels for which that patch has nothing usable keep their own
+/// patch. The texture, of `size` unwarped pixels, holds a whole number of cells, so opposite sides match without a
+/// seam. An axis along which the lights do not change is not divided into cells.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -40,8 +40,8 @@ pub fn stretch(
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // Stretched cells are wider or narrower than the exemplar's. Correct the shift of a patch by the
-            // difference, for all cells between its origin and `at`.
+            // The cells of the stretched lattice and of the exemplar's lattice differ in size. Add this difference to
+            // the patch's shift for every cell from the patch's origin to `at`.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)
@@ -63,5 +63,6 @@ pub fn stretch(
     Ok(out)
 }
 
-/// A basis vector of at most this length, in unwarped pixels, is not a period: the lights do not change along it.
+/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the lights do not
+/// change, and not for a period.
 const UNCHANGING: f64 = 1.5;

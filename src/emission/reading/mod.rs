@@ -1,10 +1,11 @@
-//! Analyses an exemplar: finds its lamps, and how their pattern continues beyond it (its law): on a lattice, in a row,
-//! by repetition of the whole exemplar, or without a lattice.
+//! Analyses an exemplar: finds its lamps, and how their pattern continues beyond it. The continuation is a lattice, a
+//! row, repetition of the whole exemplar, or patches without a lattice.
 //!
-//! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
-//! near ones. So continuations (laws) are proposed from the whole exemplar and from its sharper parts, with strict and
-//! with loose thresholds. Each is scored by how well it predicts the lamps of the whole photo ([`sites`]). The one
-//! found in the whole exemplar at the threshold `min_regularity` is kept unless another one scores clearly higher.
+//! A single analysis is not reliable, because distant lamps are magnified with their blur and spoil the
+//! autocorrelation of the near ones. So several continuations are proposed, from the whole exemplar and from its
+//! sharper parts, with strict and with loose thresholds. Each is scored by how well it predicts the lamps of the whole
+//! photo ([`sites`]). The continuation found in the whole exemplar with the threshold `min_regularity` is kept unless
+//! another one scores clearly higher.
 
 pub mod sites;
 
@@ -19,8 +20,8 @@ use crate::job::Job;
 use glam::DVec2;
 use sites::Sites;
 
-/// Lattices and rows are also proposed from parts of the exemplar with at most these magnifications, relative to the
-/// least magnified pixel. [judged on 20 photos]
+/// Lattices and rows are also proposed from parts of the exemplar in which the magnification is at most one of these
+/// values. Magnification is relative to the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods: `PROPOSED` is the minimum correlation, `PROPOSED_RELATIVE` the
 /// minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of shifts. [judged on 20 photos]
@@ -29,14 +30,14 @@ const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// The lattice or row found in the whole exemplar at the threshold `min_regularity` is dropped if its score is below
-/// this; the pattern then counts as having no period. [judged on 20 photos]
+/// If the lattice or row found in the whole exemplar with the threshold `min_regularity` scores below this value, it
+/// is dropped, and the pattern counts as having no period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another lattice or row replaces the one found in the whole exemplar at the threshold `min_regularity` only if its
+/// The lattice or row found in the whole exemplar with the threshold `min_regularity` is replaced only by one whose
 /// score is higher by more than this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
-/// Different continuations are compared only if lamps have at least this share of the lights' photo pixels; the rest
-/// are lights that run through the photo. [judged on 20 photos]
+/// Continuations are compared only if lamps have at least this share of the photo pixels of all lights; the other
+/// lights run through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
 /// Two lattices or rows count as equal if the relative difference between their periods is at most this.
 /// [judged on 20 photos]
@@ -59,8 +60,8 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the chosen continuation
-    /// itself with score 0.
+    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the continuation itself,
+    /// with score 0.
     pub fn only(continuation: Continuation) -> Self {
         Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
     }
@@ -89,7 +90,7 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// Proposes that the pattern has no period: no lamp is predicted from another.
+    /// A proposal without a period, in which no lamp predicts another.
     fn lawless(continuation: Continuation) -> Self {
         Self { continuation, regularity: 0.0, score: LAWLESS }
     }
@@ -129,7 +130,8 @@ impl Reading {
         Ok(reading)
     }
 
-    /// Whether these settings would lead to the same analysis, so that it can be used again.
+    /// Whether an analysis with the given input and settings would have the same result, so that this one can be
+    /// reused.
     pub fn serves(&self, input: &Input, params: &Params) -> bool {
         let Exemplar { width, height, .. } = self.exemplar;
         [width, height] == [input.unwarped.width, input.unwarped.height]
@@ -171,8 +173,8 @@ impl Reading {
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the
-        // continuation found in the whole exemplar.
+        // For the panes of a luminous ceiling, prefer the best lattice, unless the continuation found in the whole
+        // exemplar scores clearly higher.
         let panes = lattice
             .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
         let chosen = match panes {
@@ -193,9 +195,9 @@ impl Reading {
         Ok(())
     }
 
-    /// Proposes continuations from the whole exemplar and from its sharper parts: one at the threshold
-    /// `min_regularity`, and rows and lattices at looser thresholds. A luminous ceiling also gets lattices from the
-    /// distances between neighbouring panes.
+    /// Proposes continuations from the whole exemplar and from each of its sharper parts: one with the threshold
+    /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
+    /// from the distances between neighbouring panes.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -230,8 +232,7 @@ impl Reading {
         Ok(proposals)
     }
 
-    /// Chooses the best lattice, or the best row, whichever the settings ask for. Errors: there is none
-    /// (`Degenerate`).
+    /// Chooses the best lattice or the best row, as `law` asks. Errors: `Degenerate` if there is none.
     fn fix(&mut self, law: Law, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Continuation| match law {
             Law::Row => matches!(c, Continuation::Row(_)),
@@ -259,8 +260,8 @@ impl Reading {
     }
 }
 
-/// Score of a continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern does not
-/// change along one of the periods: only the autocorrelation can judge such a period.
+/// Score of a continuation: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
+/// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),

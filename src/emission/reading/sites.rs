@@ -16,15 +16,15 @@ use glam::{DMat2, DVec2};
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
 /// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
-/// A position where the light mask shows no lamp counts as shining if its contrast with the surroundings is at least
-/// the share `SHINES` of the largest contrast of the site's lamps. At most `MAX_COMPARED` lamps are measured.
+/// A position without a lamp in the light mask counts as shining if its contrast with the surroundings is at least the
+/// share `SHINES` of the highest contrast of the site's lamps, of which at most `MAX_COMPARED` are measured.
 /// [judged on 20 photos]
 const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// A basis vector of at most this length, in unwarped pixels, is not a period: along an axis where the pattern does
-/// not change, the lattice search returns a shift of one pixel. [rounding]
+/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the pattern does not
+/// change: the lattice search returns a shift of one pixel there. [rounding]
 const UNCHANGING: f64 = 1.5;
 
 /// A site: a position in the lattice cell at which lamps lie.
@@ -36,8 +36,8 @@ pub struct Site {
     pub lamps: Vec<Evidence>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
-    /// Area in photo pixels of the predicted positions in full view where the light mask shows no lamp. `unmarked`
-    /// counts positions that shine nevertheless, `missing` counts the others.
+    /// Area in photo pixels of predicted lamps that the light mask lacks although their position is in full view.
+    /// `unmarked` counts positions that shine in the photo, `missing` those that do not.
     pub unmarked: f64,
     pub missing: f64,
     /// Number of positions counted in `missing`.
@@ -62,8 +62,8 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` for a continuation without a period, and if the
-    /// pattern does not change along a period.
+    /// Groups the lamps into sites of a lattice or a row. `None` if the continuation has no period, or if one of its
+    /// basis vectors is not a period because the pattern does not change along it.
     pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
         let (basis, is_row) = match law {
             Continuation::Lattice(basis) => (basis, false),
@@ -103,7 +103,7 @@ impl Sites {
         Some(sites)
     }
 
-    /// The remainder of a step between lamps after subtracting the nearest lattice vector.
+    /// The difference between a step from lamp to lamp and the nearest lattice vector.
     pub fn residual(&self, step: DVec2) -> DVec2 {
         step - self.whole_steps(step)
     }
@@ -114,8 +114,8 @@ impl Sites {
         self.basis[0] * cells.x + if self.is_row { DVec2::ZERO } else { self.basis[1] * cells.y }
     }
 
-    /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Measures the positions in
-    /// full view where the lattice predicts a lamp of this site but the light mask shows none.
+    /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Also measures where the
+    /// lattice predicts a lamp of this site in full view but the light mask shows none.
     fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
         let Site { lamps, .. } = &self.list[k];
         let first = lamps[0];
@@ -127,9 +127,9 @@ impl Sites {
         (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
-    /// Tests the predicted positions in full view where the light mask shows no lamp. Returns three values: photo
-    /// pixels of the positions that shine like the site's lamps, photo pixels of the others, and the number of the
-    /// others.
+    /// Tests the positions in full view where the lattice predicts a lamp but the light mask shows none. Returns the
+    /// photo pixels of positions that shine like the site's lamps, the photo pixels of dark positions, and the number
+    /// of dark positions.
     fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
@@ -167,10 +167,12 @@ impl Sites {
         (unmarked, missing, dark)
     }
 
-    /// How well the lattice predicts the lamps, in [0, 1]: a product of two shares. The first is the share of
-    /// correctly predicted lamps among all lamps that are seen or predicted, weighted by photo pixels. The second is
-    /// the share of lamps that are not the first lamp of their site. Lights that the border cuts, `parts`, count as
-    /// predicted if a site leads to them.
+    /// How well the lattice predicts the lamps, in [0, 1]. The score is the product of two shares:
+    ///
+    /// - the photo pixels of correctly predicted lamps among those of all lamps that are seen or predicted;
+    /// - the number of lamps that are not the first of their site, among all lamps.
+    ///
+    /// `parts` holds the visible parts of cut lamps, which count as predicted if a site leads to them.
     pub fn score(&self, parts: &[Evidence]) -> f64 {
         let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {

@@ -48,7 +48,7 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
         for centred in [false, true] {
             let result = exemplar.run(&Params { width, height, centred, ..Params::default() }).unwrap();
             let lit = result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0;
-            // The line runs either through lamps or between them.
+            // The texture is a single line of texels, which runs either through lamps or between them.
             assert!(lit == 0.0 || (lit - share).abs() < 0.02, "{width} x {height}: {lit}");
         }
     }

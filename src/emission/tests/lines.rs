@@ -30,9 +30,9 @@ fn lines_meet_where_the_texture_repeats() {
         let across = if along_x { height } else { width };
         let count = (across as f64 * scale / 24.0).round() as usize;
         let period = across as f64 / count as f64;
-        // Widths are compared in exemplar pixels. Rounding both edges to whole texels changes a width by at most one
-        // texel, which is `scale` pixels. If texels are larger than pixels, allow one more pixel, because the pattern
-        // is stretched to a whole number of periods. Otherwise, allow one pixel in all.
+        // Widths are compared in exemplar pixels; one texel is `scale` pixels. Rounding both edges to whole texels
+        // changes a width by at most one texel. If texels are larger than pixels, allow one pixel more, because the
+        // pattern is stretched to a whole number of periods.
         let slack = if scale > 1.0 { scale + 1.0 } else { 1.0 };
         for k in 0..width * height / across {
             let at = |i: usize| if along_x { i * width + k } else { k * width + i };

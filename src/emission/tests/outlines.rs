@@ -104,7 +104,8 @@ fn outlines_lie_within_a_quarter_of_a_texel() {
             }
         }
         let [sides, all, area] = worst;
-        // A sharp corner of at least 90° whose legs are cut by at most one texel is off by at most half the diagonal.
+        // A corner of at least 90° may be cut at up to one texel from its tip on both sides. It is then off by at most
+        // half the diagonal of a texel.
         let quarter = if scale < 1.0 { 0.25 / scale } else { 0.25 };
         assert!(sides < quarter, "{scale}: {sides}");
         assert!(all < 2.0 * quarter * 2f64.sqrt(), "{scale}: {all}");

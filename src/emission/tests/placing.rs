@@ -91,7 +91,8 @@ fn lamps_without_a_place_are_left_out() {
     let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
     assert_eq!(lit(&touched), lit(&result) - 196.0);
     assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
-    // No rim of the lamp may remain either. Rims exist in textures with coarser texels.
+    // No partly covered texel at the rim of the removed lamp may remain either. Only textures with coarser texels have
+    // such rims.
     let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;

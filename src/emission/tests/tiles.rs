@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
-    // The visible part of a light that the border cuts is copied as one piece. Without `whole_lamps`, lights are
-    // copied patch by patch. Large lamps in fine texels have crumbs at their edges.
+    // Three cases need special rendering: lights that the border cuts are copied as one piece; without `whole_lamps`,
+    // lights are copied patch by patch; large lamps in fine texels have crumbs at their edges.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [

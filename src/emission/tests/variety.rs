@@ -43,9 +43,9 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     assert!(shown >= 60, "{shown} of 100 are shown");
     assert!(times.iter().max().unwrap() * 15 < sources.len(), "{times:?}");
 
-    // Mean and variation of the brightness must agree. Patches copy groups of lamps, so the statistics are no more
-    // precise than those of a sample of as many lamps as the exemplar has. Allow three standard errors of the mean,
-    // and of the deviation, whose standard error is half as large for uniform levels.
+    // Mean and standard deviation of the brightness must agree with the exemplar. Patches copy groups of lamps, so
+    // both are only as precise as in a sample of as many lamps as the exemplar has. Allow three standard errors of
+    // each; for uniform levels, the standard error of the deviation is half that of the mean.
     let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
     let (expected, exact) = deviation(&known);
     let standard = exact / (known.len() as f64).sqrt();
@@ -116,8 +116,8 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
 
 #[test]
 fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
-    // Of the many shifts that compare few lamps, some correlate by chance, because hardly any lamp is compared. A
-    // margin of two standard errors leaves about one wrong result in twenty draws.
+    // Some shifts correlate well by chance, because they compare hardly any lamps. Subtracting two standard errors
+    // leaves about one wrong result in twenty draws.
     let mut wrong = Vec::new();
     for draw in 0..24 {
         let exemplar = Design::new(480, 300, |x, y| {
@@ -154,6 +154,7 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }
     let filled = sum / seeds.count() as f64;
-    // If patches could show the dark sites at the border, but not the lit ones, there would be an eighth fewer lamps.
+    // If patches could show the dark sites at the border but not the lit ones, an eighth of the lamps would be
+    // missing.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
 }
