@@ -17,9 +17,9 @@ use glam::DVec2;
 const PARTS: usize = 6;
 
 /// Sampling error of the statistics, from parts of the texture as large as the exemplar. For each part, takes the
-/// largest relative difference between its statistics and `whole`, those of the texture; returns the root mean square
-/// over the parts. `None` if the texture is too small for several parts. `scale` is the number of unwarped pixels per
-/// texel; `periods` are in unwarped pixels.
+/// largest relative difference between its statistics and those of the whole texture (`whole`). Returns the root mean
+/// square over the parts, or `None` if the texture is too small for several parts. `scale` is the number of unwarped
+/// pixels per texel; `periods` are in unwarped pixels.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),

@@ -1,5 +1,5 @@
-//! Finds the lights that are copied patch by patch, without holding the whole texture in memory. A light that runs
-//! through the exemplar is as long as the texture.
+//! Finds the lights that are copied patch by patch. Such a light may be as long as the texture, but the texture is
+//! never held in memory as a whole.
 //!
 //! The texture is rendered in bands from top to bottom. Each connected light keeps running sums, and the first and the
 //! last texel in each row. Its outline encloses everything between these two texels, in steps of whole texels.
