@@ -260,9 +260,9 @@ typedef struct luxfer_context_params {
     uint32_t struct_size;
     /**
      * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
-     * share these threads. Synchronous calls, which do their work before they return, never wait for a job: they run
-     * on the calling thread or on threads of their own. Each such call gets a set of num_threads threads. The context
-     * starts as many sets as calls run at the same time, and keeps up to four sets for later calls.
+     * share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
+     * call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as many sets
+     * as calls run at the same time, and keeps up to four sets for later calls.
      */
     uint32_t num_threads;
     /**
@@ -287,11 +287,13 @@ luxfer_status luxfer_context_create(const luxfer_context_params *params,
                                     luxfer_context **context);
 
 /**
- * Copies the message of the calling thread's latest failed call in this context into buffer: zero-terminated UTF-8,
- * truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole message
- * needs. If no call of this thread has failed, the message is empty. A message stays until the thread's next failure;
- * the context keeps the messages of the 256 threads that failed last. buffer may be NULL if capacity is 0. A call
- * that fails because its first handle is not valid leaves no message. Any thread.
+ * Gets the message of the calling thread's latest failed call in this context: copies it into buffer as
+ * zero-terminated UTF-8, truncated to capacity bytes including the zero. *needed, unless NULL, receives the capacity
+ * that the whole message needs. buffer may be NULL if capacity is 0. Any thread.
+ *
+ * If no call of this thread has failed, the message is empty. A message stays until the thread's next failure; the
+ * context keeps the messages of the 256 threads that failed last. A call that fails because its first handle is not
+ * valid leaves no message.
  */
 luxfer_status luxfer_context_get_last_error(luxfer_context *context,
                                             char *buffer,
@@ -412,14 +414,17 @@ luxfer_status luxfer_image_create(luxfer_context *context,
                                   luxfer_image **image);
 
 /**
- * Loads an image file and rotates it upright by its EXIF orientation; path is UTF-8. The formats are JPEG, PNG, WebP,
- * TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR. With LUXFER_COLOUR_SRGB, for pictures, colours are
- * converted to linear Rec.709 from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of
- * PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). If the file states none,
- * integer samples are taken as sRGB and floating-point samples as linear; luxfer_photo_metadata.colour tells which
- * case applied. With LUXFER_COLOUR_LINEAR, for data such as masks and depth, samples are not converted. An OpenEXR
- * picture has the size of its display window. Grey with alpha becomes RGBA, palettes and CMYK become RGB; colours are
- * not multiplied by alpha. The caller releases *image. Any thread.
+ * Loads an image file and rotates the picture upright by its EXIF orientation; path is UTF-8. The caller releases
+ * *image. Any thread.
+ *
+ * The formats are JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR (its display window).
+ * Grey with alpha becomes RGBA; palettes and CMYK become RGB; colours are not multiplied by alpha.
+ *
+ * With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709 from the colour space that the file
+ * states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
+ * COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
+ * linear; luxfer_photo_metadata.colour tells which case applied. With LUXFER_COLOUR_LINEAR, for data such as masks
+ * and depth, samples are not converted.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
  * the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
  * raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
@@ -442,12 +447,15 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        luxfer_image **image);
 
 /**
- * Saves an image to a file; path is UTF-8, and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied
- * by exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the
- * file states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709;
- * exposure is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner.
- * Symbolic links are followed; devices, FIFOs and files with several names are written in place. All functions of
- * this library save files in this way. Any thread.
+ * Saves an image to a file; path is UTF-8, and its extension chooses the format. Any thread.
+ * - .png: 1, 3 or 4 channels. The values are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
+ *   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states.
+ * - .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709. exposure is not
+ *   used.
+ *
+ * All functions of this library write files as follows. An existing file is replaced only once the new one is
+ * complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs and files with several hard
+ * links are written in place.
  * LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
  * file cannot be written.
  */
@@ -501,11 +509,11 @@ typedef struct luxfer_photo_metadata {
      */
     uint32_t orientation;
     /**
-     * Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its aspect
-     * ratio shows.
+     * Focal length in pixels of the loaded photo; 0 if it is unknown, or if the aspect ratio shows that the photo was
+     * cropped.
      */
     double focal;
-    /** Standard deviation of focal, in pixels; 0 = unknown. */
+    /** Standard deviation of the field focal, in pixels; 0 = unknown. */
     double focal_error;
     /** F-number N of the aperture; 0 = unknown. */
     double f_number;
@@ -521,12 +529,12 @@ typedef struct luxfer_photo_metadata {
     double white_luminance;
     /**
      * Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-     * standard output sensitivity instead.
+     * standard output sensitivity and not a saturation-based speed.
      */
     double white_luminance_low;
     /**
-     * Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case that the
-     * ISO speed is a recommended exposure index.
+     * Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
+     * recommended exposure index.
      */
     double white_luminance_high;
     /** How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value. */
@@ -550,9 +558,9 @@ typedef struct luxfer_photo_metadata {
 #define LUXFER_FILE_COLOUR_CONVERTED 3
 
 /**
- * A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
- * inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be
- * wrong. Export the photo as sRGB.
+ * The file states a colour space that the library cannot convert, such as a damaged profile, or has the inks of CMYK
+ * without a profile. The colours were read as if the file stated none, so saturated colours may be wrong. Warn the
+ * user, and ask for an export of the photo as sRGB.
  */
 #define LUXFER_FILE_COLOUR_UNCONVERTED 4
 
@@ -603,8 +611,8 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
 /**
  * Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
  * for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
- * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096].
- * Where positive and negative strokes overlap, the later stroke counts. Any thread.
+ * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
+ * pixel that several strokes cover belongs to the last one. Any thread.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
                                  luxfer_phase phase,
@@ -659,15 +667,15 @@ typedef struct luxfer_job luxfer_job;
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
- * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. The
- * call reports to the function progress, which may be NULL, and passes the pointer user to it. Any thread; several
- * threads may wait for one job.
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
+ * During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
+ * thread; several threads may wait for one job.
  *
  * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
- * message of this call.
+ * message of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the
+ * other job also cancels this job.
  * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
- * LUXFER_INVALID_OPERATION if the function of the job waits for its own job. If the function of another job
- * (luxfer_job_start) waits for this job, a cancel request to the other job also cancels this job.
+ * LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -693,8 +701,9 @@ luxfer_status luxfer_job_cancel(luxfer_job *job);
 /* ====================================================================================================================
  * Functions of the caller as jobs
  *
- * Synchronous calls (files, warps, pictures of results) may take long for large inputs. luxfer_job_start runs any
- * sequence of calls as a job, so that a user interface can show its progress and cancel it.
+ * Synchronous calls, such as loading a file, warping an image or getting an image of a result, may take long for
+ * large inputs. luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress
+ * and cancel it.
  * ==================================================================================================================== */
 
 /**
@@ -704,12 +713,14 @@ luxfer_status luxfer_job_cancel(luxfer_job *job);
 typedef int32_t (*luxfer_work_fn)(void *user);
 
 /**
- * Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. The function
- * receives the pointer user, and may call any function of the library. A cancel request to this job makes the
- * function's calls in this context end with LUXFER_CANCELLED; a call that loads a file ends between two meshes or
- * pictures. The request also cancels the jobs that the function waits for. The progress of this job is the progress
- * of these calls and jobs, and never falls. If the function returns an error, the job gets the message of the last
- * call that failed on its thread. The caller releases *job. Any thread.
+ * Starts a job that runs work, a function of the caller, on a thread of its own with 4 MiB of stack. The function
+ * receives the pointer user, and may call any function of the library. The progress of its calls in this context, and
+ * of the jobs that it waits for, is the progress of this job, which never falls. The caller releases *job. Any
+ * thread.
+ *
+ * A cancel request to this job makes the function's calls in this context end with LUXFER_CANCELLED; a call that
+ * loads a file ends between two meshes or pictures. The request also cancels the jobs that the function waits for. If
+ * the function returns an error, the job gets the message of the last call that failed on its thread.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

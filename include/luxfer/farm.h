@@ -54,10 +54,10 @@ static inline luxfer_status luxfer_render_part_init(luxfer_render_part *place, s
 }
 
 /**
- * Gets one part of a rendering. The image is split into columns x rows rectangles, and the paths of each pixel into
- * as many ranges as the parameter ranges says; all parts have about equal size. index is less than columns * rows *
- * ranges. It counts the rectangles row by row, and all rectangles of one range come before those of the next range.
- * params may be NULL for the defaults. size is sizeof *part. Any thread.
+ * Gets one part of a rendering. The image is split into columns x rows rectangles, and the paths of each pixel are
+ * split into a number of ranges; all parts have about equal size. index is less than columns * rows * ranges. It
+ * counts the rectangles row by row, and all rectangles of one range come before those of the next range. params may
+ * be NULL for the defaults. size is sizeof *part. Any thread.
  * LUXFER_INVALID_ARGUMENT if there is no such part, or if some parts would be empty because there are more columns,
  * rows or ranges than pixels or paths to split.
  */
@@ -75,8 +75,8 @@ luxfer_status luxfer_render_split(luxfer_render *render,
  * an existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this
  * part alone. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
- * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the
- * number of paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
+ * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if the settings have an
+ * error target or a time budget, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        const luxfer_render_params *params,
@@ -85,8 +85,8 @@ luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        luxfer_job **job);
 
 /**
- * Adds a file that luxfer_render_start_part has written to the files to merge; path is UTF-8. The call reads only the
- * header of the file; the merge reads the rest. Any thread.
+ * Adds a file to the list of files to merge; luxfer_render_start_part has written it. path is UTF-8. The call reads
+ * only the header of the file; the merge reads the rest. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION
  * while a job runs.
  */
@@ -100,8 +100,8 @@ luxfer_status luxfer_render_add_part(luxfer_render *render,
 luxfer_status luxfer_render_clear_parts(luxfer_render *render);
 
 /**
- * Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has its images and layers as
- * after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has the same images and
+ * layers as after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
  * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene,
  * if parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be

@@ -32,9 +32,9 @@ typedef struct luxfer_illuminance_grid {
     uint32_t struct_size;
     /** Corner of the grid, in metres; default (0, 0, 0). */
     float origin[3];
-    /** Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0). */
+    /** First edge of the grid, a vector from origin in metres; it is divided into columns. Default (1, 0, 0). */
     float across[3];
-    /** Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1). */
+    /** Second edge of the grid, a vector from origin in metres; it is divided into rows. Default (0, 0, 1). */
     float down[3];
     /** Normal of the side that receives the light; any length but 0; default (0, 1, 0). */
     float normal[3];
@@ -110,9 +110,9 @@ luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             luxfer_job **job);
 
 /**
- * Starts a job that computes the illuminance on a mesh at texels of its first set of texture coordinates: columns
- * along u, rows along v. The parameter back is 0 for the front side of the triangles (by their winding), 1 for the
- * back side. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that computes the illuminance on a mesh at columns x rows texels, which divide u and v of its first
+ * set of texture coordinates. back is 0 for the front side of the triangles (by their winding) and 1 for the back
+ * side. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
  * if a setting is out of range.
@@ -143,9 +143,9 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
 /* ====================================================================================================================
  * Lamps
  *
- * Finds the powers of the lamps of an emission, within bounds, that bring the scene nearest to several goals. A goal
- * is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures the
- * light that the goal receives from each lamp, for all lamps at once, even for thousands.
+ * Finds powers for the lamps of an emission, within bounds, with which a scene comes nearest to several goals. A goal
+ * is a surface or a calculation grid that should receive a given light. One set of paths per goal measures the light
+ * from all lamps at once, even from thousands.
  * ==================================================================================================================== */
 
 /** A solver for the powers of lamps. See luxfer_lamps_create. */
@@ -169,8 +169,8 @@ typedef struct luxfer_lamps_params {
      */
     float row_tolerance;
     /**
-     * 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
-     * luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
+     * 1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
+     * luxfer_lamps_add_mesh. 0, the default: solve for the power only.
      */
     uint32_t free_colour;
     /** Largest factor for the emission of a group, >= 0; default infinity. */
@@ -181,16 +181,15 @@ typedef struct luxfer_lamps_params {
      */
     double regularisation;
     /**
-     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
-     * the goal's light is added to this tolerance.
+     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the goal's
+     * light; default 0.01.
      */
     double tolerance;
     /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is known
-     * to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0: do not
-     * stop for this reason.
+     * Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light from
+     * all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
      */
     float target_error;
     /** Stop tracing after this number of milliseconds; default 0: no limit. */
@@ -237,9 +236,9 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
- * each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by the
- * indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
+ * Sets the scene, and the emitting material whose lamps are solved for. The solution is a factor for the emission
+ * that each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by
+ * the indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
@@ -303,9 +302,9 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
 
 /**
  * Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
- * and >= 0, in any order. At most 4096 factors are allowed; if count is 0, the drivers have no steps. The solution
- * then gives each group one of these levels, chosen for all groups together so that the goals are met best. The
- * half-widths of the powers then include the distance from the level to the power without steps. Any thread.
+ * and >= 0, in any order; at most 4096 factors are allowed. The solution then gives each group one of these levels,
+ * chosen for all groups together so that the goals are met best, and the half-widths of the powers include the
+ * distance from the level to the power without steps. If count is 0, the drivers have no steps. Any thread.
  * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
@@ -351,7 +350,7 @@ typedef struct luxfer_lamp {
     double centre[3];
     /** Factor for the lamp's emission, per channel, >= 0. */
     double scale[3];
-    /** Half-widths of the 95 % confidence intervals of scale. */
+    /** Half-widths of the 95 % confidence intervals of the field scale. */
     double half_width[3];
 } luxfer_lamp;
 
@@ -368,20 +367,20 @@ typedef struct luxfer_lamps_goal {
     double target[3];
     /** Mean radiance of the goal's surface with the powers found, in cd/m² per channel. */
     double achieved[3];
-    /** Half-widths of the 95 % confidence intervals of achieved. */
+    /** Half-widths of the 95 % confidence intervals of the field achieved, in cd/m². */
     double half_width[3];
     /** Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel. */
     double background[3];
     /**
-     * Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
-     * of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
+     * Target in lux: pi times the luminance of the field target. This field and the three fields below are set only
+     * for goals of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
      */
     double target_lux;
     /** Illuminance with the powers found, in lux. */
     double achieved_lux;
     /**
-     * Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the errors of
-     * all channels had one sign.
+     * Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if the
+     * errors of all channels have the same sign.
      */
     double half_width_lux;
     /** Illuminance from all light but the lamps, in lux. */
@@ -396,7 +395,7 @@ typedef struct luxfer_lamps_response {
     uint32_t reserved;
     /** Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel. */
     double mean[3];
-    /** Half-widths of the 95 % confidence intervals of mean. */
+    /** Half-widths of the 95 % confidence intervals of the field mean, in cd/m². */
     double half_width[3];
 } luxfer_lamps_response;
 
@@ -447,8 +446,8 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
                                       size_t *needed);
 
 /**
- * Gets the emission texture in which every lamp is multiplied by its scale; linear RGB. The caller releases *texture.
- * Any thread.
+ * Gets the emission texture of the solution, in which every lamp is multiplied by its factor luxfer_lamp.scale;
+ * linear RGB. The caller releases *texture. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
  */
 luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
@@ -478,8 +477,8 @@ typedef struct luxfer_importance_params {
     /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
-     * relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this reason.
+     * Stop when the relative half-width of the 95 % confidence interval of the light that the target would receive
+     * from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -503,11 +502,11 @@ typedef struct luxfer_importance_report {
     uint32_t paths;
     /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
-    /** Half-widths of the 95 % confidence intervals of response. */
+    /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
-     * the cells had twice the width and height. The error is about a third of this change.
+     * Change of the field response, noise included, if the map's cells had twice the width and height. The error that
+     * comes from the size of the cells is about a third of this change.
      */
     double band_error[3];
 } luxfer_importance_report;
@@ -601,8 +600,8 @@ typedef struct luxfer_placement_params {
     /** Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5. */
     double min_offset[2];
     /**
-     * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value are
-     * equal, here and in the fields below, the value is fixed.
+     * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and max_offset
+     * fix the offset; likewise for the fields below.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
@@ -640,11 +639,11 @@ typedef struct luxfer_placement {
     double rotation;
     /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
-    /** Half-widths of the 95 % confidence intervals of response. */
+    /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * Measure of the error that comes from the size of the map's cells: the change of response, noise included, if
-     * the cells had twice the width and height. The error is about a third of this change.
+     * Change of the field response, noise included, if the map's cells had twice the width and height. The error that
+     * comes from the size of the cells is about a third of this change.
      */
     double band_error[3];
 } luxfer_placement;
@@ -752,9 +751,9 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
 /* ====================================================================================================================
  * Glare of observers
  *
- * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
- * luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
- * the eye.
+ * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
+ * scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening
+ * as seen from the eye.
  * ==================================================================================================================== */
 
 /** An observer: an eye that looks in a direction. An element of arrays, so this struct never changes. */
@@ -774,11 +773,11 @@ typedef struct luxfer_observer_glare {
     double ugr;
     /** Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi. */
     double background;
-    /** Standard error of background, in cd/m². */
+    /** Standard error of the field background, in cd/m². */
     double background_error;
     /**
-     * Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-on or
-     * whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the environment.
+     * Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
+     * emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.
      */
     double unrated_lux;
     /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
@@ -790,10 +789,10 @@ typedef struct luxfer_observer_glare {
 } luxfer_observer_glare;
 
 /**
- * Rates the glare of count observers in a scene; the array ratings receives count elements. The parameter samples is
- * the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16; 4096 suit
- * most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count * samples.
- * The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
+ * Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
+ * samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
+ * 4096 suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count *
+ * samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
  * straight up or down, or is inside a luminaire: the message names the observer. In these cases no rating is written.
  */
@@ -901,15 +900,15 @@ typedef struct luxfer_temperature_fit {
     /** Correlated colour temperature, in [1000, 20000] kelvin. */
     double kelvin;
     /**
-     * Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
-     * cd/m².
+     * Luminance of the emission, >= 0. It is in cd/m² if the array response of luxfer_fit_temperature was measured
+     * for a white emission of 1 cd/m².
      */
     double luminance;
-    /** Mean radiance of the target from this light and all other light, in cd/m². */
+    /** Mean radiance of the target from this light and all other lights together, in cd/m². */
     double achieved[3];
     /**
-     * CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted radiance
-     * as middle grey.
+     * CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the wanted
+     * radiance as middle grey.
      */
     double delta_e;
 } luxfer_temperature_fit;
@@ -939,10 +938,10 @@ typedef struct luxfer_preset {
 
 /**
  * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
- * primaries holds three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative
- * for LEDs outside the gamut of Rec.709. count is in [1, 64]. The array drives receives count drive levels in [0,
- * max_drive]; max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture
- * with the smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
+ * primaries holds the linear RGB of each of count LEDs at drive level 1; a channel of an LED outside the gamut of
+ * Rec.709 may be negative. count is in [1, 64]. The array drives receives count drive levels in [0, max_drive];
+ * max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture with the
+ * smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -957,8 +956,8 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
 /**
  * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
  * to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
- * a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is its mean
- * radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
+ * a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is the target's
+ * mean radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
  * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,

@@ -28,10 +28,13 @@ extern "C" {
  * error of a stylisation.
  * ==================================================================================================================== */
 
-/** A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create. */
+/** A plan: the settings with which work reaches a given error, or ends within a given time. See luxfer_plan_create. */
 typedef struct luxfer_plan luxfer_plan;
 
-/** Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init. */
+/**
+ * Goal of a plan, a time or an error: set exactly one of time_budget_ms and target_error. Fill it with
+ * luxfer_plan_params_init.
+ */
 typedef struct luxfer_plan_params {
     /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
     uint32_t struct_size;
@@ -52,10 +55,7 @@ static inline luxfer_status luxfer_plan_params_init(luxfer_plan_params *place, s
 typedef struct luxfer_plan_report {
     /** sizeof(luxfer_plan_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /**
-     * 1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
-     * stylisation.
-     */
+    /** 1 for a plan of a transfer, which includes relighting; 0 for a plan of a rendering or a stylisation. */
     uint32_t relights;
     /** Predicted seconds for all planned work. */
     double seconds;
@@ -66,8 +66,8 @@ typedef struct luxfer_plan_report {
     /** Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer. */
     double relight_error;
     /**
-     * Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in a plan
-     * of a stylisation.
+     * Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a plan of
+     * a stylisation.
      */
     double render_seconds;
     /** Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation. */
@@ -78,9 +78,9 @@ typedef struct luxfer_plan_report {
 luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
 
 /**
- * Starts a job that plans a rendering with the scene and the camera of the object render. The struct settings gives
- * the size of the picture and the other settings that do not affect quality; NULL stands for the defaults. The struct
- * params gives the goal. The caller releases *job. Any thread.
+ * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
+ * and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
+ * releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
  * such camera.
@@ -93,10 +93,11 @@ luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
 
 /**
  * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
- * made. The struct settings holds the settings with which the transfer will be started; NULL stands for the defaults.
+ * made. settings is the struct with which the transfer will be started; NULL stands for the defaults. params gives
+ * the goal. The caller releases *job. Any thread.
+ *
  * After the job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and
- * point the fields relight and render of the struct settings at them. The struct params gives the goal. The caller
- * releases *job. Any thread.
+ * let the fields relight and render of settings point to them.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
  * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
  * with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
@@ -117,9 +118,11 @@ luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
 
 /**
  * Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
- * has chosen. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan
- * sets the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So
- * every run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
+ * has chosen. size is sizeof *params. Any thread.
+ *
+ * If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan sets the number
+ * of paths, so every run gives an equal picture; it also sets time_budget_ms to a quarter more than these paths
+ * should take, which ends the rendering early only if the machine becomes slower.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
@@ -144,15 +147,16 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
  * ==================================================================================================================== */
 
 /**
- * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of the object
- * stylize. The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from the
- * struct settings; NULL stands for the defaults. The struct params gives the goal, a time or an error. The error is
- * the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and
- * guides, whose values are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to
- * it. The caller releases *job. Any thread.
+ * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
+ * The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings,
+ * where NULL stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the
+ * plan gives the settings that come nearest to it. The caller releases *job. Any thread.
+ *
+ * The error is the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in
+ * colours and guides, whose values are in [0, 1].
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
- * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with the
- * statuses of luxfer_stylize_start's job.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with any
+ * status with which a job of luxfer_stylize_start may end.
  */
 luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
                                         luxfer_stylize *stylize,

@@ -37,8 +37,8 @@ typedef struct luxfer_render_params {
      */
     uint32_t samples;
     /**
-     * Stop when the field error of luxfer_render_report falls to this value, >= 0. With this target, paths go to the
-     * pixels where they reduce the error most. Default 0: no target.
+     * Stop when luxfer_render_report.error is at most this value, >= 0. With this target, paths go to the pixels
+     * where they reduce the error most. Default 0: no target.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -46,11 +46,13 @@ typedef struct luxfer_render_params {
     /** Seed of the paths; default 1. */
     uint64_t seed;
     /**
-     * Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the
-     * root mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by
-     * that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19
-     * times out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target.
-     * Default 0: no target.
+     * Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within 10 %
+     * of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
+     * pixel, even if it then misses the target.
+     *
+     * The relative error of a pixel is half the width of the 95 % confidence interval of its luminance, divided by
+     * its luminance or by a tenth of the image's mean, whichever is larger. The relative error of a block is the root
+     * mean square over its pixels.
      */
     float pixel_error;
     /** Must be 0. */
@@ -61,9 +63,9 @@ typedef struct luxfer_render_params {
      */
     float preview;
     /**
-     * Stop when the field relative_error of luxfer_render_report falls to this value, >= 0. With this target, paths
-     * go to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
-     * as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
+     * Stop when luxfer_render_report.relative_error is at most this value, >= 0. With this target, paths go to the
+     * pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much as in
+     * bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
      */
     float relative_error;
 } luxfer_render_params;
@@ -90,8 +92,8 @@ typedef struct luxfer_render_report {
     /** Number of paths that were discarded because their radiance was not finite. */
     uint64_t discarded;
     /**
-     * Estimated bias of the preview: the difference between its expected value and the true image, as root mean
-     * square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
+     * Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x 8
+     * pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview.
      */
     double preview_bias;
     /**
@@ -106,9 +108,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_BEAUTY 0
 
 /**
- * Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the results of
- * their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is up to eight times
- * the sum of their variances.
+ * Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a block and
+ * share the results of their paths, so their errors are correlated: the variance of a sum over pixels is up to eight
+ * times the sum of their variances.
  */
 #define LUXFER_RENDER_VARIANCE 1
 
@@ -122,9 +124,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
- * show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
- * luxfer_render_params.preview is not 0.
+ * The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs details that
+ * come from the light alone, such as soft shadows; luxfer_render_report.preview_bias estimates this error. The image
+ * exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
@@ -161,11 +163,13 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
- * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text, and how many lamps of the scene
- * cannot be reached from the surfaces that the image shows, directly or by reflection: one sentence per line, as
- * zero-terminated UTF-8, truncated to capacity bytes. The rendering learns this from its first paths; later paths
- * hardly ever sample these lamps, which changes no mean. *needed, unless NULL, receives the capacity that the whole
- * text needs. buffer may be NULL if capacity is 0. Any thread.
+ * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
+ * lamps of the scene cannot be reached from the surfaces that the image shows, directly or by reflection. The
+ * rendering learns this from its first paths; later paths hardly ever sample these lamps, which does not change the
+ * expected image. Any thread.
+ *
+ * The text has one sentence per line and is zero-terminated UTF-8, truncated to capacity bytes including the zero.
+ * *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if capacity is 0.
  * LUXFER_NOT_READY before the first pass of a job.
  */
 luxfer_status luxfer_render_get_requirements_text(luxfer_render *render,
@@ -186,17 +190,24 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  *
  * Additional images (layers) from the same paths as the main image: light that light path expressions select, and
  * properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
- * runs or afterwards. First come the layers of the expressions, in the order in which they were added, then the AOVs
- * in the order of their flags. The main image is equal to the bit with and without layers.
+ * runs or afterwards. The layers of expressions come first, in the order in which they were added, then the AOVs in
+ * the order of their flags. The main image is equal to the bit with and without layers.
  *
- * An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye
- * (E), as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at
- * the camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R
- * (reflection), T (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy),
- * S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..]
- * [^..] * + ? {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or
- * of its material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers
- * them; light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment.
+ * A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
+ * | ( ) have their usual meaning. It has one of two forms.
+ *
+ * From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". D is a diffuse event, S
+ * is every other event.
+ *
+ * From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
+ * has a type and a scattering mode. The types are R (reflection), T (transmission) and V (volume, never occurs here).
+ * The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see
+ * luxfer_emitter_as.
+ *
+ * A label in quotes is a name: the name of a mesh or of its material; Name#0, Name#1, ... for the patches of its
+ * emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for the scene's punctual lights in
+ * their order; environment for the scene's environment.
+ *
  * Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
  * alone or with _direct or _indirect.
  * ==================================================================================================================== */
@@ -223,14 +234,14 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 #define LUXFER_AOV_ALBEDO 32
 
 /**
- * Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit. Layer
- * IndexOB, channel X.
+ * Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer IndexOB, channel
+ * X.
  */
 #define LUXFER_AOV_OBJECT 64
 
 /**
- * Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit.
- * Layer IndexMA, channel X.
+ * Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer IndexMA,
+ * channel X.
  */
 #define LUXFER_AOV_MATERIAL 128
 
@@ -246,7 +257,10 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  */
 typedef int32_t luxfer_emitter_as;
 
-/** Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default. */
+/**
+ * Emissive surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light that is reflected
+ * diffusely. The default.
+ */
 #define LUXFER_EMITTER_AS_BOTH 0
 
 /** Emissive surfaces and the environment match L only. */
@@ -319,10 +333,12 @@ luxfer_status luxfer_render_get_layer(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
- * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
- * LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
- * For each layer of light, the attribute luxfer.lpe.NAME of the header holds its expression. path is UTF-8; an
- * existing file is replaced only once the new one is complete. Any thread.
+ * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels; path is UTF-8. An existing
+ * file is replaced only once the new one is complete. Any thread.
+ *
+ * The image has the channels R, G, B, and A if LUXFER_AOV_ALPHA is set. The channels of each layer are named
+ * layer.channel, as Blender and Nuke read them; the depth, Depth.Z, is also stored as Z. For each layer of light, the
+ * attribute luxfer.lpe.NAME of the header holds its expression.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_write_exr(luxfer_render *render,

@@ -86,7 +86,7 @@ luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene)
 luxfer_status luxfer_scene_export(luxfer_scene *scene, const char *path);
 
 /**
- * Writes a scene as GLB: passes the bytes to write, a function of the caller, together with the pointer user. Any
+ * Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
  * thread.
  * LUXFER_IO if the function returns anything but 0.
  */
@@ -204,9 +204,9 @@ luxfer_status luxfer_scene_load(luxfer_context *context,
                                 luxfer_scene **scene);
 
 /**
- * Loads a scene from a GLB or glTF file in memory of size bytes at data. If the scene file names other files, they
- * are read from the folder base_path (UTF-8); if base_path is NULL, it must not name other files. Settings,
- * ownership, threads and errors are as for luxfer_scene_load.
+ * Loads a scene from a GLB or glTF file in memory of size bytes at data. If this file names other files, they are
+ * read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others. Settings, ownership,
+ * threads and errors are as for luxfer_scene_load.
  */
 luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
@@ -325,7 +325,7 @@ typedef struct luxfer_texture_use {
 /** The texture repeats. */
 #define LUXFER_WRAP_REPEAT 0
 
-/** The texels at the edge continue. */
+/** Beyond the edge, the texel at the edge is repeated. */
 #define LUXFER_WRAP_CLAMP 1
 
 /** The texture repeats, mirrored every second time. */
@@ -664,8 +664,8 @@ typedef struct luxfer_luminaire_params {
     /** Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
     float axis[3];
     /**
-     * Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
-     * default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
+     * Direction of the half-plane C = 0; it must not be parallel to axis, and only its component perpendicular to
+     * axis counts. Default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above.
      */
     float c0[3];
     /**
@@ -812,9 +812,9 @@ typedef struct luxfer_requirements {
     /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * Number of bounces that matter. Light with more bounces than this makes up at most the share error of all light
-     * that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
-     * bound. For information only: no rendering ends paths at this number.
+     * Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light with
+     * more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For information
+     * only: no rendering ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
@@ -829,9 +829,9 @@ typedef struct luxfer_requirements {
 } luxfer_requirements;
 
 /**
- * Gets the features that a scene requires of the renderer. The parameter error, in [0, 1), is the share of the
- * scattered light that may be neglected when the field bounces is computed. The first call after a change of the
- * scene prepares the scene for tracing. size is sizeof *requirements. Any thread.
+ * Gets the features that a scene requires of the renderer. error, in [0, 1), is the share of the scattered light that
+ * the count of bounces (luxfer_requirements.bounces) may neglect. The first call after a change of the scene prepares
+ * the scene for tracing. size is sizeof *requirements. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
  */
 luxfer_status luxfer_scene_get_requirements(luxfer_scene *scene,
@@ -986,9 +986,9 @@ typedef struct luxfer_candidate {
      */
     float normal[3];
     /**
-     * Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area / area;
-     * level_area / floor area of the scene's bounding box; and the square of the height above the scene's lowest
-     * point / height of the scene. A name such as "ceiling" raises the score.
+     * Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the scene's
+     * bounding box), and the square of (height above the scene's lowest point) / (height of the scene). Each of the
+     * three ratios is at most 1. A name such as "ceiling" raises the score.
      */
     float score;
     /** Reserved; always 0. */

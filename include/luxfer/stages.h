@@ -22,8 +22,9 @@ extern "C" {
  * ==================================================================================================================== */
 
 /**
- * Computes the homography that maps four points to four other points. The arrays from and to hold x and y of each
- * point, 8 doubles; homography receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+ * Computes the homography that maps four points to four other points. The array from holds x and y of the four
+ * points, 8 doubles; the array to holds x and y of the points to which they are mapped. homography receives the nine
+ * entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
  * LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
  */
 luxfer_status luxfer_homography_from_corners(luxfer_context *context,
@@ -162,16 +163,16 @@ typedef struct luxfer_rectify_report {
      * edges, and not corrected. NaN if the photo has too few lines.
      */
     double distortion;
-    /** Standard deviation of distortion; NaN if distortion is NaN. */
+    /** Standard deviation of the field distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
-     * estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point make
-     * it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other axes
-     * has no lines.
+     * For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these axes is
+     * estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or the
+     * principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
+     * orthogonal.
      */
     double squareness[3];
-    /** Standard deviations of squareness; NaN where squareness is NaN. */
+    /** Standard deviations of the field squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
 } luxfer_rectify_report;
 
@@ -184,13 +185,21 @@ typedef struct luxfer_rectify_report {
 /** Finds three orthogonal directions and the focal length together, then refines each direction by itself. */
 #define LUXFER_SEARCH_MANHATTAN 0
 
-/** The paper's method: finds one vanishing point after the other, each from the lines that are left. */
+/**
+ * The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
+ * earlier one.
+ */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
-/** The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity. */
+/**
+ * The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
+ * finite for vanishing points at infinity.
+ */
 #define LUXFER_METRIC_SEGMENT 0
 
-/** The measure as printed in the paper (Eq. 2), evaluated on the whole visible line. */
+/**
+ * The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected segment.
+ */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
 /** Set by the caller. */
@@ -294,7 +303,7 @@ typedef struct luxfer_features_params {
     uint32_t struct_size;
     /**
      * Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
-     * unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane.
+     * unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this plane.
      */
     float near_plane;
     /**
@@ -303,7 +312,7 @@ typedef struct luxfer_features_params {
      */
     float far_plane;
     /**
-     * Normals come from planes fitted in a square window; this is half the width of the window in pixels, in [0, 64];
+     * Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in [0, 64];
      * default 0: chosen by the photo's size.
      */
     uint32_t normal_radius;
@@ -348,8 +357,8 @@ typedef struct luxfer_features_report {
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
 /**
- * The depth along z that a network has estimated, in the unit of near_plane and from near_plane to far_plane; 1
- * channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
+ * The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1 channel. Set it
+ * as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
  */
 #define LUXFER_FEATURES_NETWORK_DEPTH 2
 
@@ -418,10 +427,10 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
 
 /**
  * Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
- * prefers a room in which one surface, such as the ceiling, contains every positive stroke, whether for the plane or
- * for the lights, and no stroke that is negative for the plane (LUXFER_PHASE_PLANE). The strokes have no effect if
- * the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes them.
- * Any thread.
+ * prefers a room in which one surface, such as the ceiling, contains all positive strokes, those of
+ * LUXFER_PHASE_PLANE and of LUXFER_PHASE_LIGHTS, and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes
+ * have no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes;
+ * NULL removes them. Any thread.
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
@@ -528,7 +537,7 @@ typedef struct luxfer_segment_report {
     uint64_t negative_samples;
     /** Number of samples of the positive class. */
     uint64_t positive_samples;
-    /** Number of pixels that strokes of both classes cover; the later stroke counts. */
+    /** Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke. */
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
 
@@ -575,9 +584,9 @@ luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
                                           luxfer_image *features);
 
 /**
- * Restricts the segmentation to the pixels where the mask region is 1. The mask has 1 channel, values of 0 and 1, and
- * the size of the features; for a segmentation of lights, it is the mask of the plane. region may be NULL: no
- * restriction. Any thread.
+ * Restricts the segmentation to the pixels where region is 1. region is a mask with 1 channel, values of 0 and 1, and
+ * the size of the features; for a segmentation of lights, it is the mask of the plane. NULL: no restriction. Any
+ * thread.
  */
 luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
                                         luxfer_image *region);
@@ -628,12 +637,12 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
  * A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
  * ==================================================================================================================== */
 
-/** The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value. */
+/** The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value. */
 typedef int32_t luxfer_emission_law;
 
 /**
- * The law that predicts the lamps of the photo best. If no law is clearly better than the law that
- * LUXFER_LAW_CORRELATION selects, the latter is used.
+ * The law that predicts the lamps of the photo best. LUXFER_LAW_CORRELATION is used unless another law is clearly
+ * better.
  */
 #define LUXFER_LAW_BEST 0
 
@@ -652,7 +661,7 @@ typedef int32_t luxfer_emission_law;
 /** The exemplar repeats as a whole, edge to edge. */
 #define LUXFER_LAW_WHOLE 4
 
-/** The lights have no period: patches of the exemplar may lie anywhere. */
+/** The lights have no period: patches of the exemplar are placed anywhere in the texture. */
 #define LUXFER_LAW_FREE 5
 
 /** In results only: the texture is a copied part of the exemplar, or the caller supplied the texture. */
@@ -711,21 +720,21 @@ typedef struct luxfer_emission_params {
     double offset[2];
     /**
      * A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
-     * core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0:
-     * no lamp counts as clipped.
+     * core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
+     * channels. 0: no lamp counts as clipped.
      */
     float clip_level;
     /** 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo. */
     uint32_t even_lamps;
     /**
-     * 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side,
-     * and a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps.
-     * Default 0.
+     * 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
+     * edge. A lattice is stretched until whole periods fit, by less than half a period over the whole texture. Needs
+     * whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
-     * 1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle between two
-     * lamps, then lies at the centre of the texture, so that the border cuts as few lamps as possible.
+     * 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
+     * so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
      */
     uint32_t centred;
     /**
@@ -736,20 +745,20 @@ typedef struct luxfer_emission_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * The law, which is the rule by which the texture continues the lights: a LUXFER_LAW_ value other than
+     * The law: the rule by which the texture continues the lights of the exemplar, a LUXFER_LAW_ value other than
      * LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
      */
     luxfer_emission_law law;
     /**
-     * 1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is exact at
-     * any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
-     * lamp has the outline of the mask.
+     * 1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same outline,
+     * which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the photo and
+     * whole_lamps. 0: each lamp has the outline that the mask gives.
      */
     uint32_t clean_lamps;
     /**
-     * Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out, as if
-     * the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the factor in
-     * length by which unwarping has magnified the photo there, relative to the least magnified pixel of the exemplar.
+     * Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left out,
+     * as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of unwarped
+     * pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -763,8 +772,8 @@ static inline luxfer_status luxfer_emission_params_init(luxfer_emission_params *
 typedef int32_t luxfer_emission_image;
 
 /**
- * Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no texels are
- * set.
+ * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality.
+ * For a plan (luxfer_emission_start_plan), only the fields that need no texels are set.
  */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
@@ -773,8 +782,8 @@ typedef struct luxfer_emission_report {
     uint32_t luminaires;
     /**
      * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
-     * of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the less
-     * reliable is this error. NaN for a plan, which has no texels yet.
+     * of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
+     * exemplar_lamps is small. NaN for a plan, which has no texels yet.
      */
     double error;
     /**
@@ -782,29 +791,30 @@ typedef struct luxfer_emission_report {
      */
     double regularity;
     /**
-     * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
-     * large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
+     * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
+     * many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts.
      */
     uint32_t exemplar_lamps;
     /**
-     * Estimated sampling error of the statistics that error compares: their root mean square difference between the
-     * whole texture and parts of it that are as large as the exemplar. If error is at most twice this value, it does
-     * not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended exemplars, and for
-     * a plan.
+     * Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
+     * ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are
+     * as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0 for
+     * LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for blended exemplars, and for a plan.
      */
     float sampling_error;
-    /** The law by which the texture continues the lights: a LUXFER_LAW_ value. */
+    /** The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value. */
     luxfer_emission_law law;
-    /** The law with the best score among all laws but the field law: a LUXFER_LAW_ value. */
+    /** The law with the best score among all laws that were not chosen: a LUXFER_LAW_ value. */
     luxfer_emission_law runner_up;
     /**
-     * Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps. Lamps
+     * Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps
      * weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
      * few of the lights are whole lamps.
      */
     double law_score;
     /**
-     * law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly better.
+     * law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores slightly
+     * better.
      */
     double margin;
 } luxfer_emission_report;
@@ -896,8 +906,8 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Gets the quality of the texture. For a plan, only the fields that need no texels are set. size is sizeof *report.
- * Any thread.
+ * Gets the quality of the texture. For a plan (luxfer_emission_start_plan), only the fields that need no texels are
+ * set. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
@@ -905,9 +915,10 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          size_t size);
 
 /**
- * Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
- * described as it appears in the exemplar, cut at the edges of the texture. Only lights that run through the whole
- * exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
+ * Describes a luminaire of the texture; index starts at 0. After luxfer_emission_start_plan there are no texels yet,
+ * so a luminaire is described as it appears in the exemplar, cut at the edges of the texture; only lights that run
+ * through the whole exemplar, such as light bands, are described as the texture will show them. size is sizeof
+ * *luminaire. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -920,9 +931,10 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
  *
  * The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
  * the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
- * larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead in three
- * cases: lamps up to two texels wide, masks of only 0 and 1, and lights of a plan that run through the whole
- * exemplar.
+ * larger than texels, these figures are in unwarped pixels.
+ *
+ * In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only
+ * 0 and 1, and for lights of a plan that run through the whole exemplar.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
@@ -942,13 +954,14 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
 /**
  * Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
  * and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
- * luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. The
- * image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
- * added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
- * has the rest.
+ * luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
+ * thread.
  *
- * Each lamp of the texture comes from one exemplar, chosen at random with the weights as probabilities, so that the
- * light per area blends linearly. The lattice of each exemplar keeps its own period and phase. Any thread.
+ * The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
+ * added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
+ * gets the remaining weight. Each lamp of the texture comes from one exemplar, chosen at random with the weights as
+ * probabilities, so that the light per area blends linearly. The lattice of each exemplar keeps its own period and
+ * phase.
  */
 luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
                                         luxfer_image *unwarped,
@@ -1044,7 +1057,7 @@ typedef struct luxfer_relight_report {
     uint32_t paths;
     /** Factor for the emission, per channel, >= 0. */
     double scale[3];
-    /** Half-widths of the 95 % confidence intervals of scale. */
+    /** Half-widths of the 95 % confidence intervals of the field scale. */
     double half_width[3];
     /** Mean radiance of the target from the emission at scale 1, in cd/m² per channel. */
     double response[3];
@@ -1060,9 +1073,8 @@ typedef struct luxfer_relight_report {
      */
     double error;
     /**
-     * Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the colour that
-     * the target has and the colour that it should have is below this value, at the exposure that shows the target as
-     * middle grey.
+     * Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its actual
+     * colour and the wanted colour is below this value, at the exposure that shows the target as middle grey.
      */
     double delta_e;
 } luxfer_relight_report;
@@ -1070,7 +1082,7 @@ typedef struct luxfer_relight_report {
 /** Light that the target surface reflects, its albedo included: the radiance that a photo shows. */
 #define LUXFER_QUANTITY_OUTGOING 0
 
-/** Light that arrives at the target surface, as if the surface were white. */
+/** Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
 /** By the mean over the target surface. */
@@ -1078,9 +1090,8 @@ typedef struct luxfer_relight_report {
 
 /**
  * At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
- * more, so the emission is dimmer than with LUXFER_FIT_MEAN. If there is no other light, it is dimmer by the factor 1
- * / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives from
- * the emission.
+ * more, so the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor
+ * 1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
@@ -1112,10 +1123,9 @@ typedef struct luxfer_relight_report {
 luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);
 
 /**
- * Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
- * luxfer_scene_place_emission returns the index of the emitting material, and the index of the mesh with this
- * material, which can serve as the target. The solution is a factor for the emission that the material has in the
- * scene. Any thread.
+ * Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. The
+ * solution is a factor for the emission that the material has in the scene. luxfer_scene_place_emission returns the
+ * index of such a material, and the index of a mesh that can serve as the target. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,

@@ -151,14 +151,14 @@ typedef struct luxfer_stylize_params {
     float guide_weight;
     /** Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. */
     uint32_t levels;
-    /** Rounds of matching and painting on the second finest level, in [1, 100]; default 6. */
+    /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
     uint32_t iterations;
-    /** Rounds of matching and painting on the finest level, in [1, 100]; default 1. */
+    /** Rounds (EM iterations) on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In LUXFER_STYLIZE_MODE_BUDGET
-     * each target patch takes its nearest match in these rounds, without the error budget. In other modes these are
-     * additional rounds of that mode.
+     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
+     * LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
+     * In other modes these are additional rounds of that mode.
      */
     uint32_t polish;
     /** Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1. */
@@ -168,16 +168,18 @@ typedef struct luxfer_stylize_params {
      * default 0.9.
      */
     float coverage;
-    /** Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6. */
+    /**
+     * Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000]; default 6.
+     */
     uint32_t passes;
     /**
-     * Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target patch
-     * may continue the match of its neighbour, which leaves fewer seams.
+     * Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
+     * may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
      */
     uint32_t settle;
     /**
-     * Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
-     * default 0.2.
+     * Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It applies
+     * to the sweeps after each matching; see settle.
      */
     float seam;
     /**
@@ -198,13 +200,13 @@ typedef struct luxfer_stylize_params {
     uint32_t keep_for_update;
     /**
      * Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint changes
-     * from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
-     * luxfer_stylize_set_motion; without it, it has no effect.
+     * from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. No effect without
+     * luxfer_stylize_set_motion.
      */
     float coherence;
     /**
-     * Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
-     * guides of light, in [0, 1]; 0, the default: not at all.
+     * Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target's
+     * light guides, in [0, 1]; 0, the default: not at all.
      */
     float match_appearance;
     /** Seed of the search; default 1. */
@@ -214,13 +216,15 @@ typedef struct luxfer_stylize_params {
      * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
      */
     float coarse_guides;
-    /** Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6. */
+    /**
+     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+     */
     uint32_t coarse_iterations;
     /**
-     * Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser
-     * et al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
-     * distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
-     * LUXFER_STYLIZE_MODE_NEAREST.
+     * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; 0
+     * is LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a
+     * patch of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
+     * differences of channels in [0, 1] (Eq. 1).
      */
     float occurrence;
     /** Must be 0. */
@@ -283,12 +287,15 @@ typedef int32_t luxfer_stylize_preset;
 /** The mean of the overlapping patches, weighted so that closer matches count more. */
 #define LUXFER_STYLIZE_VOTE_WEIGHTED 1
 
-/** The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the artwork. */
+/**
+ * Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour occurs in the
+ * artwork.
+ */
 #define LUXFER_STYLIZE_VOTE_NEAREST 2
 
 /**
- * The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork stay whole
- * up to their seams.
+ * The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
+ * each stays whole up to the seam.
  */
 #define LUXFER_STYLIZE_VOTE_MOST 3
 
@@ -326,8 +333,8 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
 #define LUXFER_GUIDES_WITH_MATERIALS 4
 
 /**
- * Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other kinds of
- * light. Use it for scenes in which glossy objects reflect light onto others.
+ * Flag of luxfer_stylize_add_guides: add a guide of the caustics, at the same exposure as the other guides of light.
+ * Use it for scenes in which glossy objects reflect light onto others.
  */
 #define LUXFER_GUIDES_WITH_CAUSTICS 8
 
@@ -340,7 +347,10 @@ typedef int32_t luxfer_guide_range;
 /** Linear light >= 0, such as a rendering; its values are compared as they would look on a screen. */
 #define LUXFER_GUIDE_LIGHT 0
 
-/** Data, such as normals, object codes and edges; the common range of source and target is scaled to [0, 1]. */
+/**
+ * Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
+ * to [0, 1].
+ */
 #define LUXFER_GUIDE_DATA 1
 
 /**
@@ -357,12 +367,13 @@ luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
                                          luxfer_image *artwork);
 
 /**
- * Adds a guide, or replaces the guide with that name. The image source shows the exemplar scene, and the image target
- * shows the scene to paint. Both have the same number of channels, and all guides together have at most 60 channels.
- * If target is NULL, source serves as the target too; use this for a picture of which one part is painted already
- * (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
- * All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
- * pixels of a source with such values are not used. Any thread.
+ * Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
+ * target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
+ * target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
+ * [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+ *
+ * All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
+ * target, values that are not finite count as 0; pixels of a source with such values are not used.
  * LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
  */
 luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
@@ -373,11 +384,13 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
                                        luxfer_guide_range range);
 
 /**
- * Adds the rendered guides of two scenes: the parameter source is for the exemplar scene, the parameter target for
- * the scene to paint. The call adds the five guides of light LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES at a
- * common exposure, under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1.
- * For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or
- * "materials", each with weight extra_weight, in [0, 1e6]. Any thread.
+ * Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
+ * paint. Any thread.
+ *
+ * The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure,
+ * under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the
+ * LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or "materials", each with
+ * weight extra_weight, in [0, 1e6].
  * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
  * range.
  */
@@ -399,20 +412,21 @@ luxfer_status luxfer_stylize_set_source_mask(luxfer_stylize *stylize,
 
 /**
  * Sets the pixels of the target to paint: the pixels where mask is above 0.5. mask has 1 channel and the size of the
- * guides' targets; if it is NULL, all pixels are painted. The other pixels are taken from the image known (linear,
- * with the number of channels of the artwork), and the new paint is fitted to them; if known is NULL, the other
- * pixels are black. Any thread.
+ * guides' targets; if it is NULL, all pixels are painted. known is an image that shows the other pixels, linear, with
+ * the artwork's number of channels; the new paint is fitted to them. If known is NULL, the other pixels are black.
+ * Any thread.
  */
 luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
                                              luxfer_image *mask,
                                              luxfer_image *known);
 
 /**
- * Makes each job start from the previous result, for the frames of an animation. The image motion has 2 channels and
- * the size of the guides' targets. It holds for each pixel the offset to the position of its surface point in the
- * previous frame, x and y in pixels; NaN where the point was not visible. The paint of the previous frame moves with
- * the surfaces and stays where it fits; see luxfer_stylize_params.coherence. motion may be NULL: each job starts from
- * nothing. Any thread.
+ * Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
+ * moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. Any thread.
+ *
+ * The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
+ * position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
+ * visible. If motion is NULL, each job starts from nothing.
  */
 luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
                                         luxfer_image *motion);
@@ -429,11 +443,11 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
                                    luxfer_job **job);
 
 /**
- * Starts a job that updates the picture after a change of the artwork. The image artwork is the changed artwork, with
- * the size and channels of the first artwork. The mask changed (1 channel) is above 0.5 where the artwork has new
- * paint; the pixels of the picture that were painted from these places are painted again. The job takes a fraction of
+ * Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
+ * the size and channels of the old one. changed is a mask with 1 channel, above 0.5 where the new artwork differs
+ * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
  * the time of luxfer_stylize_start. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end
+ * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
  * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
  * too.
  */
@@ -443,11 +457,12 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_job **job);
 
 /**
- * Lets the library paint the rest of a half-painted picture. The artwork is the picture. The mask painted has 1
- * channel and the artwork's size, and is above 0.5 where the picture is finished. The sources of the guides show the
- * scene of the picture, and their targets are NULL. The call is a shorthand: it sets the mask painted as the source
- * mask, its inverse as the target mask, and the artwork as the image known of luxfer_stylize_set_target_mask. Any
- * thread.
+ * Lets the library paint the rest of a half-painted picture, which is the artwork. painted is a mask with 1 channel
+ * and the artwork's size, above 0.5 where the picture is finished. Use guides whose sources show the scene of the
+ * picture, and whose targets are NULL. Any thread.
+ *
+ * The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
+ * the inverse mask and the artwork.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */
@@ -498,7 +513,7 @@ typedef struct luxfer_stylize_report {
     uint64_t broken_target;
 } luxfer_stylize_report;
 
-/** One round of matching and painting on a level. */
+/** One round (EM iteration) on a level: matching, then voting. */
 typedef struct luxfer_stylize_round {
     /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -515,8 +530,8 @@ typedef struct luxfer_stylize_pass {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
-     * the sorted matching errors, where they begin to rise steeply.
+     * Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which the
+     * sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget.
      */
     double knee;
     /** Share of the target with a match after this pass, in [0, 1]. */
@@ -574,7 +589,7 @@ luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
                                        uint32_t *rounds);
 
 /**
- * Describes a round of a level; the numbers level and index start at 0. size is sizeof *round. Any thread.
+ * Describes a round (EM iteration) of a level; level and index are numbers from 0. size is sizeof *round. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
  */
 luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
@@ -584,8 +599,8 @@ luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
                                        size_t size);
 
 /**
- * Describes a matching pass of a round; the numbers level, round and index start at 0. size is sizeof *pass. Any
- * thread.
+ * Describes a matching pass of a round (EM iteration); level, round and index are numbers from 0. size is sizeof
+ * *pass. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
  * pass.
  */
@@ -612,8 +627,8 @@ typedef struct luxfer_sheet_params {
     /** sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init. */
     uint32_t struct_size;
     /**
-     * 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the value 1;
-     * 0: no correction.
+     * 1, the default: correct uneven lighting of the photo by the brightness of the white in the marks, so that paper
+     * gets the value 1; 0: no correction.
      */
     uint32_t even_light;
     /** Width of the paper in millimetres, in [60, 2000]; default 297. */

@@ -68,16 +68,16 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
  */
 #define LUXFER_PATTERN_DISTANCE 0
 
-/** The length of a lamp: luxfer_pattern_params.length is the median of the longer sides of the photo's lamps. */
+/** The length of the lamps: on the surface, luxfer_pattern_params.length is the median of their longer sides. */
 #define LUXFER_PATTERN_LAMP 1
 
 /**
- * The spacing of the lamps: luxfer_pattern_params.length is the shorter period of their lattice or, without a
- * lattice, the median distance from a lamp to its nearest neighbour.
+ * The spacing of the lamps: on the surface, luxfer_pattern_params.length is the shorter period of their lattice or,
+ * without a lattice, the median distance from a lamp to its nearest neighbour.
  */
 #define LUXFER_PATTERN_SPACING 2
 
-/** The width of the surface: the surface is as many lamps wide as the plane in the photo. */
+/** The width of the surface: as many lamps lie side by side on it as on the plane in the photo. */
 #define LUXFER_PATTERN_ACROSS 3
 
 /* ====================================================================================================================
@@ -195,10 +195,11 @@ luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
 
 /**
  * Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
- * transfer never changes the scene; each job uses the scene as it is when the job starts. Of the planes of that
- * object or material, the transfer takes the plane that faces most of the room. The parts of this plane, for example
- * between the beams of a ceiling, share one pattern that continues from part to part. Triangles in other planes stay
- * unchanged; light them by another transfer with its own pattern. Any thread.
+ * transfer never changes the scene; each job uses the scene as it is when the job starts. Any thread.
+ *
+ * Of the planes of that object or material, the transfer takes the plane that faces most of the room. The parts of
+ * this plane, for example between the beams of a ceiling, share one pattern that continues from part to part.
+ * Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
  */
 luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
@@ -283,13 +284,12 @@ luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
                                        luxfer_image *mask);
 
 /**
- * Starts a job that runs the stages from the stage first to the stage last, both included; the parameters first and
- * last are LUXFER_STAGE_ values. The stages before the stage first must have results. params may be NULL for the
- * defaults. The caller releases *job. Any thread.
+ * Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included. All
+ * stages before these must have results. Stages that have ended keep their results even if the job fails. params may
+ * be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
- * LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
- * jobs; the message names the stage. The job ends at once if the scene does not have the surface. Stages that have
- * ended keep their results.
+ * LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with any status with which a stage
+ * may end; the message names the stage. The job ends at once if the scene does not have the surface.
  */
 luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     luxfer_stage first,
@@ -332,17 +332,13 @@ typedef struct luxfer_transfer_report {
     /** Largest expected error of a corner of the unwarped image, in unwarped pixels. */
     double unwarp_error;
     /**
-     * Field error of luxfer_emission_report: largest relative difference between texture and photo in three
-     * statistics of their lamps.
+     * luxfer_emission_report.error: largest relative difference between texture and photo in three statistics of
+     * their lamps.
      */
     double emission_error;
-    /**
-     * Field error of luxfer_relight_report: largest relative half-width of the solution's 95 % confidence intervals.
-     */
+    /** luxfer_relight_report.error: largest relative half-width of the solution's 95 % confidence intervals. */
     double relight_error;
-    /**
-     * Field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its mean.
-     */
+    /** luxfer_render_report.error: root mean square of the rendering's standard errors, divided by its mean. */
     double render_error;
     /** Length of a texel's side on the surface, in metres. */
     double texel_size;
@@ -351,13 +347,14 @@ typedef struct luxfer_transfer_report {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has the size
-     * that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
+     * Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as they
+     * are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the texture.
      */
     double plane_distance;
     /**
-     * Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
-     * lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
+     * Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps, it is
+     * about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings determine the
+     * distance.
      */
     double plane_distance_error;
     /**
@@ -544,11 +541,14 @@ typedef struct luxfer_warning {
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
     uint32_t has_place;
-    /** The figure that caused the warning; the comment of each LUXFER_WARNING_ value says what it measures. */
+    /**
+     * The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
+     * measures.
+     */
     double severity;
     /**
-     * The limit that the figure has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says that
-     * the figure is below the limit.
+     * The limit that the severity has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says
+     * that the severity is below the limit.
      */
     double limit;
     /** The place in the photo, x and y in pixels; 0 if the warning has no place. */
@@ -563,7 +563,7 @@ typedef struct luxfer_warning {
 } luxfer_warning;
 
 /**
- * The vanishing points do not determine the focal length, which was assumed; the severity is the relative standard
+ * The vanishing points do not determine the focal length, so it was assumed; the severity is the relative standard
  * deviation of the focal length.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
@@ -587,9 +587,9 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
 
 /**
- * Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted lamps; the
- * severity is the area of these pixels and regions as a share of the mask and these regions together. The warning
- * points to the pixel where one more stroke helps most.
+ * Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly resemble
+ * the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
+ * doubtful pixels together. The warning points to the pixel where one more stroke helps most.
  */
 #define LUXFER_WARNING_UNSEEN 6
 
@@ -627,13 +627,12 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_MAGNIFIED 13
 
 /**
- * The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle
- * between the plane and the viewing ray, and is below the limit. The warning points to the point with the smallest
- * angle.
+ * The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
+ * ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
  */
 #define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
 
-/** The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report. */
+/** The statistics of the texture differ from those of the photo; the severity is luxfer_emission_report.error. */
 #define LUXFER_WARNING_PATTERN_UNCERTAIN 15
 
 /**
@@ -642,21 +641,22 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_FEW_LAMPS 16
 
-/** The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report. */
+/** No lattice was found on which the lamps lie; the severity is luxfer_emission_report.error. */
 #define LUXFER_WARNING_NO_LATTICE 17
 
 /** Colour channels do not meet their target; the severity is the number of these channels. */
 #define LUXFER_WARNING_UNREACHABLE 18
 
 /**
- * The photo clips channels of the target colour; the values of these channels are then lower bounds; the severity is
- * the number of these channels.
+ * The photo clips channels of the target colour, so the values of these channels are only lower bounds; the severity
+ * is the number of these channels.
  */
 #define LUXFER_WARNING_TARGET_CLIPPED 19
 
 /**
- * A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
- * metres. It is below the limit if the scene is too small, else above it. The message names the likely unit.
+ * A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
+ * height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
+ * message names the likely unit.
  */
 #define LUXFER_WARNING_IMPLAUSIBLE_SIZE 20
 
@@ -667,34 +667,34 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_RENDERED 21
 
 /**
- * The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
- * that a pixel painted as light is brighter than a pixel painted as plane, and is below the limit. The warning points
+ * The painted lamps are hardly brighter than the plane: they are off, or face away. The severity is the probability
+ * that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit. The warning points
  * to the darkest lamp.
  */
 #define LUXFER_WARNING_DIM_LAMPS 22
 
 /**
- * A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
- * error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+ * A texture without any light would differ less from the photo than the synthesised texture does; the severity is
+ * luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
  */
 #define LUXFER_WARNING_NO_PATTERN 23
 
 /**
- * A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
- * the severity is the share of the mask that is expected to be wrong.
+ * A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive strokes for the
+ * lights. The severity is the expected share of wrong pixels.
  */
 #define LUXFER_WARNING_PROPOSED 24
 
 /**
- * A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
- * the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
- * large that floats have rounded them, it is the step of the rounding in metres.
+ * A scene lies far from the origin. There are two cases. If luxfer_scene_get_origin is not 0, positions are relative
+ * to that origin; the severity is its distance from the origin of the file in metres, and the limit is 0. Otherwise
+ * coordinates of vertices are so large that floats round them; the severity is the step of the rounding in metres.
  */
 #define LUXFER_WARNING_FAR_FROM_ORIGIN 25
 
 /**
- * Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare does not rate
- * them; the severity is their number, and the message lists the first ones with their positions.
+ * A scene has luminaires, which shine from points: they are invisible in renderings, and luxfer_image_get_glare does
+ * not rate them. The severity is their number; the message lists the first ones with their positions.
  */
 #define LUXFER_WARNING_NOT_IN_PICTURE 26
 

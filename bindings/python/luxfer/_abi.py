@@ -372,7 +372,8 @@ class luxfer_stylize(Structure):
 
 
 class luxfer_plan(Structure):
-    """A plan: the settings with which a goal, a time or an error, is reached. See luxfer_plan_create."""
+    """A plan: the settings with which work reaches a given error, or ends within a given time. See
+    luxfer_plan_create."""
 
 
 class luxfer_demo_photo(Structure):
@@ -856,8 +857,8 @@ class luxfer_emission_params(Structure):
 
 
 class luxfer_emission_report(Structure):
-    """Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no
-    texels are set."""
+    """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
+    quality. For a plan (luxfer_emission_start_plan), only the fields that need no texels are set."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1389,7 +1390,7 @@ class luxfer_stylize_report(Structure):
 
 
 class luxfer_stylize_round(Structure):
-    """One round of matching and painting on a level."""
+    """One round (EM iteration) on a level: matching, then voting."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1441,7 +1442,7 @@ class luxfer_sheet_report(Structure):
 
 
 class luxfer_plan_params(Structure):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+    """Goal of a plan, a time or an error: set exactly one of time_budget_ms and target_error."""
 
     _fields_ = [
         ("struct_size", c_uint32),

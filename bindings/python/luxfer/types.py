@@ -81,9 +81,9 @@ class FileColour(IntEnum):
     CONVERTED = 3
     """The file states another colour space. The colours were converted to linear Rec.709."""
     UNCONVERTED = 4
-    """A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or
-    has the inks of CMYK without a profile. The colours were read as if the file stated none, so saturated
-    colours may be wrong. Export the photo as sRGB."""
+    """The file states a colour space that the library cannot convert, such as a damaged profile, or has the
+    inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may
+    be wrong. Warn the user, and ask for an export of the photo as sRGB."""
     DATA = 5
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
@@ -117,7 +117,7 @@ class Wrap(IntEnum):
     REPEAT = 0
     """The texture repeats."""
     CLAMP = 1
-    """The texels at the edge continue."""
+    """Beyond the edge, the texel at the edge is repeated."""
     MIRROR = 2
     """The texture repeats, mirrored every second time."""
 
@@ -187,18 +187,18 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Blocks of eight pixels share the
-    results of their paths, so the errors of their pixels are correlated: the variance of a sum over pixels is
-    up to eight times the sum of their variances."""
+    """Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a
+    block and share the results of their paths, so their errors are correlated: the variance of a sum over
+    pixels is up to eight times the sum of their variances."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3
     """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
     where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
-    do not show, such as soft shadows; preview_bias of the report estimates the error. It exists only if
-    RenderParams.preview is not 0."""
+    """The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs
+    details that come from the light alone, such as soft shadows; RenderReport.preview_bias estimates this
+    error. The image exists only if RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
@@ -206,7 +206,8 @@ class EmitterAs(IntEnum):
     EmitterAs."""
 
     BOTH = 0
-    """Surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light. The default."""
+    """Emissive surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light that is
+    reflected diffusely. The default."""
     LIGHT = 1
     """Emissive surfaces and the environment match L only."""
     OBJECT = 2
@@ -229,16 +230,19 @@ class Search(IntEnum):
     """Finds three orthogonal directions and the focal length together, then refines each direction by
     itself."""
     SUCCESSIVE = 1
-    """The paper's method: finds one vanishing point after the other, each from the lines that are left."""
+    """The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not
+    run to an earlier one."""
 
 
 class Metric(IntEnum):
     """The distance of a vanishing point from a line, for Search.SUCCESSIVE."""
 
     SEGMENT = 0
-    """The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity."""
+    """The distance of the detected segment's end points from the line through its midpoint and the vanishing
+    point; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """The measure as printed in the paper (Eq. 2), evaluated on the whole visible line."""
+    """The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected
+    segment."""
 
 
 class RectifyImage(IntEnum):
@@ -297,9 +301,9 @@ class FeaturesImage(IntEnum):
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
-    """The depth along z that a network has estimated, in the unit of near_plane and from near_plane to
-    far_plane; 1 channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the
-    network again."""
+    """The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1
+    channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network
+    again."""
 
 
 class DepthSource(IntEnum):
@@ -345,11 +349,11 @@ class SegmentImage(IntEnum):
 
 
 class EmissionLaw(IntEnum):
-    """The law by which a texture continues the lights of its exemplar."""
+    """The law, that is, the rule by which a texture continues the lights of its exemplar."""
 
     BEST = 0
-    """The law that predicts the lamps of the photo best. If no law is clearly better than the law that
-    EmissionLaw.CORRELATION selects, the latter is used."""
+    """The law that predicts the lamps of the photo best. EmissionLaw.CORRELATION is used unless another law is
+    clearly better."""
     CORRELATION = 1
     """The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a
     shift by this period is at least min_regularity of EmissionParams."""
@@ -360,7 +364,7 @@ class EmissionLaw(IntEnum):
     WHOLE = 4
     """The exemplar repeats as a whole, edge to edge."""
     FREE = 5
-    """The lights have no period: patches of the exemplar may lie anywhere."""
+    """The lights have no period: patches of the exemplar are placed anywhere in the texture."""
     COPY = 6
     """In results only: the texture is a copied part of the exemplar, or the caller supplied the texture."""
 
@@ -399,7 +403,8 @@ class Quantity(IntEnum):
     OUTGOING = 0
     """Light that the target surface reflects, its albedo included: the radiance that a photo shows."""
     INCIDENT = 1
-    """Light that arrives at the target surface, as if the surface were white."""
+    """Light that arrives at the target surface, expressed as the radiance that the surface would have if it
+    were white."""
 
 
 class Fit(IntEnum):
@@ -409,9 +414,9 @@ class Fit(IntEnum):
     """By the mean over the target surface."""
     LEAST_SQUARES = 1
     """At every point of the target surface, by least squares, as gradient descent on texels does. Bright points
-    count more, so the emission is dimmer than with Fit.MEAN. If there is no other light, it is dimmer by the
-    factor 1 / (1 + CV²), where CV is the coefficient of variation, over the target surface, of the light that
-    it receives from the emission."""
+    count more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
+    1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it
+    receives."""
 
 
 class Outcome(IntEnum):
@@ -434,12 +439,12 @@ class PatternScale(IntEnum):
     """The distance of the photo's camera from the plane with the lights. It is plane_distance of
     TransferParams, or if that is 0, an estimate from the size of the lamps."""
     LAMP = 1
-    """The length of a lamp: PatternParams.length is the median of the longer sides of the photo's lamps."""
+    """The length of the lamps: on the surface, PatternParams.length is the median of their longer sides."""
     SPACING = 2
-    """The spacing of the lamps: PatternParams.length is the shorter period of their lattice or, without a
-    lattice, the median distance from a lamp to its nearest neighbour."""
+    """The spacing of the lamps: on the surface, PatternParams.length is the shorter period of their lattice or,
+    without a lattice, the median distance from a lamp to its nearest neighbour."""
     ACROSS = 3
-    """The width of the surface: the surface is as many lamps wide as the plane in the photo."""
+    """The width of the surface: as many lamps lie side by side on it as on the plane in the photo."""
 
 
 class Stage(IntEnum):
@@ -519,7 +524,7 @@ class WarningCode(IntEnum):
     """The code of a warning."""
 
     FOCAL_ASSUMED = 1
-    """The vanishing points do not determine the focal length, which was assumed; the severity is the relative
+    """The vanishing points do not determine the focal length, so it was assumed; the severity is the relative
     standard deviation of the focal length."""
     VIEW_UNCERTAIN = 2
     """The directions of the room axes are uncertain; the severity is the largest standard deviation in
@@ -533,9 +538,9 @@ class WarningCode(IntEnum):
     """There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity
     is the confidence of the fit, which is below the limit."""
     UNSEEN = 6
-    """Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted
-    lamps; the severity is the area of these pixels and regions as a share of the mask and these regions
-    together. The warning points to the pixel where one more stroke helps most."""
+    """Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly
+    resemble the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the
+    mask and the doubtful pixels together. The warning points to the pixel where one more stroke helps most."""
     CONTRADICTORY_STROKES = 7
     """Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the
     number of samples drawn from the strokes."""
@@ -555,47 +560,47 @@ class WarningCode(IntEnum):
     """Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane
     that is strongly magnified. The warning points to the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
-    """The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the
-    angle between the plane and the viewing ray, and is below the limit. The warning points to the point with
-    the smallest angle."""
+    """The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the
+    viewing ray, the median over the plane; it is below the limit. The warning points to the point with the
+    smallest angle."""
     PATTERN_UNCERTAIN = 15
-    """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
+    """The statistics of the texture differ from those of the photo; the severity is EmissionReport.error."""
     FEW_LAMPS = 16
     """The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is
     below the limit."""
     NO_LATTICE = 17
-    """The lamps lie on no lattice that could be found; the severity is the error of EmissionReport."""
+    """No lattice was found on which the lamps lie; the severity is EmissionReport.error."""
     UNREACHABLE = 18
     """Colour channels do not meet their target; the severity is the number of these channels."""
     TARGET_CLIPPED = 19
-    """The photo clips channels of the target colour; the values of these channels are then lower bounds; the
+    """The photo clips channels of the target colour, so the values of these channels are only lower bounds; the
     severity is the number of these channels."""
     IMPLAUSIBLE_SIZE = 20
-    """A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this
-    extent in metres. It is below the limit if the scene is too small, else above it. The message names the
-    likely unit."""
+    """A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the
+    implausible height or width in metres. For a scene that is too small, it is the larger of the two, and is
+    below the limit. The message names the likely unit."""
     NOT_RENDERED = 21
     """The file of a scene has a feature or an extension that is not rendered. The message names the feature and
     the first objects that have it; the severity is the number of these objects."""
     DIM_LAMPS = 22
-    """The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the
-    probability that a pixel painted as light is brighter than a pixel painted as plane, and is below the limit.
+    """The painted lamps are hardly brighter than the plane: they are off, or face away. The severity is the
+    probability that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit.
     The warning points to the darkest lamp."""
     NO_PATTERN = 23
     """A texture without any light would differ less from the photo than the synthesised texture does; the
-    severity is the error of EmissionReport. It takes the place of WarningCode.PATTERN_UNCERTAIN."""
+    severity is EmissionReport.error. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
-    """A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are
-    missing; the severity is the share of the mask that is expected to be wrong."""
+    """A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive
+    strokes for the lights. The severity is the expected share of wrong pixels."""
     FAR_FROM_ORIGIN = 25
-    """A scene lies far from the origin. If its positions are relative to an origin of its own
-    (luxfer_scene_get_origin), the severity is the distance of that origin in metres, above a limit of 0; if
-    coordinates of its vertices are so large that floats have rounded them, it is the step of the rounding in
-    metres."""
+    """A scene lies far from the origin. There are two cases. If luxfer_scene_get_origin is not 0, positions are
+    relative to that origin; the severity is its distance from the origin of the file in metres, and the limit
+    is 0. Otherwise coordinates of vertices are so large that floats round them; the severity is the step of the
+    rounding in metres."""
     NOT_IN_PICTURE = 26
-    """Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare
-    does not rate them; the severity is their number, and the message lists the first ones with their
-    positions."""
+    """A scene has luminaires, which shine from points: they are invisible in renderings, and
+    luxfer_image_get_glare does not rate them. The severity is their number; the message lists the first ones
+    with their positions."""
 
 
 class IlluminanceImage(IntEnum):
@@ -716,11 +721,11 @@ class StylizeVote(IntEnum):
     WEIGHTED = 1
     """The mean of the overlapping patches, weighted so that closer matches count more."""
     NEAREST = 2
-    """The colour of the overlapping patch that is nearest to their mean, so that every colour occurs in the
-    artwork."""
+    """Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour
+    occurs in the artwork."""
     MOST = 3
-    """The artwork pixel that most of the overlapping patches put at this pixel, so that pieces of the artwork
-    stay whole up to their seams."""
+    """The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork
+    meet, each stays whole up to the seam."""
 
 
 class StylizePreset(IntEnum):
@@ -742,8 +747,8 @@ class GuideRange(IntEnum):
     LIGHT = 0
     """Linear light >= 0, such as a rendering; its values are compared as they would look on a screen."""
     DATA = 1
-    """Data, such as normals, object codes and edges; the common range of source and target is scaled to [0,
-    1]."""
+    """Data, such as normals, object codes and edges. The range of values that source and target have together
+    is scaled to [0, 1]."""
 
 
 class StylizeImage(IntEnum):
@@ -814,11 +819,11 @@ class Aov(IntFlag):
     ALBEDO = 32
     """Albedo at normal incidence. Layer Albedo, channels R G B."""
     OBJECT = 64
-    """Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit.
-    Layer IndexOB, channel X."""
+    """Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer
+    IndexOB, channel X."""
     MATERIAL = 128
-    """Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel
-    hit. Layer IndexMA, channel X."""
+    """Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer
+    IndexMA, channel X."""
     ALPHA = 256
     """Share of the pixel that surfaces cover. Layer Alpha, channel A."""
     LUMINANCE = 512
@@ -836,8 +841,8 @@ class GuidesWith(IntFlag):
     """Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are
     painted from objects of that material."""
     CAUSTICS = 8
-    """Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other
-    kinds of light. Use it for scenes in which glossy objects reflect light onto others."""
+    """Flag of luxfer_stylize_add_guides: add a guide of the caustics, at the same exposure as the other guides
+    of light. Use it for scenes in which glossy objects reflect light onto others."""
 
 
 class Lights(IntFlag):
@@ -885,8 +890,8 @@ class ContextParams(TypedDict, total=False):
     num_threads: int
     """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All
     jobs share these threads. Synchronous calls, which do their work before they return, never wait for a job:
-    they run on the calling thread or on threads of their own. Each such call gets a set of num_threads threads.
-    The context starts as many sets as calls run at the same time, and keeps up to four sets for later calls."""
+    such a call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as
+    many sets as calls run at the same time, and keeps up to four sets for later calls."""
     memory_budget_mib: int
     """Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0,
     the default: no limit. A call that would exceed the limit returns Status.OUT_OF_MEMORY. While a picture file
@@ -929,10 +934,10 @@ class PhotoMetadata:
     it: 2 mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90
     degrees, 8 counter-clockwise, 5 and 7 rotate by 90 degrees and mirror."""
     focal: float
-    """Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its
-    aspect ratio shows."""
+    """Focal length in pixels of the loaded photo; 0 if it is unknown, or if the aspect ratio shows that the
+    photo was cropped."""
     focal_error: float
-    """Standard deviation of focal, in pixels; 0 = unknown."""
+    """Standard deviation of the field focal, in pixels; 0 = unknown."""
     f_number: float
     """F-number N of the aperture; 0 = unknown."""
     exposure_time: float
@@ -945,10 +950,10 @@ class PhotoMetadata:
     the brightness keep these tags."""
     white_luminance_low: float
     """Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-    standard output sensitivity instead."""
+    standard output sensitivity and not a saturation-based speed."""
     white_luminance_high: float
-    """Upper bound of white_luminance: one stop above white_luminance. This headroom is assumed for the case
-    that the ISO speed is a recommended exposure index."""
+    """Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
+    recommended exposure index."""
     colour: FileColour
     """How the colours of the file were interpreted: FileColour."""
 
@@ -1160,8 +1165,9 @@ class LuminaireParams(TypedDict, total=False):
     """Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines
     down."""
     c0: Sequence[float]
-    """Direction of the half-plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
-    default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from above."""
+    """Direction of the half-plane C = 0; it must not be parallel to axis, and only its component perpendicular
+    to axis counts. Default (1, 0, 0). For a luminaire that shines down, C grows anticlockwise as seen from
+    above."""
     colour: Sequence[float]
     """Linear RGB colour of the light, each channel in [0, 1e15] and not all 0; only the ratio of the channels
     counts; default (1, 1, 1)."""
@@ -1207,9 +1213,9 @@ class Requirements:
     textures: int
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """Number of bounces that matter. Light with more bounces than this makes up at most the share error of all
-    light that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give
-    no such bound. For information only: no rendering ends paths at this number."""
+    """Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light
+    with more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For
+    information only: no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1263,9 +1269,9 @@ class Candidate:
     """Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals
     cancel, as for a closed box."""
     score: float
-    """Resemblance to a ceiling, in [0, 1]: a product of three factors, each in [0, 1]. They are level_area /
-    area; level_area / floor area of the scene's bounding box; and the square of the height above the scene's
-    lowest point / height of the scene. A name such as "ceiling" raises the score."""
+    """Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the
+    scene's bounding box), and the square of (height above the scene's lowest point) / (height of the scene).
+    Each of the three ratios is at most 1. A name such as "ceiling" raises the score."""
     name: str
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
@@ -1285,25 +1291,25 @@ class RenderParams(TypedDict, total=False):
     """Paths per pixel, in [1, 1048576]; default 64. With a target error, rendering stops at the latest when the
     mean number of paths per pixel reaches this value."""
     target_error: float
-    """Stop when the field error of RenderReport falls to this value, >= 0. With this target, paths go to the
-    pixels where they reduce the error most. Default 0: no target."""
+    """Stop when RenderReport.error is at most this value, >= 0. With this target, paths go to the pixels where
+    they reduce the error most. Default 0: no target."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
     """Seed of the paths; default 1."""
     pixel_error: float
-    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
-    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
-    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
-    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
-    misses the target. Default 0: no target."""
+    """Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within
+    10 % of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths
+    per pixel, even if it then misses the target. The relative error of a pixel is half the width of the 95 %
+    confidence interval of its luminance, divided by its luminance or by a tenth of the image's mean, whichever
+    is larger. The relative error of a block is the root mean square over its pixels."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     Default 0: no preview, as for final images. The preview does not change the other images."""
     relative_error: float
-    """Stop when the field relative_error of RenderReport falls to this value, >= 0. With this target, paths go
-    to the pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much
-    as in bright ones. Default 0: no target. With several targets, rendering stops when all are reached."""
+    """Stop when RenderReport.relative_error is at most this value, >= 0. With this target, paths go to the
+    pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much as in
+    bright ones. Default 0: no target. With several targets, rendering stops when all are reached."""
 
 
 @dataclass(frozen=True)
@@ -1318,8 +1324,8 @@ class RenderReport:
     discarded: int
     """Number of paths that were discarded because their radiance was not finite."""
     preview_bias: float
-    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
-    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
+    """Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x
+    8 pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview."""
     relative_error: float
     """Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the
     mean of the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer
@@ -1394,14 +1400,14 @@ class RectifyReport:
     centre; below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of
     straight edges, and not corrected. NaN if the photo has too few lines."""
     distortion_error: float
-    """Standard deviation of distortion; NaN if distortion is NaN."""
+    """Standard deviation of the field distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
-    estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point
-    make it differ from 0. The vectors of the field axes are orthogonal in any case. NaN if one of the two other
-    axes has no lines."""
+    """For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these
+    axes is estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or
+    the principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are
+    always orthogonal."""
     squareness_errors: tuple[float, float, float]
-    """Standard deviations of squareness; NaN where squareness is NaN."""
+    """Standard deviations of the field squareness; NaN where squareness is NaN."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1409,12 +1415,13 @@ class FeaturesParams(TypedDict, total=False):
 
     near_plane: float
     """Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1.
-    Its unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane."""
+    Its unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this
+    plane."""
     far_plane: float
     """Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6]
     times near_plane; default 10."""
     normal_radius: int
-    """Normals come from planes fitted in a square window; this is half the width of the window in pixels, in
+    """Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in
     [0, 64]; default 0: chosen by the photo's size."""
 
 
@@ -1471,7 +1478,7 @@ class SegmentReport:
     positive_samples: int
     """Number of samples of the positive class."""
     contradictory_pixels: int
-    """Number of pixels that strokes of both classes cover; the later stroke counts."""
+    """Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke."""
 
 
 class EmissionParams(TypedDict, total=False):
@@ -1506,69 +1513,67 @@ class EmissionParams(TypedDict, total=False):
     be 0 for other textures."""
     clip_level: float
     """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
-    clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels
-    allow. 0: no lamp counts as clipped."""
+    clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with
+    the clipped channels. 0: no lamp counts as clipped."""
     even_lamps: int
     """1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo."""
     tileable: int
-    """1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite
-    side, and a lattice is stretched to fit, by less than half a period over the whole texture. Needs
-    whole_lamps. Default 0."""
+    """1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the
+    opposite edge. A lattice is stretched until whole periods fit, by less than half a period over the whole
+    texture. Needs whole_lamps. Default 0."""
     centred: int
-    """1: a lattice is centred on the texture and then shifted by offset; default 0. A lamp, or the middle
-    between two lamps, then lies at the centre of the texture, so that the border cuts as few lamps as
-    possible."""
+    """1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's
+    centre, so that the border cuts as few lamps as possible. The field offset shifts the lattice from there.
+    Default 0."""
     candidates: int
     """Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
     lattice, in [1, 65536]; default 192."""
     law: EmissionLaw | str | int
-    """The law, which is the rule by which the texture continues the lights: EmissionLaw other than
+    """The law: the rule by which the texture continues the lights of the exemplar, EmissionLaw other than
     EmissionLaw.COPY; default EmissionLaw.BEST."""
     clean_lamps: int
-    """1, the default: lamps of one kind (of about equal size and shape) get one size and an outline that is
-    exact at any resolution, and lie exactly at the sites of their lattice; this needs the photo and
-    whole_lamps. 0: each lamp has the outline of the mask."""
+    """1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same
+    outline, which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the
+    photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
     max_magnification: float
-    """Maximum magnification of the exemplar's pixels, in [1, 1e6]: more strongly magnified pixels are left out,
-    as if the photo did not show them. 0, the default: all pixels are used. The magnification of a pixel is the
-    factor in length by which unwarping has magnified the photo there, relative to the least magnified pixel of
-    the exemplar."""
+    """Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left
+    out, as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of
+    unwarped pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar."""
 
 
 @dataclass(frozen=True)
 class EmissionReport:
-    """Description of a texture: its lamps, its law and its quality. For a plan, only the fields that need no
-    texels are set."""
+    """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
+    quality. For a plan (luxfer_emission_start_plan), only the fields that need no texels are set."""
 
     luminaires: int
     """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
     error: float
     """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
-    area of whole lamps, and the distance from a lamp to its nearest neighbour. The fewer exemplar_lamps, the
-    less reliable is this error. NaN for a plan, which has no texels yet."""
+    area of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
+    exemplar_lamps is small. NaN for a plan, which has no texels yet."""
     regularity: float
     """Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a
     lattice."""
     exemplar_lamps: int
     """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
-    cuts a large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border
-    cuts."""
+    cuts many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts."""
     sampling_error: float
-    """Estimated sampling error of the statistics that error compares: their root mean square difference between
-    the whole texture and parts of it that are as large as the exemplar. If error is at most twice this value,
-    it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
-    exemplars, and for a plan."""
+    """Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
+    ceiling: the root mean square difference of the statistics between the whole texture and parts of it that
+    are as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0
+    for EmissionLaw.WHOLE and EmissionLaw.COPY, for blended exemplars, and for a plan."""
     law: EmissionLaw
-    """The law by which the texture continues the lights: EmissionLaw."""
+    """The law (rule) by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
-    """The law with the best score among all laws but the field law: EmissionLaw."""
+    """The law with the best score among all laws that were not chosen: EmissionLaw."""
     law_score: float
-    """Score of the field law in [0, 1]: how well the law predicts each lamp of the photo from the other lamps.
+    """Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps.
     Lamps weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example
     because too few of the lights are whole lamps."""
     margin: float
-    """law_score minus the score of runner_up. Negative if the law was kept although runner_up scores slightly
-    better."""
+    """law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores
+    slightly better."""
 
 
 @dataclass(frozen=True)
@@ -1621,7 +1626,7 @@ class RelightReport:
     scale: tuple[float, float, float]
     """Factor for the emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of scale."""
+    """Half-widths of the 95 % confidence intervals of the field scale."""
     response: tuple[float, float, float]
     """Mean radiance of the target from the emission at scale 1, in cd/m² per channel."""
     background: tuple[float, float, float]
@@ -1632,9 +1637,9 @@ class RelightReport:
     """The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without
     such channels."""
     delta_e: float
-    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference between the
-    colour that the target has and the colour that it should have is below this value, at the exposure that
-    shows the target as middle grey."""
+    """Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its
+    actual colour and the wanted colour is below this value, at the exposure that shows the target as middle
+    grey."""
 
 
 class PatternParams(TypedDict, total=False):
@@ -1715,24 +1720,24 @@ class TransferReport:
     unwarp_error: float
     """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
     emission_error: float
-    """Field error of EmissionReport: largest relative difference between texture and photo in three statistics
-    of their lamps."""
+    """EmissionReport.error: largest relative difference between texture and photo in three statistics of their
+    lamps."""
     relight_error: float
-    """Field error of RelightReport: largest relative half-width of the solution's 95 % confidence intervals."""
+    """RelightReport.error: largest relative half-width of the solution's 95 % confidence intervals."""
     render_error: float
-    """Field error of RenderReport: root mean square of the rendering's standard errors, divided by its mean."""
+    """RenderReport.error: root mean square of the rendering's standard errors, divided by its mean."""
     texel_size: float
     """Length of a texel's side on the surface, in metres."""
     target: tuple[float, float, float]
     """Mean colour that the surface should have: linear RGB, where 1 is the photo's white."""
     plane_distance: float
-    """Distance in metres of the photo's camera from the plane: the distance at which the photo's pattern has
-    the size that it has on the surface; NaN before the stage EMISSION has ended, and if the caller gave the
+    """Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as
+    they are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the
     texture."""
     plane_distance_error: float
-    """Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25
-    for lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the
-    distance."""
+    """Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps,
+    it is about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings
+    determine the distance."""
     proposed_white: float
     """Value proposed for TransferParams.white_luminance in cd/m²: the white_luminance of PhotoMetadata if the
     photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office."""
@@ -1782,10 +1787,11 @@ class Warning:
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float
-    """The figure that caused the warning; the comment of each WarningCode says what it measures."""
+    """The figure that caused the warning; the comment of the WarningCode in the field code says what it
+    measures."""
     limit: float
-    """The limit that the figure has passed: an upper limit, unless the comment of the WarningCode says that the
-    figure is below the limit."""
+    """The limit that the severity has passed: an upper limit, unless the comment of the WarningCode says that
+    the severity is below the limit."""
     place: tuple[float, float]
     """The place in the photo, x and y in pixels; 0 if the warning has no place."""
     message: str
@@ -1803,9 +1809,9 @@ class IlluminanceGrid(TypedDict, total=False):
     origin: Sequence[float]
     """Corner of the grid, in metres; default (0, 0, 0)."""
     across: Sequence[float]
-    """Vector in metres along the edge of the grid on which the columns are counted; default (1, 0, 0)."""
+    """First edge of the grid, a vector from origin in metres; it is divided into columns. Default (1, 0, 0)."""
     down: Sequence[float]
-    """Vector in metres along the edge of the grid on which the rows are counted; default (0, 0, 1)."""
+    """Second edge of the grid, a vector from origin in metres; it is divided into rows. Default (0, 0, 1)."""
     normal: Sequence[float]
     """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
 
@@ -1848,22 +1854,21 @@ class LampsParams(TypedDict, total=False):
     """Largest gap between neighbouring lamps in one row, for Group.BY_X, _Y and _Z: the difference of their
     coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row."""
     free_colour: int
-    """1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
-    luxfer_lamps_add_mesh does; 0, the default: solve for the power only."""
+    """1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
+    luxfer_lamps_add_mesh. 0, the default: solve for the power only."""
     max_scale: float
     """Largest factor for the emission of a group, >= 0; default infinity."""
     regularisation: float
     """Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals
     are met, with large values the powers are nearly equal."""
     tolerance: float
-    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The
-    noise of the goal's light is added to this tolerance."""
+    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the
+    goal's light; default 0.01."""
     paths: int
     """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop tracing when, for every goal, the light that its surface or grid receives from all lamps together is
-    known to this accuracy: the relative half-width of the 95 % confidence interval, in [0, 1]; default 0.01; 0:
-    do not stop for this reason."""
+    """Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light
+    from all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason."""
     time_budget_ms: int
     """Stop tracing after this number of milliseconds; default 0: no limit."""
     seed: int
@@ -1898,7 +1903,7 @@ class Lamp:
     scale: tuple[float, float, float]
     """Factor for the lamp's emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of scale."""
+    """Half-widths of the 95 % confidence intervals of the field scale."""
 
 
 @dataclass(frozen=True)
@@ -1913,17 +1918,17 @@ class LampsGoal:
     achieved: tuple[float, float, float]
     """Mean radiance of the goal's surface with the powers found, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of achieved."""
+    """Half-widths of the 95 % confidence intervals of the field achieved, in cd/m²."""
     background: tuple[float, float, float]
     """Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel."""
     target_lux: float
-    """Target in lux: pi times the luminance of target. This field and the three fields below are set only for
-    goals of illuminance: grids, and meshes with Quantity.INCIDENT. They are 0 for other goals."""
+    """Target in lux: pi times the luminance of the field target. This field and the three fields below are set
+    only for goals of illuminance: grids, and meshes with Quantity.INCIDENT. They are 0 for other goals."""
     achieved_lux: float
     """Illuminance with the powers found, in lux."""
     half_width_lux: float
-    """Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, as if the
-    errors of all channels had one sign."""
+    """Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if
+    the errors of all channels have the same sign."""
     background_lux: float
     """Illuminance from all light but the lamps, in lux."""
 
@@ -1935,7 +1940,7 @@ class LampsResponse:
     mean: tuple[float, float, float]
     """Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of mean."""
+    """Half-widths of the 95 % confidence intervals of the field mean, in cd/m²."""
 
 
 class ImportanceParams(TypedDict, total=False):
@@ -1950,8 +1955,8 @@ class ImportanceParams(TypedDict, total=False):
     paths: int
     """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the light that the target would receive from a uniform emission is known to this accuracy: the
-    relative half-width of its 95 % confidence interval, in [0, 1]; default 0.01; 0: do not stop for this
+    """Stop when the relative half-width of the 95 % confidence interval of the light that the target would
+    receive from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this
     reason."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
@@ -1968,10 +1973,10 @@ class ImportanceReport:
     response: tuple[float, float, float]
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of response."""
+    """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     band_error: tuple[float, float, float]
-    """Measure of the error that comes from the size of the map's cells: the change of response, noise included,
-    if the cells had twice the width and height. The error is about a third of this change."""
+    """Change of the field response, noise included, if the map's cells had twice the width and height. The
+    error that comes from the size of the cells is about a third of this change."""
 
 
 class PlacementParams(TypedDict, total=False):
@@ -1988,8 +1993,8 @@ class PlacementParams(TypedDict, total=False):
     min_offset: Sequence[float]
     """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
-    """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. If a smallest and a largest value
-    are equal, here and in the fields below, the value is fixed."""
+    """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and
+    max_offset fix the offset; likewise for the fields below."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
@@ -2018,10 +2023,10 @@ class Placement:
     response: tuple[float, float, float]
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of response."""
+    """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     band_error: tuple[float, float, float]
-    """Measure of the error that comes from the size of the map's cells: the change of response, noise included,
-    if the cells had twice the width and height. The error is about a third of this change."""
+    """Change of the field response, noise included, if the map's cells had twice the width and height. The
+    error that comes from the size of the cells is about a third of this change."""
 
 
 @dataclass(frozen=True)
@@ -2066,11 +2071,11 @@ class ObserverGlare:
     background: float
     """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
     background_error: float
-    """Standard error of background, in cd/m²."""
+    """Standard error of the field background, in cd/m²."""
     unrated_lux: float
-    """Direct illuminance at the eye in lux from the lights that ugr leaves out: luminaires that are seen edge-
-    on or whose file has no dimensions, point, spot and directional lights, emissive surfaces, and the
-    environment."""
+    """Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional
+    lights, emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no
+    dimensions."""
     solid_angle: float
     """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
     sources: int
@@ -2118,13 +2123,13 @@ class TemperatureFit:
     kelvin: float
     """Correlated colour temperature, in [1000, 20000] kelvin."""
     luminance: float
-    """Luminance of the emission, >= 0; in cd/m² if the argument response was measured for a white emission of 1
-    cd/m²."""
+    """Luminance of the emission, >= 0. It is in cd/m² if the array response of luxfer_fit_temperature was
+    measured for a white emission of 1 cd/m²."""
     achieved: tuple[float, float, float]
-    """Mean radiance of the target from this light and all other light, in cd/m²."""
+    """Mean radiance of the target from this light and all other lights together, in cd/m²."""
     delta_e: float
-    """CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted
-    radiance as middle grey."""
+    """CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the
+    wanted radiance as middle grey."""
 
 
 @dataclass(frozen=True)
@@ -2181,26 +2186,28 @@ class StylizeParams(TypedDict, total=False):
     levels: int
     """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6."""
     iterations: int
-    """Rounds of matching and painting on the second finest level, in [1, 100]; default 6."""
+    """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
+    voting."""
     finest_iterations: int
-    """Rounds of matching and painting on the finest level, in [1, 100]; default 1."""
+    """Rounds (EM iterations) on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Additional rounds on the finest level, in [0, 100]; default 3; the paper has 0. In StylizeMode.BUDGET
-    each target patch takes its nearest match in these rounds, without the error budget. In other modes these
-    are additional rounds of that mode."""
+    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
+    StylizeMode.BUDGET each target patch takes its nearest match in these rounds, without the error budget. In
+    other modes these are additional rounds of that mode."""
     sweeps: int
     """Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
     """Share of the target that is matched under the error budget before the rest is matched without it, in [0,
     1]; default 0.9."""
     passes: int
-    """Maximum number of matching passes under the error budget in one round, in [1, 1000]; default 6."""
+    """Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000];
+    default 6."""
     settle: int
-    """Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In these sweeps a target
-    patch may continue the match of its neighbour, which leaves fewer seams."""
+    """Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target
+    patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams."""
     seam: float
-    """Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0,
-    100]; default 0.2."""
+    """Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It
+    applies to the sweeps after each matching; see settle."""
     vote: StylizeVote | str | int
     """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
@@ -2213,23 +2220,24 @@ class StylizeParams(TypedDict, total=False):
     free it."""
     coherence: float
     """Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint
-    changes from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It
-    needs luxfer_stylize_set_motion; without it, it has no effect."""
+    changes from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. No
+    effect without luxfer_stylize_set_motion."""
     match_appearance: float
-    """Degree to which the brightness and contrast of the exemplar's guides of light are adapted to the target's
-    guides of light, in [0, 1]; 0, the default: not at all."""
+    """Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the
+    target's light guides, in [0, 1]; 0, the default: not at all."""
     seed: int
     """Seed of the search; default 1."""
     coarse_guides: float
     """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
     larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
     coarse_iterations: int
-    """Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6."""
+    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
+    has 6."""
     occurrence: float
-    """Weight lambda of the usage of a patch in StylizeMode.OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
-    al. found best by hand (Fig. 10n). A match to a patch of average usage costs lambda in addition to its
-    distance. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0
-    is StylizeMode.NEAREST."""
+    """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; 0 is
+    StylizeMode.NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a patch
+    of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
+    differences of channels in [0, 1] (Eq. 1)."""
 
 
 @dataclass(frozen=True)
@@ -2264,7 +2272,7 @@ class StylizeReport:
 
 @dataclass(frozen=True)
 class StylizeRound:
-    """One round of matching and painting on a level."""
+    """One round (EM iteration) on a level: matching, then voting."""
 
     passes: int
     """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
@@ -2277,8 +2285,8 @@ class StylizePass:
     """One matching pass under the error budget, in StylizeMode.BUDGET."""
 
     knee: float
-    """Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the
-    knee of the sorted matching errors, where they begin to rise steeply."""
+    """Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which
+    the sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
     new_matches: int
@@ -2289,8 +2297,8 @@ class SheetParams(TypedDict, total=False):
     """Settings of a print sheet."""
 
     even_light: int
-    """1, the default: correct uneven lighting of the photo by the white of the marks, so that paper has the
-    value 1; 0: no correction."""
+    """1, the default: correct uneven lighting of the photo by the brightness of the white in the marks, so that
+    paper gets the value 1; 0: no correction."""
     paper_width: float
     """Width of the paper in millimetres, in [60, 2000]; default 297."""
     paper_height: float
@@ -2320,7 +2328,7 @@ class SheetReport:
 
 
 class PlanParams(TypedDict, total=False):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+    """Goal of a plan, a time or an error: set exactly one of time_budget_ms and target_error."""
 
     time_budget_ms: int
     """Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error."""
@@ -2333,8 +2341,7 @@ class PlanReport:
     """Times and errors that a plan predicts."""
 
     relights: int
-    """1 if the plan includes relighting, which a plan of a transfer does; 0 for a plan of a rendering or a
-    stylisation."""
+    """1 for a plan of a transfer, which includes relighting; 0 for a plan of a rendering or a stylisation."""
     seconds: float
     """Predicted seconds for all planned work."""
     error: float
@@ -2345,8 +2352,8 @@ class PlanReport:
     relight_error: float
     """Predicted value of RelightReport.error; 0 unless the plan is of a transfer."""
     render_seconds: float
-    """Predicted seconds for rendering; in a plan of a transfer they include the preparation of the scene; 0 in
-    a plan of a stylisation."""
+    """Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a
+    plan of a stylisation."""
     render_error: float
     """Predicted value of RenderReport.error; 0 in a plan of a stylisation."""
 
