@@ -15,8 +15,10 @@ export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/null || echo 
 
 .PHONY: dist-all dist-check dist-setup dist-sums
 
+# The wheels also hold the page of the studio, where npm can build it.
 dist-setup:
 	@bindings/dist/setup.sh
+	@command -v npm >/dev/null && $(MAKE) --no-print-directory studio || echo "no npm: the wheels have no page of the studio" >&2
 
 # One target after the other: each build uses all processors and much memory.
 dist-all: dist-setup

@@ -44,7 +44,7 @@ split() {
 
 # Linux: what `make install` installs.
 stage_linux() {
-  CARGO_BUILD_TARGET="$triple" make --no-print-directory -s install PROFILE="$built" DESTDIR="$top" PREFIX= OBJCOPY="${prefix}objcopy"
+  CARGO_BUILD_TARGET="$triple" make --no-print-directory -s install PROFILE="$built" DESTDIR="$stage" PREFIX="/$name" OBJCOPY="${prefix}objcopy"
   mkdir -p "$top-debug/lib"
   mv "$top/lib/.debug" "$top-debug/lib/.debug"
 }

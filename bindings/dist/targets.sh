@@ -14,10 +14,10 @@ glibc=2.17
 emulator="" runs=yes tag="" archive=tar.gz library=libluxfer.so
 case "$target" in
   linux-x86_64)
-    triple=x86_64-unknown-linux-gnu prefix="" tag="manylinux_2_17_x86_64.manylinux2014_x86_64"
+    triple=x86_64-unknown-linux-gnu prefix="" tag=manylinux_2_17_x86_64
     ;;
   linux-aarch64)
-    triple=aarch64-unknown-linux-gnu prefix=aarch64-linux-gnu- tag="manylinux_2_17_aarch64.manylinux2014_aarch64"
+    triple=aarch64-unknown-linux-gnu prefix=aarch64-linux-gnu- tag=manylinux_2_17_aarch64
     emulator="qemu-aarch64 -L /usr/aarch64-linux-gnu"
     ;;
   windows-x86_64)
