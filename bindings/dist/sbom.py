@@ -28,25 +28,23 @@ def metadata(triple: str) -> dict:
     return json.loads(subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout)
 
 
-def is_linked(package: dict) -> bool:
-    """Whether code of a package gets into what depends on it; macros run in the compiler only."""
-    return not any("proc-macro" in target["kind"] for target in package["targets"])
+def named_by_tree(triple: str) -> set[tuple[str, str]]:
+    """Names and versions of the crates that are linked. Only `cargo tree` chooses features as a build without tests does."""
+    command = [CARGO, "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}", "--target", triple]
+    tree = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return set(re.findall(r"^(\S+) v(\S+)", tree, re.M))
 
 
-def linked(data: dict) -> dict[str, list[str]]:
+def linked(data: dict, triple: str) -> dict[str, list[str]]:
     """The identifiers of the linked packages, and of the packages that each of them needs."""
-    packages = {package["id"]: package for package in data["packages"]}
-    nodes = {node["id"]: node for node in data["resolve"]["nodes"]}
-    found: dict[str, list[str]] = {}
-    waiting = [data["resolve"]["root"]]
-    while waiting:
-        node = nodes[waiting.pop()]
-        if node["id"] in found:
-            continue
-        normal = (d["pkg"] for d in node["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"]))
-        found[node["id"]] = sorted(i for i in normal if is_linked(packages[i]))
-        waiting += found[node["id"]]
-    return found
+    named = named_by_tree(triple)
+    chosen = {package["id"] for package in data["packages"] if (package["name"], package["version"]) in named}
+    needs = {}
+    for node in data["resolve"]["nodes"]:
+        if node["id"] in chosen:
+            normal = (d["pkg"] for d in node["deps"] if any(kind["kind"] is None for kind in d["dep_kinds"]))
+            needs[node["id"]] = sorted(i for i in normal if i in chosen)
+    return needs
 
 
 def checksums() -> dict[tuple[str, str], str]:
@@ -87,9 +85,10 @@ def standard_library() -> dict:
 
 
 def bill(triple: str) -> dict:
-    data = metadata(ALIASES.get(triple, triple))
+    real = ALIASES.get(triple, triple)
+    data = metadata(real)
     packages = {package["id"]: package for package in data["packages"]}
-    needs, sums, std = linked(data), checksums(), standard_library()
+    needs, sums, std = linked(data, real), checksums(), standard_library()
     root = data["resolve"]["root"]
     own = component(packages[root], sums)
     own["properties"] = [{"name": "target", "value": triple}]
