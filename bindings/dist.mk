@@ -8,7 +8,7 @@
 #                    results bit by bit, and writes the table of the guide; make dist-check TARGETS=linux-x86_64 for one
 # make dist-setup    installs compilers and emulators (Debian packages, PyPI, rustup); the other commands call it
 
-TARGETS   ?= linux-x86_64 linux-aarch64 windows-x86_64 linux-x86_64-musl macos-universal
+TARGETS   ?= linux-x86_64 linux-aarch64 windows-x86_64
 DIST      := out/dist
 # The file times in all packages, so that equal sources give equal packages: the time of the last commit.
 export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/null || echo 1735689600)

@@ -18,8 +18,8 @@ step() { echo "== $target: $1"; }
 build() {
   RUSTFLAGS="--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo --remap-path-prefix=$root=luxfer"
   case "$target" in
-    # The time of linking would be in the library. Threads and unwinding come from the static libraries of the
-    # compiler, so that the DLL needs nothing but Windows.
+    # The time of linking would be in the library. Unwinding comes from the compiler's static library, so that the DLL
+    # needs nothing but Windows.
     windows-*) RUSTFLAGS="$RUSTFLAGS -C link-arg=-Wl,--no-insert-timestamp -C link-arg=-static-libgcc" ;;
   esac
   export RUSTFLAGS
@@ -29,7 +29,6 @@ build() {
       CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=x86_64-w64-mingw32-gcc-posix \
         "$CARGO" build --release --lib --locked --target "$triple" --target-dir target/dist
       ;;
-    *-musl | macos-*) "$CARGO" zigbuild --release --lib --locked --target "$triple" --target-dir target/dist ;;
     *) "$CARGO" zigbuild --release --lib --locked --target "$triple.$glibc" --target-dir target/dist ;;
   esac
 }
@@ -49,14 +48,6 @@ stage_linux() {
   mv "$top/lib/.debug" "$top-debug/lib/.debug"
 }
 
-common_files() { # of the targets that `make install` does not install
-  mkdir -p "$top/include/luxfer" "$top/lib/pkgconfig" "$top/lib/cmake/luxfer" "$top/share/doc/luxfer"
-  cp include/luxfer.h bindings/cpp/luxfer.hpp "$top/include"
-  cp include/luxfer/*.h bindings/cpp/luxfer/*.hpp "$top/include/luxfer"
-  cp LICENSE-APACHE LICENSE-MIT README.md "$top/share/doc/luxfer"
-  CARGO="$CARGO" CARGO_BUILD_TARGET="$one_triple" bindings/third_party.sh >"$top/share/doc/luxfer/THIRD-PARTY.txt"
-}
-
 # fill TEMPLATE FILE [SED-OPTIONS...]: fills in a template, as bindings/install.mk does.
 fill() {
   template="$1" file="$2"
@@ -65,14 +56,13 @@ fill() {
   sed -e "s|@VERSION@|$version|g" -e "s|@ABI@|$abi|g" "$@" "$template" >"$file"
 }
 
-cmake_version() {
-  fill bindings/cmake/luxferConfigVersion.cmake.in "$top/lib/cmake/luxfer/luxferConfigVersion.cmake"
-}
-
 # Windows: the DLL in bin, where programs and Windows look for it; one import library for MinGW, one for MSVC.
 stage_windows() {
-  common_files
-  mkdir -p "$top/bin"
+  mkdir -p "$top/bin" "$top/include/luxfer" "$top/lib/pkgconfig" "$top/lib/cmake/luxfer" "$top/share/doc/luxfer"
+  cp include/luxfer.h bindings/cpp/luxfer.hpp "$top/include"
+  cp include/luxfer/*.h bindings/cpp/luxfer/*.hpp "$top/include/luxfer"
+  cp LICENSE-APACHE LICENSE-MIT README.md "$top/share/doc/luxfer"
+  CARGO="$CARGO" CARGO_BUILD_TARGET="$triple" bindings/third_party.sh >"$top/share/doc/luxfer/THIRD-PARTY.txt"
   cp "$built/luxfer.dll" "$top/bin"
   (cd "$top/bin" && split luxfer.dll luxfer.dll.debug)
   mkdir -p "$top-debug/bin"
@@ -86,23 +76,7 @@ stage_windows() {
   (cd "$top/lib" && python -m ziglang dlltool -m i386:x86-64 -D luxfer.dll -d luxfer.def -l luxfer.lib)
   fill bindings/pkgconfig/luxfer.pc.in "$top/lib/pkgconfig/luxfer.pc" -e 's|@INCLUDEDIR@|../../include|' -e '/^#.*native-static-libs/d' -e '/^Libs.private/d'
   fill bindings/dist/luxferConfig-windows.cmake.in "$top/lib/cmake/luxfer/luxferConfig.cmake"
-  cmake_version
-}
-
-# musl: a static library alone, for programs that are linked statically and then run on any Linux.
-stage_musl() {
-  common_files
-  cp "$built/libluxfer.a" "$top/lib"
-  objcopy --strip-debug "$top/lib/libluxfer.a"
-  fill bindings/pkgconfig/luxfer.pc.in "$top/lib/pkgconfig/luxfer.pc" -e 's|@INCLUDEDIR@|../include|' -e '/^#.*native-static-libs/d' -e '/^Libs.private/d'
-  rmdir "$top/lib/cmake/luxfer" "$top/lib/cmake"
-}
-
-stage_macos() {
-  common_files
-  cp "$built/libluxfer.dylib" "$top/lib"
-  fill bindings/pkgconfig/luxfer.pc.in "$top/lib/pkgconfig/luxfer.pc" -e 's|@INCLUDEDIR@|../include|' -e '/^#.*native-static-libs/d' -e '/^Libs.private/d'
-  rmdir "$top/lib/cmake/luxfer" "$top/lib/cmake"
+  fill bindings/cmake/luxferConfigVersion.cmake.in "$top/lib/cmake/luxfer/luxferConfigVersion.cmake"
 }
 
 # The Python package with the staged library. It is built in a copy, because setuptools would put what it built for one
@@ -120,7 +94,6 @@ wheel() {
     --config-settings="--build-option=--plat-name=$tag" --wheel-dir "$out" "$copy/bindings/python"
 }
 
-[ "$triple" = universal2-apple-darwin ] && one_triple=aarch64-apple-darwin || one_triple="$triple"
 step "library"
 build
 
@@ -129,11 +102,9 @@ top="$stage/$name"
 rm -rf "$stage"
 mkdir -p "$top" "$out"
 rm -f "$out/$name".* "$out/$name-debug".*
-[ -z "$tag" ] || rm -f "$out"/luxfer-*-"$tag".whl
+rm -f "$out"/luxfer-*-"$tag".whl
 case "$target" in
   windows-*) stage_windows ;;
-  macos-*) stage_macos ;;
-  *-musl) stage_musl ;;
   *) stage_linux ;;
 esac
 python bindings/dist/sbom.py "$triple" >"$top/share/doc/luxfer/luxfer.cdx.json"
@@ -144,7 +115,5 @@ python bindings/dist/archive.py "$top" "$out/$name.$archive"
   python bindings/dist/archive.py "$stage/debug/$name" "$out/$name-debug.tar.gz"
 }
 
-if [ -n "$tag" ]; then
-  step "wheel"
-  wheel "$(find "$top" -name "$library" -type f -o -name "$library.*.*.*" -type f)"
-fi
+step "wheel"
+wheel "$(find "$top" -name "$library" -type f -o -name "$library.*.*.*" -type f)"

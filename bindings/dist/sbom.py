@@ -19,8 +19,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 CARGO = os.environ.get("CARGO", "cargo")
-#: A universal library contains the code of two processors, which is made of the same crates.
-ALIASES = {"universal2-apple-darwin": "aarch64-apple-darwin"}
 
 
 def metadata(triple: str) -> dict:
@@ -85,10 +83,9 @@ def standard_library() -> dict:
 
 
 def bill(triple: str) -> dict:
-    real = ALIASES.get(triple, triple)
-    data = metadata(real)
+    data = metadata(triple)
     packages = {package["id"]: package for package in data["packages"]}
-    needs, sums, std = linked(data, real), checksums(), standard_library()
+    needs, sums, std = linked(data, triple), checksums(), standard_library()
     root = data["resolve"]["root"]
     own = component(packages[root], sums)
     own["properties"] = [{"name": "target", "value": triple}]

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 packages="gcc-aarch64-linux-gnu g++-aarch64-linux-gnu gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix qemu-user wine64
   cmake pkg-config python3-venv"
-targets="aarch64-unknown-linux-gnu x86_64-pc-windows-gnu x86_64-unknown-linux-musl x86_64-apple-darwin aarch64-apple-darwin"
+targets="aarch64-unknown-linux-gnu x86_64-pc-windows-gnu"
 
 missing=""
 for package in $packages; do dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"; done

@@ -1,17 +1,16 @@
 # Sourced by pack.sh and check.sh: sets for the target $target
 #
 #   triple        the target as Rust names it
-#   library       the file name of the shared library, or of the static one where there is no shared one
+#   library       the file name of the shared library
 #   archive       the ending of the archive
-#   tag           the platform tag of the Python wheel; empty: no wheel
+#   tag           the platform tag of the Python wheel
 #   prefix        the prefix of the GNU tools for it (objcopy, gcc)
 #   emulator      the command that runs its programs here; empty: none is needed
-#   runs          "yes" if its programs can be run here
 root="$(cd "$(dirname "$0")/../.." && pwd)"
 version="$(sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' "$root/Cargo.toml")"
 # The oldest C library of GNU on which the Linux libraries run: that of manylinux2014, and the oldest that Rust supports.
 glibc=2.17
-emulator="" runs=yes tag="" archive=tar.gz library=libluxfer.so
+emulator="" archive=tar.gz library=libluxfer.so
 case "$target" in
   linux-x86_64)
     triple=x86_64-unknown-linux-gnu prefix="" tag=manylinux_2_17_x86_64
@@ -24,8 +23,6 @@ case "$target" in
     triple=x86_64-pc-windows-gnu prefix=x86_64-w64-mingw32- tag=win_amd64 archive=zip library=luxfer.dll
     emulator="wine64"
     ;;
-  linux-x86_64-musl) triple=x86_64-unknown-linux-musl prefix="" library=libluxfer.a ;;
-  macos-universal) triple=universal2-apple-darwin prefix="" tag=macosx_11_0_universal2 library=libluxfer.dylib runs=no ;;
   *)
     echo "no target $target" >&2
     exit 2
