@@ -10,8 +10,6 @@
 
 TARGETS   ?= linux-x86_64 linux-aarch64 windows-x86_64
 DIST      := out/dist
-# The file times in all packages, so that equal sources give equal packages: the time of the last commit.
-export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/null || echo 1735689600)
 
 .PHONY: dist-all dist-check dist-setup dist-sums
 

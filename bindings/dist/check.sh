@@ -26,11 +26,11 @@ compilers() {
   case "$target" in
     windows-*)
       cc="${prefix}gcc-posix" cxx="${prefix}g++-posix" system=Windows exe=.exe
-      # The programs contain the C++ library, so that they need nothing but luxfer.dll.
-      flags="$flags -static-libgcc -static-libstdc++ -Wl,-Bstatic,-lwinpthread,-Bdynamic"
+      flags="$flags -static-libgcc -static-libstdc++"
       export WINEDEBUG=-all WINEPREFIX="$root/target/dist/wine" WINEPATH="$scratch/run"
       mkdir -p "$scratch/run"
-      cp "$top/bin/luxfer.dll" "$scratch/run"
+      # Programs in C++ by MinGW need its DLL of threads; luxfer.dll itself does not.
+      cp "$top/bin/luxfer.dll" "$($cc -print-file-name=libwinpthread-1.dll)" "$scratch/run"
       "$cc" -shared -O1 "$root/bindings/dist/bcryptprimitives.c" -o "$scratch/run/bcryptprimitives.dll" -ladvapi32
       ;;
     linux-aarch64) system=Linux emulator="$emulator -E LD_LIBRARY_PATH=$top/lib" ;;
@@ -68,7 +68,7 @@ run() { # NAME [ARGUMENTS...]
   else
     failed="$failed $program"
     echo "$program: FAILED"
-    tail -5 "$scratch/run/$program.err" "$scratch/run/$program.out"
+    cat "$scratch/run/$program.err" "$scratch/run/$program.out" | tail -n 8
   fi
   programs=$((programs + 1))
 }
@@ -139,7 +139,7 @@ for source in "$root"/tests/dist/*.c "$root"/examples_c/minimal.c "$root"/exampl
   compile "$source" "$scratch/run/$program" || fail "compiling $source"
   case "$program" in same_bits) run same_bits . ;; *) run "$program" ;; esac
 done
-tool="${emulator%% *}"
+tool="${emulator%% *}" tool="${tool##*/}"
 say runs "${tool:-natively}"
 say passed "$passed of $programs${failed:+, not:$failed}"
 step "bits"
@@ -161,3 +161,4 @@ else
   say wheel "built, not run"
 fi
 mv "$report.part" "$report"
+[ -z "$failed" ] || fail "programs:$failed"

@@ -38,7 +38,7 @@ split() {
   mkdir -p "$(dirname "$2")"
   "${prefix}objcopy" --only-keep-debug "$1" "$2"
   chmod 644 "$2"
-  "${prefix}objcopy" --strip-debug --add-gnu-debuglink="$2" "$1"
+  "${prefix}objcopy" --strip-all --add-gnu-debuglink="$2" "$1"
 }
 
 # Linux: what `make install` installs.

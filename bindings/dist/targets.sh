@@ -21,7 +21,8 @@ case "$target" in
     ;;
   windows-x86_64)
     triple=x86_64-pc-windows-gnu prefix=x86_64-w64-mingw32- tag=win_amd64 archive=zip library=luxfer.dll
-    emulator="wine64"
+    # Debian keeps it out of PATH where the package `wine` is not installed too.
+    emulator="$(command -v wine64 || echo /usr/lib/wine/wine64)"
     ;;
   *)
     echo "no target $target" >&2
@@ -33,6 +34,9 @@ built="$root/target/dist/$triple/release"
 name="luxfer-$version-$target"
 stage="$root/target/dist/stage/$target"
 out="$root/out/dist"
+# The time of all files in the packages, so that equal sources give equal packages: that of the last commit.
+SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || echo 1735689600)}"
+export SOURCE_DATE_EPOCH
 PATH="$root/target/peers/dist/bin:$PATH"
 export PATH
 
