@@ -10,6 +10,7 @@
 # make clean  removes all built files
 #
 # make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
+# make dist-all, make dist-check: packages for Linux and Windows, and what runs of them here: bindings/dist.mk
 
 CARGO   ?= cargo
 CC      ?= cc
@@ -41,6 +42,7 @@ lib:
 	@ln -sf libluxfer.so $(SONAME)
 
 include bindings/install.mk
+include bindings/dist.mk
 
 out/%: examples_c/%.c examples_c/common.h examples_c/panels.h include/luxfer.h $(wildcard include/luxfer/*.h) lib
 	@mkdir -p out

@@ -1,9 +1,12 @@
 """Packs the library into the wheel, which therefore fits one platform and any Python; builds the library if it is
 missing.
 
-The version and the licences come from the library's source tree, which contains this folder.
+The version and the licences come from the library's source tree, which contains this folder. LUXFER_WHEEL_LIBRARY names
+a library without debug symbols, of any platform, to be packed instead (bindings/dist); the option --plat-name of
+bdist_wheel then names the platform.
 """
 
+import os
 import re
 import shutil
 import subprocess
@@ -17,8 +20,11 @@ from setuptools.dist import Distribution
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+GIVEN = os.environ.get("LUXFER_WHEEL_LIBRARY")
 NAME = {"darwin": "libluxfer.dylib", "win32": "luxfer.dll"}.get(sys.platform, "libluxfer.so")
-LIBRARY = ROOT / "target" / "release" / NAME
+if GIVEN:
+    NAME = re.sub(r"\.so\..*", ".so", Path(GIVEN).name)
+LIBRARY = Path(GIVEN) if GIVEN else ROOT / "target" / "release" / NAME
 PAGE = HERE / "luxfer" / "studio" / "static" / "index.html"
 
 
@@ -39,7 +45,8 @@ class BuildPy(build_py):
         if not self.editable_mode:
             self.copied().parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(LIBRARY, self.copied())
-            if strip := shutil.which("strip"):  # nine tenths of the file are debug information
+            strip = None if GIVEN else shutil.which("strip")
+            if strip:  # nine tenths of the file are debug information
                 subprocess.run([strip, "-S" if sys.platform == "darwin" else "--strip-debug", self.copied()], check=True)
 
     def copied(self) -> Path:

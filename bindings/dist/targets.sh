@@ -1,0 +1,46 @@
+# Sourced by pack.sh and check.sh: sets for the target $target
+#
+#   triple        the target as Rust names it
+#   library       the file name of the shared library
+#   archive       the ending of the archive
+#   tag           the platform tag of the Python wheel
+#   prefix        the prefix of the GNU tools for it (objcopy, gcc)
+#   emulator      the command that runs its programs here; empty: none is needed
+root="$(cd "$(dirname "$0")/../.." && pwd)"
+version="$(sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' "$root/Cargo.toml")"
+# The oldest C library of GNU on which the Linux libraries run: that of manylinux2014, and the oldest that Rust supports.
+glibc=2.17
+emulator="" archive=tar.gz library=libluxfer.so
+case "$target" in
+  linux-x86_64)
+    triple=x86_64-unknown-linux-gnu prefix="" tag=manylinux_2_17_x86_64
+    ;;
+  linux-aarch64)
+    triple=aarch64-unknown-linux-gnu prefix=aarch64-linux-gnu- tag=manylinux_2_17_aarch64
+    emulator="qemu-aarch64 -L /usr/aarch64-linux-gnu"
+    ;;
+  windows-x86_64)
+    triple=x86_64-pc-windows-gnu prefix=x86_64-w64-mingw32- tag=win_amd64 archive=zip library=luxfer.dll
+    # Debian keeps it out of PATH where the package `wine` is not installed too.
+    emulator="$(command -v wine64 || echo /usr/lib/wine/wine64)"
+    ;;
+  *)
+    echo "no target $target" >&2
+    exit 2
+    ;;
+esac
+# What cargo has built, the folder to be packed, and the folder of the packages.
+built="$root/target/dist/$triple/release"
+name="luxfer-$version-$target"
+stage="$root/target/dist/stage/$target"
+out="$root/out/dist"
+# The time of all files in the packages, so that equal sources give equal packages: that of the last commit.
+SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || echo 1735689600)}"
+export SOURCE_DATE_EPOCH
+PATH="$root/target/peers/dist/bin:$PATH"
+export PATH
+
+fail() {
+  echo "failed: $1" >&2
+  exit 1
+}

@@ -1,0 +1,91 @@
+"""Tests of the scripts that pack the library (bindings/dist), without building it: equal contents give equal archives,
+and the bill of materials lists what is linked, as Cargo.lock and the notices of the licences have it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import tempfile
+import tomllib
+import unittest
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+DIST = ROOT / "bindings" / "dist"
+TRIPLE = "x86_64-unknown-linux-gnu"
+
+
+class Archives(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def pack(self, place, names, ending, epoch="1700000000"):
+        """Packs a folder whose files are made in the order of `names`; the modification times are those of now."""
+        top = self.folder / place / "luxfer-1"
+        (top / "lib").mkdir(parents=True)
+        for name in names:
+            (top / name).write_text(f"content of {name}")
+        (top / "lib" / "tool").chmod(0o700)
+        (top / "lib" / "libluxfer.so").symlink_to("b")
+        archive = self.folder / place / f"packed{ending}"
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": epoch}
+        subprocess.run([sys.executable, DIST / "archive.py", top, archive], check=True, env=environment)
+        return archive
+
+    def test_equal_contents_give_equal_bytes(self):
+        for ending in (".tar.gz", ".zip"):
+            first = self.pack("one" + ending, ["a", "lib/b", "lib/tool"], ending).read_bytes()
+            self.assertEqual(first, self.pack("two" + ending, ["lib/tool", "lib/b", "a"], ending).read_bytes())
+            self.assertNotEqual(first, self.pack("later" + ending, ["a", "lib/b", "lib/tool"], ending, "1800000000").read_bytes())
+
+    def test_links_modes_and_contents(self):
+        with tarfile.open(self.pack("tar", ["lib/b", "lib/tool"], ".tar.gz")) as tar:
+            self.assertEqual(tar.getmember("luxfer-1/lib/libluxfer.so").linkname, "b")
+            self.assertEqual(tar.getmember("luxfer-1/lib/tool").mode, 0o755)
+            self.assertEqual(tar.getmember("luxfer-1/lib/b").mode, 0o644)
+            self.assertEqual({m.uid for m in tar} | {m.gid for m in tar}, {0})
+        with zipfile.ZipFile(self.pack("zip", ["lib/b", "lib/tool"], ".zip")) as packed:
+            self.assertEqual(packed.read("luxfer-1/lib/libluxfer.so"), b"content of lib/b")
+
+
+class Bill(unittest.TestCase):
+    def bill(self, triple):
+        return subprocess.run([sys.executable, DIST / "sbom.py", triple], check=True, capture_output=True).stdout
+
+    def test_it_lists_the_linked_crates(self):
+        text = self.bill(TRIPLE)
+        self.assertEqual(text, self.bill(TRIPLE))
+        bill = json.loads(text)
+        self.assertEqual((bill["bomFormat"], bill["specVersion"]), ("CycloneDX", "1.5"))
+        components = {(c["name"], c["version"]): c for c in bill["components"]}
+        # The notices that are packed beside it also name macros, which are not linked, and what they need.
+        notices = subprocess.run([ROOT / "bindings" / "third_party.sh"], check=True, capture_output=True, text=True).stdout
+        named = set(re.findall(r"^==== (\S+) v(\S+) \(", notices, re.M))
+        self.assertGreater(len(named), 50)
+        self.assertEqual({k for k in components if k[0] != "rust-std"} - named, set())
+        names = {name for name, _ in components}
+        self.assertLessEqual({"exr", "image", "gltf", "glam", "rayon-core", "rust-std"}, names)
+        self.assertFalse({"syn", "quote", "serde_derive", "cbindgen", "luxfer"} & names)
+
+        sums = {(p["name"], p["version"]): p.get("checksum") for p in tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]}
+        for key, component in components.items():
+            self.assertTrue(component["licenses"][0]["expression"], key)
+            if key[0] != "rust-std":
+                self.assertEqual(component["hashes"][0]["content"], sums[key])
+
+    def test_references_lead_somewhere(self):
+        bill = json.loads(self.bill(TRIPLE))
+        known = {c["bom-ref"] for c in bill["components"]} | {bill["metadata"]["component"]["bom-ref"]}
+        self.assertEqual(len(known), len(bill["components"]) + 1)
+        for edge in bill["dependencies"]:
+            self.assertIn(edge["ref"], known)
+            self.assertLessEqual(set(edge["dependsOn"]), known)
+
+
+if __name__ == "__main__":
+    unittest.main()
