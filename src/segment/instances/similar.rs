@@ -73,6 +73,24 @@ const AREA_POWER: f64 = 0.2;
 /// [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
+/// What a region must show to count as a lamp.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Minimum contrast, along the contour and to the ring, as a share of the model's minimum.
+    contrast: f64,
+    /// Maximum share of the region's pixels that may lie under negative strokes.
+    negatives: f64,
+    /// Minimum number of pixels, for regions that were not doubtful before.
+    pixels: f64,
+}
+
+/// Limits for any region.
+const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0 };
+/// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
+/// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer pixels have no clear shape.
+/// [bench photos:tune]
+const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0 };
+
 /// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
@@ -146,7 +164,7 @@ impl Search<'_> {
 
         let mut chosen = Disjoint::new(tree)?;
         painted.iter().for_each(|&node| chosen.choose(node));
-        let candidates = self.candidates(&model, painted, &chosen)?;
+        let candidates = self.candidates(&model, painted, &chosen, STRICT)?;
         let mut similar = Similar::default();
         for (k, &(node, likeness)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
@@ -175,13 +193,65 @@ impl Search<'_> {
                 chosen.choose(node);
             }
         }
+        self.add_alike(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         Ok(similar)
+    }
+
+    /// Adds the regions that meet the limits [`ALIKE`] and have the size and shape of a lamp under a stroke or of a
+    /// lamp found before. Doubtful regions are tried first.
+    fn add_alike(
+        &self,
+        model: &Model,
+        painted: &[u32],
+        taken: &[bool],
+        chosen: &mut Disjoint,
+        similar: &mut Similar,
+        job: Job,
+    ) -> Result<()> {
+        let doubtful = std::mem::take(&mut similar.doubtful);
+        for node in doubtful {
+            let is_alike = self.likeness(model, node as usize, ALIKE) >= 1.0;
+            match is_alike && self.is_alike(model, painted, similar, taken, node)? {
+                true => similar.found.push(node),
+                false => similar.doubtful.push(node),
+            }
+        }
+        let candidates = self.candidates(model, painted, chosen, ALIKE)?;
+        for (k, &(node, likeness)) in candidates.iter().enumerate() {
+            if k % 256 == 0 {
+                job.check()?;
+            }
+            let is_large = self.regions.area[node as usize] >= ALIKE.pixels;
+            if is_large
+                && likeness >= 1.0
+                && chosen.admits(node)
+                && self.is_alike(model, painted, similar, taken, node)?
+            {
+                similar.found.push(node);
+                chosen.choose(node);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a node has the size and shape of a known lamp, lies on the plane or in a hole of the plane's mask, and
+    /// has the contrast to its ring that [`ALIKE`] demands.
+    fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
+        if !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
+            return Ok(false);
+        }
+        let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
+            return Ok(false);
+        };
+        let min_contrast = ALIKE.contrast * model.ring * sharpness(self.regions.area[node as usize]);
+        let is_in_hole = || self.is_on_face(node as usize) && model.is_beside(&ring);
+        Ok(ring.contrast >= min_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
     }
 
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
     /// strokes, in descending order of contour contrast times a small power of the area. Nodes that contain a lamp
     /// under a stroke or lie inside one are left out.
-    fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
+    fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint, limits: Limits) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;
         painted.iter().for_each(|&n| is_painted[n as usize] = true);
@@ -191,7 +261,7 @@ impl Search<'_> {
             if is_painted[node] || chosen.is_around(node as u32) {
                 continue;
             }
-            let likeness = self.likeness(model, node);
+            let likeness = self.likeness(model, node, limits);
             if likeness >= NEARLY {
                 let rank = regions.contrast(node) * regions.area[node].powf(AREA_POWER);
                 try_push(&mut candidates, (node as u32, likeness, rank))?;
@@ -294,14 +364,14 @@ impl Search<'_> {
     /// Likeness of a node to the lamps under the strokes, apart from its surroundings: the least of its likenesses in
     /// brightness, colour and contour contrast. A value of at least 1 means that the node meets all limits. The
     /// likeness is 0 if size, shape or negative strokes rule the node out.
-    fn likeness(&self, model: &Model, node: usize) -> f64 {
+    fn likeness(&self, model: &Model, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || self.negatives[node] > 0.0 {
+        if !self.has_size(model, node) || self.negatives[node] > limits.negatives * area {
             return 0.0;
         }
         let sharpness = sharpness(area);
-        let contour = regions.contrast(node) / (model.contour * sharpness);
+        let contour = regions.contrast(node) / (limits.contrast * model.contour * sharpness);
         if contour < NEARLY || regions.solidity(node) < model.min_solidity {
             return 0.0;
         }
