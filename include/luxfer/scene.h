@@ -26,9 +26,11 @@ extern "C" {
 typedef struct luxfer_scene luxfer_scene;
 
 /**
- * Receives the next size bytes of a file at data, and the pointer user of the caller. The export calls it one or more
- * times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to continue, any other
- * value to stop: the export then returns LUXFER_IO. The function must not throw an exception or leave by longjmp.
+ * A function of the caller that receives an exported file in parts. The argument data points to the next part, size
+ * is the part's length in bytes, and user is the pointer that the caller passed to the export. The export calls the
+ * function one or more times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to
+ * continue, any other value to stop: the export then returns LUXFER_IO. The function must not throw an exception or
+ * leave by longjmp.
  */
 typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 
@@ -699,7 +701,7 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
                                      uint32_t *index);
 
 /**
- * Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction comes from the object
+ * Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by the argument
  * distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
  * luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
  * luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the

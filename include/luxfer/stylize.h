@@ -59,7 +59,7 @@ typedef int32_t luxfer_guides_image;
 /** Light reflected once, by a diffuse surface (LDE). */
 #define LUXFER_GUIDES_DIRECT 1
 
-/** Light reflected once, by a glossy surface (LSE). */
+/** Light that comes by way of one glossy surface, mirror or clear pane (LSE). */
 #define LUXFER_GUIDES_SPECULAR 2
 
 /** Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding. */
@@ -77,7 +77,7 @@ typedef int32_t luxfer_guides_image;
 /** A colour code for each material, derived from its name; 3 channels. */
 #define LUXFER_GUIDES_MATERIALS 7
 
-/** Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE). */
+/** Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes (LS+DE). */
 #define LUXFER_GUIDES_CAUSTICS 8
 
 /** Creates an object that renders guides. It has no inputs yet. The caller releases *guides. Any thread. */

@@ -226,10 +226,10 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
     assert_eq!(result.continuation, Continuation::Free);
     let s = score(&result, per_area, (least, mean, most), None);
-    // Patches repeat contiguous parts of the exemplar, so the texture's statistics are no more precise than those of a
-    // sample of as many lamps as the exemplar has. Lamp areas have a standard deviation of about a third. Allow three
-    // standard errors of the mean area, and as much for the number of lamps, which follows from mean area and lit
-    // share. The lit share itself is kept more closely.
+    // Patches repeat contiguous parts of the exemplar, so the texture's mean lamp area is no more precise than a mean
+    // over the n lamps of the exemplar. Allow three standard errors of such a mean: three standard deviations of the
+    // lamp areas, divided by √n. Allow as much for the number of lamps per area, which is the lit share divided by the
+    // mean lamp area, because the texture keeps the lit share more closely.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");

@@ -6,7 +6,7 @@ use crate::image::Image;
 use crate::job::Job;
 use std::borrow::Cow;
 
-/// Values above this count as infinite, because their squares would overflow. [rounding]
+/// Values above this count as infinite, so that a sum of up to 300 squares of values does not overflow. [rounding]
 const MAX_VALUE: f32 = 1e18;
 
 /// Returns the photo with each invalid pixel replaced by the nearest valid one in its row (black if the whole photo is

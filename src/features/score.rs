@@ -50,8 +50,9 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// A quarter of the view: the directions towards one side wall, and towards either the ceiling or the floor. The score
-/// of a quadrant depends only on these two sides of the box.
+/// A quarter of the view, such as the upper left. Its rays can hit only three faces of the box: one side wall, either
+/// the ceiling or the floor, and the back wall. The distance of the back wall is always 1, so the score of a quadrant
+/// depends only on the distances of the two other faces.
 #[derive(Default)]
 pub struct Quadrant {
     /// For each room axis, the sample points of the segments that run along it.

@@ -30,7 +30,7 @@ pub type luxfer_guides_image = i32;
 pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
 /// Light reflected once, by a diffuse surface (LDE).
 pub const LUXFER_GUIDES_DIRECT: luxfer_guides_image = 1;
-/// Light reflected once, by a glossy surface (LSE).
+/// Light that comes by way of one glossy surface, mirror or clear pane (LSE).
 pub const LUXFER_GUIDES_SPECULAR: luxfer_guides_image = 2;
 /// Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding.
 pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
@@ -42,7 +42,7 @@ pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
 pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
 /// A colour code for each material, derived from its name; 3 channels.
 pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
-/// Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE).
+/// Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes (LS+DE).
 pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
 /// Settings of the guides. Fill them with luxfer_guides_params_init.

@@ -29,9 +29,11 @@ pub struct luxfer_scene {
     _opaque: [u8; 0],
 }
 
-/// Receives the next size bytes of a file at data, and the pointer user of the caller. The export calls it one or more
-/// times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to continue, any other
-/// value to stop: the export then returns LUXFER_IO. The function must not throw an exception or leave by longjmp.
+/// A function of the caller that receives an exported file in parts. The argument data points to the next part, size
+/// is the part's length in bytes, and user is the pointer that the caller passed to the export. The export calls the
+/// function one or more times, in the order of the bytes, on the calling thread and with no lock held. Return 0 to
+/// continue, any other value to stop: the export then returns LUXFER_IO. The function must not throw an exception or
+/// leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
 /// Number of objects of each kind in a scene.

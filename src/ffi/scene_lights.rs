@@ -177,7 +177,7 @@ impl luxfer_luminaire_params {
     }
 }
 
-/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction comes from the object
+/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by the argument
 /// distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
 /// luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
 /// luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the

@@ -32,9 +32,10 @@ use crate::scene::Camera;
 use glam::Vec3;
 
 /// The light components, each with a name and its light path expression in Heckbert's notation. "Full" is all light.
-/// "Direct" has one diffuse reflection and "specular" one glossy reflection. "Indirect" ends with at least two diffuse
-/// reflections, which is colour bleeding. "Two bounces" has one or two diffuse reflections, which distinguishes
-/// shadows. "Caustics" is light that glossy surfaces reflect onto diffuse surfaces.
+/// "Direct" has one diffuse reflection. "Specular" is light that comes by way of one glossy surface, mirror or clear
+/// pane. "Indirect" ends with at least two diffuse reflections, which is colour bleeding. "Two bounces" has one or two
+/// diffuse reflections, which distinguishes shadows. "Caustics" is light that reaches a diffuse surface by way of
+/// glossy surfaces, mirrors or clear panes.
 pub const LIGHT: [(&str, &str); 6] = [
     ("full", "L.*E"),
     ("direct", "LDE"),

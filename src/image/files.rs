@@ -51,7 +51,7 @@ enum Way {
 }
 
 impl Target {
-    /// Checks the path; returns an error if no file can be written there.
+    /// Checks the path and chooses the way of writing; returns an error if no file can be written there.
     pub fn new(path: &Path) -> Result<Self> {
         let way = match fs::metadata(path) {
             Ok(old) if old.is_dir() => Err(io::ErrorKind::IsADirectory.into()),

@@ -41,7 +41,8 @@ pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usi
         // All files need a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
-        // Memory for the frame, if it is narrower than the screen, and for the tables of the LZW decoder.
+        // Per pixel: one byte for the index of its colour, and four bytes for a separate copy of the frame, which is
+        // needed if the frame is narrower than the GIF's screen. One MiB for the tables of the LZW decoder.
         ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
     }

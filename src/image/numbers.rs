@@ -54,7 +54,7 @@ impl Head {
                 size[0], size[1], whole[0], whole[1]
             )));
         }
-        // The channels are sorted by name: three of the picture, then two for each number in order.
+        // The channels are sorted by name: B, G and R of the picture, then the high and the low half of each number.
         let channels = &header.channels.list;
         let numbers = channels.len().saturating_sub(3) / 2;
         for (i, channel) in channels.iter().enumerate() {

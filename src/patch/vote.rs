@@ -31,8 +31,8 @@ struct Ballot {
     weight: f64,
 }
 
-/// Reconstructs each pixel of `out` for which `wanted` holds from the matched pixels of `style`; pixels without a
-/// match keep their value. Where all matches agree, the result equals the exemplar's pixel to the bit.
+/// Reconstructs each pixel of `out` for which `wanted` holds from the matched pixels of the exemplar `style`; pixels
+/// without a match keep their value. Where all matches agree, the result equals the exemplar's pixel to the bit.
 pub fn vote(
     out: &mut Image,
     field: &Field,

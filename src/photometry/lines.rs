@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use std::str::FromStr;
 
-/// Maximum size of a file in bytes: more than a distribution with a resolution of a tenth of a degree needs.
+/// Maximum size of a file in bytes: 16 for each of `MAX_VALUES` intensities.
 pub const MAX_BYTES: usize = 64 << 20;
 /// Maximum number of angles along either axis of a distribution, and maximum number of its intensities.
 pub const MAX_ANGLES: usize = 4096;

@@ -65,7 +65,7 @@ mod tests {
         assert_eq!(slope(-1.0, 1.0, &[(0.5, 7.0, 1.0)]), 0.75);
         // The derivative has the slope 4 up to 0.125, and 1 after it.
         assert_eq!(slope(-1.0, 1.0, &[(-3.0, 0.125, 3.0)]), 0.625);
-        // Intervals outside the step have no effect.
+        // Intervals outside the step and empty intervals have no effect.
         assert_eq!(slope(-1.0, 2.0, &[(1.0, 2.0, 9.0), (-2.0, 0.0, 9.0), (0.3, 0.3, 9.0)]), 0.5);
     }
 }

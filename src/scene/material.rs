@@ -50,8 +50,8 @@ pub struct Material {
     pub emission_texture: Option<TextureRef>,
     /// Whether back faces reflect and emit as front faces do. Back faces of single-sided materials still block light.
     pub double_sided: bool,
-    /// Of the light that enters through the dielectric surface, the share that is transmitted and not reflected
-    /// diffusely; in `[0, 1]`.
+    /// Share of the light entering through the dielectric surface that is transmitted rather than reflected diffusely;
+    /// in `[0, 1]`.
     pub transmission: f32,
     /// Index of refraction of the dielectric layer, at least 1; a layer of index 1 reflects nothing.
     pub ior: f32,

@@ -77,8 +77,9 @@ fn the_ceiling_then_its_lamps() {
     let plane = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     let agreement = iou(&plane.mask, |i| faces[i] == 0 || faces[i] == 5);
     assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
-    // The expected error must be at least the true one. It is larger, because most surfaces have one stroke: holding
-    // that stroke out removes the whole surface, and this error is assumed for all pixels unlike the painted ones.
+    // The expected error must be at least the true one. It is larger, because most surfaces have only one stroke: when
+    // cross-validation holds this stroke out, it trains without the surface. The error on such strokes is assumed for
+    // all pixels whose features are unlike those of the painted pixels.
     let is_wrong = |(i, m): (usize, &f32)| (*m > 0.5) != (faces[i] == 0 || faces[i] == 5);
     let wrong = plane.mask.data.iter().enumerate().filter(|&p| is_wrong(p)).count() as f64 / faces.len() as f64;
     assert!(wrong <= plane.error && plane.error < 0.1, "{wrong} {}", plane.error);

@@ -138,8 +138,8 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
 }
 
 /// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
-/// pixels under it are usable. If this leaves no usable coarse pixel, one usable fine pixel suffices, so that regions
-/// thinner than two pixels do not vanish.
+/// pixels under it are usable. If this leaves no usable pixel in the whole mask, one usable fine pixel suffices
+/// everywhere, so that a mask of thin regions alone does not become empty.
 fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;

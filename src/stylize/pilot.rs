@@ -9,8 +9,8 @@ use crate::image::Image;
 use crate::job::Job;
 use std::time::Duration;
 
-/// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. A small exemplar would have
-/// too few patches at a low resolution: the energies there would predict the final energy poorly.
+/// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. If the larger one counted,
+/// a small exemplar could be reduced to so few patches that the energies would predict the final energy poorly.
 const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;

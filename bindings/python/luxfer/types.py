@@ -669,7 +669,7 @@ class GuidesImage(IntEnum):
     DIRECT = 1
     """Light reflected once, by a diffuse surface (LDE)."""
     SPECULAR = 2
-    """Light reflected once, by a glossy surface (LSE)."""
+    """Light that comes by way of one glossy surface, mirror or clear pane (LSE)."""
     INDIRECT = 3
     """Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding."""
     TWO_BOUNCES = 4
@@ -681,7 +681,8 @@ class GuidesImage(IntEnum):
     MATERIALS = 7
     """A colour code for each material, derived from its name; 3 channels."""
     CAUSTICS = 8
-    """Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE)."""
+    """Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes
+    (LS+DE)."""
 
 
 class StylizeMode(IntEnum):

@@ -55,10 +55,11 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// Calls `add` for each lit area that counts towards a lamp texel. A texel deep inside the lamp contributes all of
-    /// itself. A texel at the edge contributes its own lit part, and its share of the light in adjacent unlit texels
-    /// (covered by less than half). The arguments of `add` are the step from the lamp texel to the texel that holds
-    /// the area, and the area in texels.
+    /// Calls `add` for each lit area that counts towards a lamp texel. If none of the eight texels around it is dark
+    /// (covered by less than half), this is the whole lamp texel. Otherwise these are its own lit part, and a share of
+    /// the lit part of each dark texel around it: the lit part of a dark texel is divided equally among all lamp
+    /// texels around it. The arguments of `add` are the step from the lamp texel to the texel that holds the area, and
+    /// the area in texels.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];

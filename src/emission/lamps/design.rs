@@ -40,8 +40,9 @@ const SAME_WAY: f64 = 0.93;
 /// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
 /// is the area of the intersection divided by the area of the union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// One side of a rectangle is measured as a mean over the middle part of the other side, away from the rounded
-/// corners. This is the length of that part, as a share of the other side. [judged on 20 photos]
+/// The length of a rectangle is its mean over the middle part of the width, and the width is its mean over the middle
+/// part of the length, away from the rounded corners. The middle part has this share of the width or length.
+/// [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]

@@ -64,8 +64,9 @@ pub fn place(
             }
         }
     }
-    // Add the lamps that the copied patches contain. Skip lamps at sites that already have a lamp in every cell. Move
-    // lamps near another site exactly onto it. Leave all others where they are.
+    // Add the lamps that the copied patches contain. A site is a position that repeats in every cell. Skip a lamp near
+    // a site that got a lamp in every cell above. Move a lamp near one of the other sites exactly onto it. Leave a
+    // lamp near no site where it is.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);

@@ -66,10 +66,10 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period with which a whole row of lamps repeats, if both ends of the row lie within the exemplar. It is the
-/// length of the exemplar along the row, including the free space at both ends, rounded to a multiple of `period`.
-/// `None` if the row may continue beyond the exemplar, because there is no free space for another lamp at one of its
-/// ends.
+/// The period with which a whole row of lamps repeats. It is the length of the exemplar along the row, including the
+/// free space at both ends, rounded to a multiple of `period`. `None` if the row may continue where it is not visible.
+/// It ends visibly if, at both ends, the exemplar extends beyond the place where the next lamp would begin, and the
+/// photo (if any) shows the place where that lamp's centre would lie.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;

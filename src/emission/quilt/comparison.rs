@@ -214,9 +214,10 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, the light that it adds to the empty pixels of a block beyond a target, as a number of lit
-    /// pixels. On a lattice, lamps lie at the same positions of the block whatever the shift, so the target is the
-    /// mean over all given shifts. Otherwise it is the lit share of the exemplar.
+    /// For each shift, the number of lit pixels that it adds to the empty pixels of a block, minus an expected number.
+    /// The expected number is a lit share times the number of pixels that the shift fills. On a lattice, lamps lie at
+    /// the same positions of the block whatever the shift, so the lit share is that of all given shifts together.
+    /// Otherwise it is that of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));

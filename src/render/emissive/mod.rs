@@ -174,8 +174,8 @@ impl Emitters {
         (piece != NONE).then_some(piece as usize)
     }
 
-    /// Returns the area pdf (per m²) with which [`Emitters::sample`] draws a point of a piece. `brightness` is the
-    /// emission at the point, mean of the channels.
+    /// Returns the area pdf (per m²) with which [`Emitters::sample`] draws a point of the given piece. It does not
+    /// include the probability of choosing the piece. `brightness` is the emission at the point, mean of the channels.
     pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
         match piece.checked_sub(self.even.len()) {
             Some(tile) => brightness / self.tiles[tile].intensity,

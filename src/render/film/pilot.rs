@@ -77,7 +77,8 @@ struct PilotTile {
     tile: usize,
     /// Number of the image's tiles that this tile represents.
     weight: f64,
-    /// Number of pilot tiles that this tile represents in the third pass; 0 if the third pass leaves it out.
+    /// Number of pilot tiles that this tile represents in the third pass (`PATHS[2]` paths per pixel), which renders
+    /// only some of the tiles; 0 if that pass leaves this tile out.
     deep_weight: f64,
     /// Mean radiance of the tile, estimated beforehand with few paths (`tile_moments`).
     expected: f64,

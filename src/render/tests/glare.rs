@@ -137,7 +137,8 @@ fn the_background_is_the_indirect_illuminance() {
 fn hidden_parts_do_not_glare() {
     let at = Vec3::new(3.0, 2.7, 4.5);
     let whole = rated(room(panel(), &[at]), EYE, 16).sources[0];
-    // Place a screen between the eye and the left half of the panel.
+    // Place a screen between the eye and the panel. From x = 1, a width of 2 hides the left half of the panel, and a
+    // width of 4 hides the whole panel.
     let screened = |x: f32, width: f32| {
         let mut scene = room(panel(), &[at]);
         let screen = Mesh::parallelogram(Vec3::new(x, 1.0, 5.5), Vec3::X * width, Vec3::Y * 1.9, 0);

@@ -148,7 +148,8 @@ fn bounces_follow_from_the_albedo() {
     assert_eq!((of(1.0).bounces(0.5), of(0.5).bounces(0.0), of(0.5).bounces(f32::NAN)), (None, None, None));
 }
 
-/// In a closed room of one albedo, the share of light that remains after a number of bounces reaches its bound.
+/// In a closed room whose surfaces all have the albedo a, the share of the scattered light that comes after n bounces
+/// equals its upper bound a^n.
 #[test]
 fn the_bound_on_bounces_is_reached_by_a_room_of_one_albedo() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };

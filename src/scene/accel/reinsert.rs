@@ -127,8 +127,9 @@ impl<'a> Reinsertion<'a> {
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // `gained` is the half area saved by removing the subtree, so far up to `pivot`. `rest` is the box of the
-        // nodes below `pivot` without the subtree; it becomes `None` when a box on the way up does not shrink.
+        // `gained` is the half area saved by removing the subtree, counted from its parent up to `pivot`. `rest` is
+        // the box of the nodes below `pivot` without the subtree; it becomes `None` when a box on the way up does not
+        // shrink.
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {

@@ -63,8 +63,9 @@ const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
-/// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
+/// Maximum CIELAB difference between the median colour of the ring of pixels around a region off the plane and that of
+/// the ring around a lamp under a stroke. Up to this difference, the region may lie on a part of the plane that the
+/// given mask of the plane misses. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// Exponent of the area in the order in which candidates are tried. Of nested regions with almost equally sharp
 /// contours, the largest is tried first. [judged on 44 photos]
