@@ -81,7 +81,7 @@ struct Limits {
     contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
     negatives: f64,
-    /// Minimum number of pixels, for regions that were not doubtful before.
+    /// Minimum number of pixels.
     pixels: f64,
 }
 
@@ -222,12 +222,7 @@ impl Search<'_> {
             if k % 256 == 0 {
                 job.check()?;
             }
-            let is_large = self.regions.area[node as usize] >= ALIKE.pixels;
-            if is_large
-                && likeness >= 1.0
-                && chosen.admits(node)
-                && self.is_alike(model, painted, similar, taken, node)?
-            {
+            if likeness >= 1.0 && chosen.admits(node) && self.is_alike(model, painted, similar, taken, node)? {
                 similar.found.push(node);
                 chosen.choose(node);
             }
@@ -236,15 +231,16 @@ impl Search<'_> {
     }
 
     /// Whether a node has the size and shape of a known lamp, lies on the plane or in a hole of the plane's mask, and
-    /// has the contrast to its ring that [`ALIKE`] demands.
+    /// has the number of pixels and the contrast to its ring that [`ALIKE`] demands.
     fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
-        if !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
+        let area = self.regions.area[node as usize];
+        if area < ALIKE.pixels || !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
         }
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
             return Ok(false);
         };
-        let min_contrast = ALIKE.contrast * model.ring * sharpness(self.regions.area[node as usize]);
+        let min_contrast = ALIKE.contrast * model.ring * sharpness(area);
         let is_in_hole = || self.is_on_face(node as usize) && model.is_beside(&ring);
         Ok(ring.contrast >= min_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
     }
