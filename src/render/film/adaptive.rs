@@ -19,6 +19,7 @@ use super::canvas::Canvas;
 use super::clock::Clock;
 use super::grid::coarse_stride;
 use super::pass::Pass;
+use super::pixel::REPLICATIONS;
 use super::statistics::{Statistics, whole};
 use crate::error::Result;
 use crate::image::try_vec;
@@ -112,12 +113,15 @@ impl<'p> AdaptiveSampler<'p> {
         let mut counts: Vec<u32> = statistics.iter().map(|t| t.max_paths).collect();
         let mut spent = 0.0;
         for (_, tile) in candidates {
-            let cost = f64::from(statistics[tile].max_paths) * f64::from(statistics[tile].pixels);
-            if spent > 0.0 && spent >= budget || spent + cost > allowed {
+            if spent > 0.0 && spent >= budget {
                 break;
             }
-            counts[tile] = counts[tile].saturating_mul(2).min(max_paths);
-            spent += cost;
+            let (present, pixels) = (statistics[tile].max_paths, f64::from(statistics[tile].pixels));
+            // If too few paths are left to double those of the tile, use the paths that are left.
+            let left = ((allowed - spent).max(0.0) / pixels) as u32 / REPLICATIONS * REPLICATIONS;
+            let more = present.min(max_paths - present).min(left);
+            counts[tile] = present + more;
+            spent += f64::from(more) * pixels;
         }
         Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
     }

@@ -8,6 +8,29 @@ use crate::job::Job;
 /// Binomial weights of the pixels at distances 0, 1, 2 and 3 along an axis. [bench error_control]
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
+/// Returns the pooled variances of the pixels of an image. `paths` has the number of paths of each pixel. The pooled
+/// quantity is the variance of a single path, which is then divided by the pixel's own number of paths: a pixel with
+/// many paths does not get the variance of a neighbour with few paths. Pixels without paths count as having one.
+pub fn pooled_by_paths(variance: &Image, paths: &Image, job: Job) -> Result<Image> {
+    let (width, channels) = (variance.width, variance.channels);
+    let most = paths.data.iter().fold(1f32, |most, &n| most.max(n));
+    // Use shares of the largest number: they are exactly 1 where all numbers are equal, and no product overflows.
+    let share = |x: usize, y: usize| paths.pixel(x, y)[0].max(1.0) / most;
+    let mut single = Image::new(width, variance.height, channels)?;
+    exec::for_rows(&mut single.data, width * channels, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
+            out.iter_mut().zip(variance.pixel(x, y)).for_each(|(out, v)| *out = v * share(x, y));
+        }
+    })?;
+    let mut pooled = pooled(&single, job)?;
+    exec::for_rows(&mut pooled.data, width * channels, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
+            out.iter_mut().for_each(|v| *v /= share(x, y));
+        }
+    })?;
+    Ok(pooled)
+}
+
 /// Returns the weighted mean of the finite variances over the 7 × 7 pixels around each pixel; infinite where the
 /// pixel's own variance is infinite.
 pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
@@ -61,6 +84,22 @@ mod tests {
             assert!((p[1] - 2.0).abs() < 1e-6 && (i == 2 * 9 + 4 || (p[0] - 3.0).abs() < 1e-6), "{i}: {p:?}");
         }
         assert_eq!(pooled.pixel(4, 2)[0], f32::INFINITY);
+    }
+
+    #[test]
+    fn a_pixel_with_many_paths_keeps_its_small_variance_beside_pixels_with_few() {
+        let monitor = Monitor::default();
+        let paths = Image::from_fn(16, 8, |x, _| [if x < 8 { 16.0 } else { 4096.0 }]).unwrap();
+        let variance = Image::from_fn(16, 8, |x, _| [if x < 8 { 2.0 / 16.0 } else { 2.0 / 4096.0 }]).unwrap();
+        let pooled = pooled_by_paths(&variance, &paths, monitor.job()).unwrap();
+        for (i, (pooled, own)) in pooled.data.iter().zip(&variance.data).enumerate() {
+            assert!((pooled / own - 1.0).abs() < 1e-5, "{i}: {pooled}, {own}");
+        }
+        // Without paths, nothing is known.
+        let none = Image::from_fn(3, 3, |_, _| [0.0]).unwrap();
+        let unknown = Image::from_fn(3, 3, |_, _| [f32::INFINITY]).unwrap();
+        let pooled = pooled_by_paths(&unknown, &none, monitor.job()).unwrap();
+        assert!(pooled.data.iter().all(|&v| v == f32::INFINITY));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::canvas::Canvas;
 use super::grid::AREA;
 use super::interval::NORMAL_95;
 use super::pixel::Pixel;
-use super::pooling::pooled;
+use super::pooling::pooled_by_paths;
 use super::roulette::{mean, shrinkage};
 use crate::error::Result;
 use crate::exec;
@@ -101,7 +101,8 @@ impl Canvas<'_> {
     /// Returns for each tile the mean square of the relative errors of its pixels. The relative error of a pixel is
     /// the half-width of its 95 % confidence interval, divided by its luminance, or by `floor` if the pixel is darker.
     pub fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
-        let variance = pooled(&self.variance(job)?, job)?;
+        let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
+        let variance = pooled_by_paths(&self.variance(job)?, &paths, job)?;
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {

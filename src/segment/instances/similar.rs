@@ -231,16 +231,15 @@ impl Search<'_> {
     }
 
     /// Whether a node has the size and shape of a known lamp, lies on the plane or in a hole of the plane's mask, and
-    /// has the number of pixels and the contrast to its ring that [`ALIKE`] demands.
+    /// has the contrast to its ring that [`ALIKE`] demands.
     fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
-        let area = self.regions.area[node as usize];
-        if area < ALIKE.pixels || !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
+        if !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
         }
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
             return Ok(false);
         };
-        let min_contrast = ALIKE.contrast * model.ring * sharpness(area);
+        let min_contrast = ALIKE.contrast * model.ring * sharpness(self.regions.area[node as usize]);
         let is_in_hole = || self.is_on_face(node as usize) && model.is_beside(&ring);
         Ok(ring.contrast >= min_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
     }
@@ -364,7 +363,7 @@ impl Search<'_> {
     fn likeness(&self, model: &Model, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || self.negatives[node] > limits.negatives * area {
+        if !self.has_size(model, node) || area < limits.pixels || self.negatives[node] > limits.negatives * area {
             return 0.0;
         }
         let sharpness = sharpness(area);
