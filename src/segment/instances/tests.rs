@@ -103,6 +103,18 @@ fn a_negative_stroke_takes_a_lamp_out() {
 }
 
 #[test]
+fn a_negative_stroke_that_grazes_a_lamp_like_the_painted_one_does_not_take_it_out() {
+    let ceiling = ceiling();
+    // The lamp has 480 pixels, of which 0.5 % may lie under negative strokes.
+    for (count, is_found) in [(2, true), (4, false)] {
+        let pixels = (0..count).map(|x| (20 * WIDTH + 220 + x) as u32).collect();
+        let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]]), Stroke { pixels, positive: false }];
+        let (lamps, elsewhere) = found(&segment(&strokes, Some(&ceiling)).mask);
+        assert_eq!((lamps, elsewhere), (vec![true, true, is_found, true, true], 0), "{count} pixels");
+    }
+}
+
+#[test]
 fn a_lamp_that_the_border_cuts_may_be_of_any_size_and_a_thing_inside_may_not() {
     let ceiling = ceiling();
     let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
