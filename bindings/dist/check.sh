@@ -13,8 +13,6 @@ report="$out/check/$target.txt"
 flags="-O1 -Wall -Wextra"
 [ -e "$package" ] || fail "there is no $package; make dist-$target builds it"
 
-step() { echo "== $target: $1"; }
-
 say() { # KEY VALUE
   echo "$1 $2" >>"$report.part"
   echo "$1: $2"

@@ -12,8 +12,6 @@ target="$1"
 cd "$root"
 CARGO="${CARGO:-cargo}"
 
-step() { echo "== $target: $1"; }
-
 # Cargo's folders and the source tree must not be named in the library: see the Makefile.
 build() {
   RUSTFLAGS="--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo --remap-path-prefix=$root=luxfer"

@@ -40,6 +40,8 @@ export SOURCE_DATE_EPOCH
 PATH="$root/target/peers/dist/bin:$PATH"
 export PATH
 
+step() { echo "== $target: $1"; }
+
 fail() {
   echo "failed: $1" >&2
   exit 1

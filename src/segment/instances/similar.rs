@@ -175,7 +175,7 @@ impl Search<'_> {
                 continue;
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
-            let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
+            let likeness = likeness.min(self.ring_likeness(&model, node as usize, &ring));
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
             let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
@@ -239,9 +239,9 @@ impl Search<'_> {
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
             return Ok(false);
         };
-        let min_contrast = ALIKE.contrast * model.ring * sharpness(self.regions.area[node as usize]);
         let is_in_hole = || self.is_on_face(node as usize) && model.is_beside(&ring);
-        Ok(ring.contrast >= min_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
+        let has_contrast = self.ring_likeness(model, node as usize, &ring) >= ALIKE.contrast;
+        Ok(has_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
     }
 
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
@@ -349,6 +349,11 @@ impl Search<'_> {
 
     fn is_in_row(&self, node: usize, lamp: u32) -> bool {
         self.regions.surface.as_ref().is_some_and(|surface| surface.are_in_row(node, lamp as usize, IN_ROW))
+    }
+
+    /// Contrast of a node to its ring, relative to the minimum for a lamp of its size.
+    fn ring_likeness(&self, model: &Model, node: usize, ring: &Surroundings) -> f64 {
+        ring.contrast / (model.ring * sharpness(self.regions.area[node]))
     }
 
     /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
