@@ -15,7 +15,7 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Choice, Continuation, Emission, LampList, Luminaire, Style};
+use crate::emission::{self, Choice, Emission, LampList, Law, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -480,8 +480,8 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
         };
         let (law, choice) = match (&made.plan, &made.texture) {
             (Some(planned), _) => planned.plan.law(),
-            (_, Some(texture)) => (texture.continuation, texture.choice),
-            _ => (Continuation::Copy, Choice::only(Continuation::Copy)),
+            (_, Some(texture)) => (texture.law, texture.choice),
+            _ => (Law::Copy, Choice::only(Law::Copy)),
         };
         out.set(luxfer_emission_report {
             law: emission_law::number(law),

@@ -60,7 +60,7 @@ pub fn run(
                 row.add_lamps(source, bands);
             }
             let has_more = match lights {
-                Lights::All => source.layer.has_by_pixel(),
+                Lights::All => source.layer.any_copied_by_pixel(),
                 Lights::OfPatches => source.layer.follows_patches(),
             };
             if has_more {
@@ -120,7 +120,7 @@ impl Row<'_> {
             let at = (DVec2::new(x as f64, self.y as f64) + 0.5) / size;
             let weight = frame.weights.at(k, at);
             if let Some(shift) = source.shift_at(x, self.y).filter(|_| weight > 0.0) {
-                let is_shown = |label: u32| label != 0 && source.layer.is_by_pixel(label as usize - 1);
+                let is_shown = |label: u32| label != 0 && source.layer.is_copied_by_pixel(label as usize - 1);
                 let shown = source.texel(x, self.y, shift, is_shown);
                 self.add(x, Texel { colour: shown.colour * weight, ..shown });
             }

@@ -8,11 +8,11 @@
 
 use super::design::Designs;
 use super::instance::Instance;
+use crate::emission::analysis::sites::{Site, Sites};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lattice::cells;
-use crate::emission::lattice::continuation::Continuation;
-use crate::emission::reading::sites::{Site, Sites};
+use crate::emission::lattice::law::Law;
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
@@ -38,7 +38,7 @@ pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
     sites: &Sites,
-    law: Continuation,
+    law: Law,
     shown: Vec<Instance>,
     (offset, size): (DVec2, DVec2),
     seed: u64,

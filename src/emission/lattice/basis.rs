@@ -1,6 +1,6 @@
 //! Fits the basis vectors of a lattice to the centres of its lamps.
 
-use super::continuation::MAX_SLANT;
+use super::law::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 

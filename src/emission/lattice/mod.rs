@@ -11,10 +11,10 @@ pub mod basis;
 pub mod border_sites;
 pub mod cells;
 pub mod centring;
-pub mod continuation;
 pub mod correlation;
 pub mod extent;
 pub mod kind_check;
+pub mod law;
 pub mod neighbours;
 pub mod repeats;
 
@@ -22,9 +22,9 @@ use super::exemplar::Exemplar;
 use crate::error::Result;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
-use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
+use law::Law;
 
 /// Minimum correlation of a period, relative to the highest correlation. A shift with a lower correlation probably
 /// moves lamps onto lamps of another kind. [bench emission:patterns]
@@ -40,31 +40,31 @@ const PARALLEL: f64 = 0.3;
 /// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
 /// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
 /// a period if its correlation is at least `min_regularity`; at 1 there are no periods.
-pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
+pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Law, f64) {
     if min_regularity >= 1.0 {
-        return (Continuation::Free, 0.0);
+        return (Law::Free, 0.0);
     }
     let periods = periods(exemplar, correlated, min_regularity);
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let extent = extent::of(exemplar);
     match periods[..] {
-        [(a, _), (b, _)] => (Continuation::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
+        [(a, _), (b, _)] => (Law::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
         [(a, _)] => (row(exemplar, a, extent), goodness),
-        _ => (lawless(exemplar, extent), 0.0),
+        _ => (without_period(exemplar, extent), 0.0),
     }
 }
 
 /// A row with the given period; the extent of the exemplar serves as its second period.
-pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
+pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Law {
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
-    Continuation::Row([basis::straight(period), across])
+    Law::Row([basis::straight(period), across])
 }
 
 /// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
-pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
+pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
     if !extent::has_few_lamps(exemplar, extent) {
-        return Continuation::Free;
+        return Law::Free;
     }
     extent::as_period(exemplar)
 }

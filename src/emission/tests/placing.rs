@@ -130,7 +130,7 @@ fn tileable_textures_repeat_without_a_seam() {
     {
         let params = Params { width, height, scale, tileable: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
-        assert_eq!(matches!(result.continuation, Continuation::Free), name == "free");
+        assert_eq!(matches!(result.law, Law::Free), name == "free");
         // Repeat the texture twice along each axis. In the central part of one period, each lamp must appear exactly
         // once, and complete.
         let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
@@ -148,7 +148,7 @@ fn tileable_textures_repeat_without_a_seam() {
             "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
             _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
         }
-        if let Some([a, b]) = result.continuation.lattice() {
+        if let Some([a, b]) = result.law.lattice() {
             // All lamps must lie on the stretched lattice, one in each cell, and not at the distances of the exemplar.
             let lamps = inner(&result.luminaires, width, height);
             let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
@@ -178,7 +178,7 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
         (30.0..70.0).contains(&x) && (0.0..7.0).contains(&pane) && along < if short { 20.0 } else { 36.0 }
     });
     let result = exemplar.run(&Params { width: 250, height: 960, ..Params::default() }).unwrap();
-    let Continuation::Row([period, across]) = result.continuation else { panic!("{:?}", result.continuation) };
+    let Law::Row([period, across]) = result.law else { panic!("{:?}", result.law) };
     assert!((period - DVec2::Y * 50.0).length() < 0.5 && across == DVec2::X * 100.0, "{period} {across}");
     for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
         assert_eq!(m, result.mask.data[i - 100]);

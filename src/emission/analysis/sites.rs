@@ -10,7 +10,7 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::evidence::Evidence;
 use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::lattice::cells;
-use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::law::Law;
 use glam::{DMat2, DVec2};
 
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
@@ -62,12 +62,12 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` if the continuation has no period, or if one of its
+    /// Groups the lamps into sites of a lattice or a row. `None` if the law has no period, or if one of its
     /// basis vectors is not a period because the pattern does not change along it.
-    pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
+    pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Law) -> Option<Self> {
         let (basis, is_row) = match law {
-            Continuation::Lattice(basis) => (basis, false),
-            Continuation::Row(basis) => (basis, true),
+            Law::Lattice(basis) => (basis, false),
+            Law::Row(basis) => (basis, true),
             _ => return None,
         };
         let to_cells = DMat2::from_cols(basis[0], basis[1]).inverse();

@@ -1,10 +1,10 @@
-//! Analyses an exemplar: finds its lamps, and how their pattern continues beyond it. The continuation is a lattice, a
+//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a
 //! row, repetition of the whole exemplar, or patches without a lattice.
 //!
 //! A single analysis is not reliable, because distant lamps are magnified with their blur and spoil the
-//! autocorrelation of the near ones. So several continuations are proposed, from the whole exemplar and from its
+//! autocorrelation of the near ones. So several laws are proposed, from the whole exemplar and from its
 //! sharper parts, with strict and with loose thresholds. Each is scored by how well it predicts the lamps of the whole
-//! photo ([`sites`]). The continuation found in the whole exemplar with the threshold `min_regularity` is kept unless
+//! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless
 //! another one scores clearly higher.
 
 pub mod sites;
@@ -12,9 +12,9 @@ pub mod sites;
 use super::exemplar::Exemplar;
 use super::exemplar::evidence::Evidence;
 use super::exemplar::roles::Role;
-use super::lattice::continuation::Continuation;
+use super::lattice::law::Law;
 use super::lattice::{self, Correlated, basis, extent, neighbours};
-use super::params::{Input, Law, Params, working_side};
+use super::params::{Input, LawMode, Params, working_side};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use glam::DVec2;
@@ -29,13 +29,13 @@ const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
-const LAWLESS: f64 = 0.35;
+const SCORE_WITHOUT_PERIOD: f64 = 0.35;
 /// If the lattice or row found in the whole exemplar with the threshold `min_regularity` scores below this value, it
 /// is dropped, and the pattern counts as having no period. [judged on 20 photos]
-const HOPELESS: f64 = 0.15;
+const MIN_SCORE: f64 = 0.15;
 /// The lattice or row found in the whole exemplar with the threshold `min_regularity` is replaced only by one whose
 /// score is higher by more than this. [judged on 20 photos]
-const CLEARLY: f64 = 0.1;
+const CLEAR_MARGIN: f64 = 0.1;
 /// Continuations are compared only if lamps have at least this share of the photo pixels of all lights; the other
 /// lights run through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
@@ -43,14 +43,14 @@ const MIN_LAMPS: f64 = 0.5;
 /// [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// The score of the chosen continuation (lattice, row, repetition or none), and the best alternative.
+/// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the continuation predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
     /// for a comparison.
     pub score: f64,
-    /// The best alternative continuation, and its score; the score is 0 if there is no alternative.
-    pub runner_up: Continuation,
+    /// The best alternative law, and its score; the score is 0 if there is no alternative.
+    pub runner_up: Law,
     pub runner_up_score: f64,
 }
 
@@ -60,43 +60,43 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the continuation itself,
+    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the law itself,
     /// with score 0.
-    pub fn only(continuation: Continuation) -> Self {
-        Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
+    pub fn only(law: Law) -> Self {
+        Self { score: f64::NAN, runner_up: law, runner_up_score: 0.0 }
     }
 }
 
 /// The analysis of an exemplar: its lamps, and how their pattern continues (on a lattice, in a row, by repetition or
 /// without a period).
-pub struct Reading {
+pub struct Analysis {
     pub exemplar: Exemplar,
-    pub continuation: Continuation,
+    pub law: Law,
     pub regularity: f64,
     pub choice: Choice,
     /// The settings with which the exemplar was analysed.
     working_side: f64,
     min_regularity: f32,
-    law: Law,
+    law_mode: LawMode,
     max_magnification: f64,
 }
 
-/// A proposed continuation (lattice, row, …), with its regularity and its score.
+/// A proposed law (lattice, row, …), with its regularity and its score.
 #[derive(Clone, Copy)]
 struct Proposal {
-    continuation: Continuation,
+    law: Law,
     regularity: f64,
     score: f64,
 }
 
 impl Proposal {
     /// A proposal without a period, in which no lamp predicts another.
-    fn lawless(continuation: Continuation) -> Self {
-        Self { continuation, regularity: 0.0, score: LAWLESS }
+    fn without_period(law: Law) -> Self {
+        Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
     }
 }
 
-impl Reading {
+impl Analysis {
     /// Analyses the exemplar of an input. Errors: no valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
         let exemplar = Exemplar::new(input, working_side(input, params), params.max_magnification, job.part(0.0, 0.4))?;
@@ -108,26 +108,26 @@ impl Reading {
         let working_side = working_side(input, params);
         let min_regularity = params.min_regularity;
         let whole = Correlated::new(&exemplar, |_| true, job.part(0.4, 0.6))?;
-        let (continuation, regularity) = lattice::law(&exemplar, &whole, min_regularity);
-        let mut reading = Self {
-            choice: Choice::only(continuation),
+        let (law, regularity) = lattice::find_law(&exemplar, &whole, min_regularity);
+        let mut analysis = Self {
+            choice: Choice::only(law),
             exemplar,
-            continuation,
+            law,
             regularity,
             working_side,
             min_regularity,
-            law: params.law,
+            law_mode: params.law,
             max_magnification: params.max_magnification,
         };
         match params.law {
-            Law::Correlation => {}
-            Law::Best if min_regularity >= 1.0 => {}
-            Law::Best => reading.compare(&whole, job.part(0.6, 1.0))?,
-            Law::Whole => reading.set(Proposal::lawless(extent::as_period(&reading.exemplar))),
-            Law::Free => reading.set(Proposal::lawless(Continuation::Free)),
-            Law::Lattice | Law::Row => reading.fix(params.law, &whole, job.part(0.6, 1.0))?,
+            LawMode::Correlation => {}
+            LawMode::Best if min_regularity >= 1.0 => {}
+            LawMode::Best => analysis.compare(&whole, job.part(0.6, 1.0))?,
+            LawMode::Whole => analysis.set(Proposal::without_period(extent::as_period(&analysis.exemplar))),
+            LawMode::Free => analysis.set(Proposal::without_period(Law::Free)),
+            LawMode::Lattice | LawMode::Row => analysis.fix(params.law, &whole, job.part(0.6, 1.0))?,
         }
-        Ok(reading)
+        Ok(analysis)
     }
 
     /// Whether an analysis with the given input and settings would have the same result, so that this one can be
@@ -137,11 +137,11 @@ impl Reading {
         [width, height] == [input.unwarped.width, input.unwarped.height]
             && self.working_side == working_side(input, params)
             && self.min_regularity == params.min_regularity
-            && self.law == params.law
+            && self.law_mode == params.law
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the continuation found in the whole exemplar with other proposals, and chooses one.
+    /// Compares the law found in the whole exemplar with other proposals, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = exemplar.evidence(Role::is_whole);
@@ -151,51 +151,53 @@ impl Reading {
         let endless: f64 = through.map(|(_, area)| area).sum();
         if evidence.len() == 1 && parts.is_empty() && endless == 0.0 {
             // A single lamp shows no repetition, even if its few pixels correlate.
-            self.set(Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar))));
+            self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
             return Ok(());
         }
         if evidence.len() < 2 || seen < MIN_LAMPS * (seen + endless) {
             return Ok(());
         }
-        let score = |law: Continuation| score(exemplar, (&evidence, &parts), law);
-        let own =
-            Proposal { continuation: self.continuation, regularity: self.regularity, score: score(self.continuation) };
+        let score = |law: Law| score(exemplar, (&evidence, &parts), law);
+        let own = Proposal { law: self.law, regularity: self.regularity, score: score(self.law) };
         if own.score.is_nan() {
             return Ok(());
         }
         let mut proposals = self.propose(&evidence, whole, job)?;
-        proposals.iter_mut().for_each(|p| p.score = score(p.continuation));
+        proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
-        let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
+        let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
-        // Find the proposal with the highest score, the first one among equals. It replaces the continuation found in
+        // Find the proposal with the highest score, the first one among equals. It replaces the law found in
         // the whole exemplar only if its score is clearly higher.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
-        let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
+        let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice, unless the continuation found in the whole
+        // For the panes of a luminous ceiling, prefer the best lattice, unless the law found in the whole
         // exemplar scores clearly higher.
-        let panes = lattice
-            .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
+        let panes = lattice.filter(|p| {
+            exemplar.is_luminous_ceiling()
+                && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN
+                && p.score > own.score - CLEAR_MARGIN
+        });
         let chosen = match panes {
             Some(panes) => panes,
-            None if best.score > own.score + CLEARLY && best.score > LAWLESS => best,
-            None if own.score < HOPELESS => lawless,
+            None if best.score > own.score + CLEAR_MARGIN && best.score > SCORE_WITHOUT_PERIOD => best,
+            None if own.score < MIN_SCORE => without_period,
             None => own,
         };
-        proposals.extend([own, lawless]);
-        let others = proposals.iter().filter(|p| !is_same(p.continuation, chosen.continuation));
+        proposals.extend([own, without_period]);
+        let others = proposals.iter().filter(|p| !is_same(p.law, chosen.law));
         let runner_up = others.max_by(|a, b| a.score.total_cmp(&b.score));
-        (self.continuation, self.regularity) = (chosen.continuation, chosen.regularity);
+        (self.law, self.regularity) = (chosen.law, chosen.regularity);
         self.choice = Choice {
             score: chosen.score,
-            runner_up: runner_up.map_or(chosen.continuation, |p| p.continuation),
+            runner_up: runner_up.map_or(chosen.law, |p| p.law),
             runner_up_score: runner_up.map_or(0.0, |p| p.score),
         };
         Ok(())
     }
 
-    /// Proposes continuations from the whole exemplar and from each of its sharper parts: one with the threshold
+    /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
     /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
     /// from the distances between neighbouring panes.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
@@ -211,41 +213,41 @@ impl Reading {
         let mut proposals = Vec::new();
         let extent = extent::of(exemplar);
         for correlated in std::iter::once(whole).chain(&parts) {
-            let (continuation, regularity) = lattice::law(exemplar, correlated, self.min_regularity);
-            proposals.push(Proposal { continuation, regularity, score: 0.0 });
+            let (law, regularity) = lattice::find_law(exemplar, correlated, self.min_regularity);
+            proposals.push(Proposal { law, regularity, score: 0.0 });
             let shifts = lattice::shifts(exemplar, correlated, PROPOSED, PROPOSED_RELATIVE, MAX_SHIFTS);
             for (n, &(a, goodness)) in shifts.iter().enumerate() {
                 let row = lattice::row(exemplar, a, extent);
-                proposals.push(Proposal { continuation: row, regularity: goodness, score: 0.0 });
+                proposals.push(Proposal { law: row, regularity: goodness, score: 0.0 });
                 for &(b, other) in shifts[n + 1..].iter().filter(|(b, _)| !lattice::is_parallel(a, *b)) {
-                    let continuation = Continuation::Lattice(basis::refine(exemplar, [a, b], 2));
-                    proposals.push(Proposal { continuation, regularity: goodness.min(other), score: 0.0 });
+                    let law = Law::Lattice(basis::refine(exemplar, [a, b], 2));
+                    proposals.push(Proposal { law, regularity: goodness.min(other), score: 0.0 });
                 }
             }
             job.check()?;
         }
         let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(evidence) } else { Vec::new() };
         for basis in panes {
-            let continuation = Continuation::Lattice(basis::refine(exemplar, basis, 2));
-            proposals.push(Proposal { continuation, regularity: 0.0, score: 0.0 });
+            let law = Law::Lattice(basis::refine(exemplar, basis, 2));
+            proposals.push(Proposal { law, regularity: 0.0, score: 0.0 });
         }
         Ok(proposals)
     }
 
-    /// Chooses the best lattice or the best row, as `law` asks. Errors: `Degenerate` if there is none.
-    fn fix(&mut self, law: Law, whole: &Correlated, job: Job) -> Result<()> {
-        let is_asked = |c: &Continuation| match law {
-            Law::Row => matches!(c, Continuation::Row(_)),
-            _ => matches!(c, Continuation::Lattice(_)),
+    /// Chooses the best lattice or the best row, as `mode` asks. Errors: `Degenerate` if there is none.
+    fn fix(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
+        let is_asked = |c: &Law| match mode {
+            LawMode::Row => matches!(c, Law::Row(_)),
+            _ => matches!(c, Law::Lattice(_)),
         };
-        if is_asked(&self.continuation) {
+        if is_asked(&self.law) {
             return Ok(());
         }
         let evidence = self.exemplar.evidence(Role::is_whole);
         let parts = self.exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
         let mut proposals = self.propose(&evidence, whole, job)?;
-        proposals.retain(|p| is_asked(&p.continuation));
-        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.continuation));
+        proposals.retain(|p| is_asked(&p.law));
+        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.law));
         let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
         let best = best.ok_or_else(|| {
             Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
@@ -255,34 +257,32 @@ impl Reading {
     }
 
     fn set(&mut self, chosen: Proposal) {
-        (self.continuation, self.regularity) = (chosen.continuation, chosen.regularity);
-        self.choice = Choice { score: chosen.score, ..Choice::only(chosen.continuation) };
+        (self.law, self.regularity) = (chosen.law, chosen.regularity);
+        self.choice = Choice { score: chosen.score, ..Choice::only(chosen.law) };
     }
 }
 
-/// Score of a continuation: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
+/// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
 /// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
-fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
+fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Law) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
         None => match law {
-            Continuation::Free | Continuation::Tile(_) => LAWLESS,
+            Law::Free | Law::Whole(_) => SCORE_WITHOUT_PERIOD,
             _ => f64::NAN,
         },
     }
 }
 
-/// Whether two continuations are equal except for a small difference between their periods.
-fn is_same(a: Continuation, b: Continuation) -> bool {
+/// Whether two laws are equal except for a small difference between their periods.
+fn is_same(a: Law, b: Law) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());
         (close(a, c) && close(b, d)) || (close(a, d) && close(b, c))
     };
     match (a, b) {
-        (Continuation::Lattice(a), Continuation::Lattice(b)) | (Continuation::Row(a), Continuation::Row(b)) => {
-            near(a, b)
-        }
-        (Continuation::Tile(_) | Continuation::Free, Continuation::Tile(_) | Continuation::Free) => true,
+        (Law::Lattice(a), Law::Lattice(b)) | (Law::Row(a), Law::Row(b)) => near(a, b),
+        (Law::Whole(_) | Law::Free, Law::Whole(_) | Law::Free) => true,
         (a, b) => a == b,
     }
 }
