@@ -23,8 +23,8 @@ pub struct Input<'a> {
     pub photo: Option<(&'a Image, Homography)>,
 }
 
-/// How the law of a texture is chosen (see [`Law`](super::Law)): by comparison, by the autocorrelation alone, or by the
-/// caller.
+/// How the law of a texture is chosen (see [`Law`](super::Law)): by comparison, by the autocorrelation alone, or by
+/// the caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LawMode {
     /// The law that best predicts the lamps of the photo. The one found by autocorrelation is kept unless

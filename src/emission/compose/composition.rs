@@ -41,8 +41,8 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Analysis`]), if one is given and was
-    /// made with the same settings.
+    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Analysis`]), if one is given and
+    /// was made with the same settings.
     pub(in crate::emission) fn of(
         mut analysis: Option<Analysis>,
         input: &Input,

@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 /// Two lamps are similar if their areas, their sides and their aspect ratios each differ by at most this share.
 const DIFFERENCE: f64 = 0.25;
 
-/// `BLUR_PIXELS`: number of photo pixels by which sides may differ in addition to `DIFFERENCE`, because blur and bloom lengthen a
-/// lamp with few photo pixels. `MAX_DIFFERENCE`: maximum of both tolerances together, as a relative difference.
+/// `BLUR_PIXELS`: number of photo pixels by which sides may differ in addition to `DIFFERENCE`, because blur and bloom
+/// lengthen a lamp with few photo pixels. `MAX_DIFFERENCE`: maximum of both tolerances together, as a relative
+/// difference.
 const BLUR_PIXELS: f64 = 2.0;
 
 const MAX_DIFFERENCE: f64 = 0.5;
