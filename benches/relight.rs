@@ -12,8 +12,8 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Constraint, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, PlaceParams, Quantity,
-    Solution, lamp_responses, run, solve_groups,
+    Aspect, Constraint, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, PlaceParams, Quantity,
+    Solution, TargetGeometry, lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
@@ -276,7 +276,7 @@ fn map(case: &Case) {
     let scene = Arc::new(scene);
     let monitor = Monitor::default();
     let goal = Goal {
-        place: Place::Surface(&case.target),
+        geometry: TargetGeometry::Surface(&case.target),
         quantity: Quantity::Outgoing,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
@@ -318,7 +318,7 @@ fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
     let goals = [Goal {
-        place: Place::Surface(&floor),
+        geometry: TargetGeometry::Surface(&floor),
         quantity: Quantity::Incident,
         target: Vec3::splat(100.0),
         aspect: Aspect::Colour,

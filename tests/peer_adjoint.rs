@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::relight::{Aspect, Constraint, Goal, Importance, MapParams, Params, Place, Pose, Quantity};
+use luxfer::relight::{Aspect, Constraint, Goal, Importance, MapParams, Params, Pose, Quantity, TargetGeometry};
 use luxfer::scene::{Camera, Material, Mesh, Scene, Texture, TextureRef, gltf};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -90,7 +90,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
     let target = [(0, 0), (0, 1)];
     let goal = Goal {
-        place: Place::Surface(&target),
+        geometry: TargetGeometry::Surface(&target),
         quantity: Quantity::Incident,
         target: Vec3::ONE,
         aspect: Aspect::Colour,

@@ -17,7 +17,7 @@ use super::scene::{colour, luxfer_scene};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::relight::{self, Goal, Importance, MapParams, Place, Placement};
+use crate::relight::{self, Goal, Importance, MapParams, Placement, TargetGeometry};
 use crate::scene::Texture;
 use glam::{DMat3, Mat3, Vec3};
 use std::sync::Arc;
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
         let triangles = emitter.triangles(&scene)?;
         stage.start(job, move |_, _, job| {
             let goal = Goal {
-                place: Place::Surface(&triangles),
+                geometry: TargetGeometry::Surface(&triangles),
                 quantity,
                 target: Vec3::ONE,
                 aspect: relight::Aspect::Colour,

@@ -99,7 +99,7 @@ impl Importance {
         tracing.check()?;
         let even = evenly_lit(scene, emitter, params)?;
         let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
-        let points = Sampler::new(scene, goal.place, goal.quantity)?;
+        let points = Sampler::new(scene, goal.geometry, goal.quantity)?;
         let bins = Bins::new(&world, emitter, Division::Cells { width: params.width, height: params.height });
         let mut batches = Batches::new(&world, &points, bins, tracing.seed)?;
         let stop = Stop::new(tracing);

@@ -15,7 +15,7 @@ fn coloured_room() -> Scene {
 
 fn floor(quantity: Quantity) -> Goal<'static> {
     Goal {
-        place: Place::Surface(FLOOR),
+        geometry: TargetGeometry::Surface(FLOOR),
         quantity,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
