@@ -326,13 +326,13 @@ pub unsafe extern "C" fn luxfer_stylize_start(
             None => None,
         };
         stage.start(job, move |inputs, stage, job| {
-            let publish = |glimpse: stylize::Glimpse| stage.publish(Stylised::unfinished(glimpse));
+            let publish = |intermediate: stylize::IntermediateResult| stage.publish(Stylised::unfinished(intermediate));
             let (before, motion) = (previous.as_ref().map(|p| &*p.0), previous.as_ref().map(|p| p.1.image()));
             inputs.with_input(|input| {
                 let input = stylize::Input { previous: before, motion, ..*input };
                 if keep {
-                    let (study, output) = stylize::Study::new(&input, &params, &publish, job)?;
-                    Ok(Stylised::finished(output, Some(study)))
+                    let (updater, output) = stylize::Updater::new(&input, &params, &publish, job)?;
+                    Ok(Stylised::finished(output, Some(updater)))
                 } else {
                     Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
                 }
@@ -359,17 +359,17 @@ pub unsafe extern "C" fn luxfer_stylize_update(
         let artwork = handle::borrow_in(stage.context(), artwork, "artwork")?;
         let changed = handle::borrow_in(stage.context(), changed, "changed")?;
         let before = stage.output().ok();
-        let study: Option<Arc<Mutex<stylize::Study>>> = before.as_ref().and_then(|b| b.study());
-        let (Some(before), Some(study)) = (before, study) else {
+        let updater: Option<Arc<Mutex<stylize::Updater>>> = before.as_ref().and_then(|b| b.updater());
+        let (Some(before), Some(updater)) = (before, updater) else {
             return Err(Error::new(
                 ErrorKind::InvalidOperation,
                 "there is nothing to update; start with keep_for_update = 1 and wait for the job to succeed",
             ));
         };
         stage.start(job, move |_, _, job| {
-            let study = &mut *super::guard::lock(&study);
-            let picture = study.repaint(artwork.image(), changed.image(), job.part(0.0, 0.95))?;
-            Ok(before.updated(picture, study.sources(job.part(0.95, 1.0))?))
+            let updater = &mut *super::guard::lock(&updater);
+            let picture = updater.repaint(artwork.image(), changed.image(), job.part(0.0, 0.95))?;
+            Ok(before.updated(picture, updater.sources(job.part(0.95, 1.0))?))
         })
     })
 }
