@@ -12,7 +12,7 @@ use crate::job::Job;
 use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
-pub struct Measure {
+pub struct Measurements {
     /// Medians, over the lamps that the exemplar shows completely (whole lamps), of the longer side and of the shorter
     /// side. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
@@ -29,7 +29,7 @@ pub struct Measure {
 }
 
 /// Measures an exemplar. Errors: as for [`super::run`].
-pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
+pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measurements> {
     params.check()?;
     input.check()?;
     let analysis = Analysis::new(input, params, job)?;
@@ -62,5 +62,5 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     let lamp_sides = [median(|(size, _)| size.max_element()), median(|(size, _)| size.min_element())];
     let lamp_fill = median(|(size, area)| area / size.element_product());
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    Ok(Measure { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, analysis })
+    Ok(Measurements { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, analysis })
 }

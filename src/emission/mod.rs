@@ -26,7 +26,7 @@
 //! - the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns drift and cuts
 //!   lamps;
 //! - the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]);
-//! - zones that must stay free of lamps ([`compose::placement`]);
+//! - zones that must stay free of lamps ([`compose::texel_zone`]);
 //! - textures of any size, rendered in tiles of a [`Composition`];
 //! - textures blended from several exemplars ([`compose::draw`]).
 //!
@@ -51,12 +51,12 @@ pub use agreement::{pairs, statistics};
 pub use analysis::Choice;
 pub use compose::composition::Composition;
 pub use compose::lamp_list::LampList;
-pub use compose::placement::Placement;
+pub use compose::texel_zone::TexelZone;
 pub use compose::tile::Tile;
 pub use compose::weights::Style;
 pub use lamps::luminaire::Luminaire;
 pub use lattice::law::Law;
-pub use measure::{Measure, measure};
+pub use measure::{Measurements, measure};
 pub use output::Emission;
 pub use params::{Input, LawMode, Params, SCALES};
 
@@ -77,7 +77,7 @@ use quilt::patch_map::PatchMap;
 
 /// Makes an emission from a texture that the caller supplies. A texel counts as light if any of its channels is above
 /// 0.
-pub fn given(texture: &Image, job: Job) -> Result<Emission> {
+pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
     if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
         return Err(Error::argument(format!("the emissive texture holds {bad}; its values must be finite and >= 0")));
@@ -126,7 +126,7 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
 
 /// Like [`blend`], but uses the analysis of the first exemplar that [`measure`] has made, instead of repeating it.
 pub fn blend_measured(
-    measured: Measure,
+    measured: Measurements,
     input: &Input,
     styles: &[Style],
     params: &Params,

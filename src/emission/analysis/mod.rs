@@ -10,7 +10,7 @@
 pub mod sites;
 
 use super::exemplar::Exemplar;
-use super::exemplar::evidence::Evidence;
+use super::exemplar::measured_lamp::MeasuredLamp;
 use super::exemplar::roles::Role;
 use super::lattice::law::Law;
 use super::lattice::{self, Correlated, basis, extent, neighbours};
@@ -23,10 +23,11 @@ use sites::Sites;
 /// Lattices and rows are also proposed from parts of the exemplar in which the magnification is at most one of these
 /// values. Magnification is relative to the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Limits for shifts that are proposed as periods: `PROPOSED` is the minimum correlation, `PROPOSED_RELATIVE` the
-/// minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of shifts. [judged on 20 photos]
-const PROPOSED: f32 = 0.35;
-const PROPOSED_RELATIVE: f32 = 0.6;
+/// Limits for shifts that are proposed as periods: `MIN_CORRELATION` is the minimum correlation,
+/// `MIN_RELATIVE_CORRELATION` the minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of
+/// shifts. [judged on 20 photos]
+const MIN_CORRELATION: f32 = 0.35;
+const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const SCORE_WITHOUT_PERIOD: f64 = 0.35;
@@ -36,12 +37,12 @@ const MIN_SCORE: f64 = 0.15;
 /// The lattice or row found in the whole exemplar with the threshold `min_regularity` is replaced only by one whose
 /// score is higher by more than this. [judged on 20 photos]
 const CLEAR_MARGIN: f64 = 0.1;
-/// Continuations are compared only if lamps have at least this share of the photo pixels of all lights; the other
+/// Laws are compared only if lamps have at least this share of the photo pixels of all lights; the other
 /// lights run through the photo. [judged on 20 photos]
-const MIN_LAMPS: f64 = 0.5;
+const MIN_LAMP_SHARE: f64 = 0.5;
 /// Two lattices or rows count as equal if the relative difference between their periods is at most this.
 /// [judged on 20 photos]
-const SAME_LAW: f64 = 0.08;
+const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,14 +126,14 @@ impl Analysis {
             LawMode::Best => analysis.compare(&whole, job.part(0.6, 1.0))?,
             LawMode::Whole => analysis.set(Proposal::without_period(extent::as_period(&analysis.exemplar))),
             LawMode::Free => analysis.set(Proposal::without_period(Law::Free)),
-            LawMode::Lattice | LawMode::Row => analysis.fix(params.law, &whole, job.part(0.6, 1.0))?,
+            LawMode::Lattice | LawMode::Row => analysis.choose_by_mode(params.law, &whole, job.part(0.6, 1.0))?,
         }
         Ok(analysis)
     }
 
     /// Whether an analysis with the given input and settings would have the same result, so that this one can be
     /// reused.
-    pub fn serves(&self, input: &Input, params: &Params) -> bool {
+    pub fn is_reusable_for(&self, input: &Input, params: &Params) -> bool {
         let Exemplar { width, height, .. } = self.exemplar;
         [width, height] == [input.unwarped.width, input.unwarped.height]
             && self.working_side == working_side(input, params)
@@ -144,25 +145,25 @@ impl Analysis {
     /// Compares the law found in the whole exemplar with other proposals, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
-        let evidence = exemplar.evidence(Role::is_whole);
-        let parts = exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
-        let seen: f64 = evidence.iter().map(|l| l.weight).sum();
+        let lamps = exemplar.measured_lamps(Role::is_whole);
+        let parts = exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
+        let seen: f64 = lamps.iter().map(|l| l.weight).sum();
         let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
         let endless: f64 = through.map(|(_, area)| area).sum();
-        if evidence.len() == 1 && parts.is_empty() && endless == 0.0 {
+        if lamps.len() == 1 && parts.is_empty() && endless == 0.0 {
             // A single lamp shows no repetition, even if its few pixels correlate.
             self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
             return Ok(());
         }
-        if evidence.len() < 2 || seen < MIN_LAMPS * (seen + endless) {
+        if lamps.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
             return Ok(());
         }
-        let score = |law: Law| score(exemplar, (&evidence, &parts), law);
+        let score = |law: Law| score(exemplar, (&lamps, &parts), law);
         let own = Proposal { law: self.law, regularity: self.regularity, score: score(self.law) };
         if own.score.is_nan() {
             return Ok(());
         }
-        let mut proposals = self.propose(&evidence, whole, job)?;
+        let mut proposals = self.propose(&lamps, whole, job)?;
         proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
@@ -200,7 +201,7 @@ impl Analysis {
     /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
     /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
     /// from the distances between neighbouring panes.
-    fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
+    fn propose(&self, lamps: &[MeasuredLamp], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
         for limit in MAGNIFICATIONS {
@@ -215,7 +216,7 @@ impl Analysis {
         for correlated in std::iter::once(whole).chain(&parts) {
             let (law, regularity) = lattice::find_law(exemplar, correlated, self.min_regularity);
             proposals.push(Proposal { law, regularity, score: 0.0 });
-            let shifts = lattice::shifts(exemplar, correlated, PROPOSED, PROPOSED_RELATIVE, MAX_SHIFTS);
+            let shifts = lattice::shifts(exemplar, correlated, MIN_CORRELATION, MIN_RELATIVE_CORRELATION, MAX_SHIFTS);
             for (n, &(a, goodness)) in shifts.iter().enumerate() {
                 let row = lattice::row(exemplar, a, extent);
                 proposals.push(Proposal { law: row, regularity: goodness, score: 0.0 });
@@ -226,7 +227,7 @@ impl Analysis {
             }
             job.check()?;
         }
-        let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(evidence) } else { Vec::new() };
+        let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(lamps) } else { Vec::new() };
         for basis in panes {
             let law = Law::Lattice(basis::refine(exemplar, basis, 2));
             proposals.push(Proposal { law, regularity: 0.0, score: 0.0 });
@@ -235,7 +236,7 @@ impl Analysis {
     }
 
     /// Chooses the best lattice or the best row, as `mode` asks. Errors: `Degenerate` if there is none.
-    fn fix(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
+    fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Law| match mode {
             LawMode::Row => matches!(c, Law::Row(_)),
             _ => matches!(c, Law::Lattice(_)),
@@ -243,11 +244,11 @@ impl Analysis {
         if is_asked(&self.law) {
             return Ok(());
         }
-        let evidence = self.exemplar.evidence(Role::is_whole);
-        let parts = self.exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
-        let mut proposals = self.propose(&evidence, whole, job)?;
+        let lamps = self.exemplar.measured_lamps(Role::is_whole);
+        let parts = self.exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
+        let mut proposals = self.propose(&lamps, whole, job)?;
         proposals.retain(|p| is_asked(&p.law));
-        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.law));
+        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&lamps, &parts), p.law));
         let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
         let best = best.ok_or_else(|| {
             Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
@@ -264,7 +265,7 @@ impl Analysis {
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
 /// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
-fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Law) -> f64 {
+fn score(exemplar: &Exemplar, (lamps, parts): (&[MeasuredLamp], &[MeasuredLamp]), law: Law) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
         None => match law {
@@ -277,7 +278,9 @@ fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: L
 /// Whether two laws are equal except for a small difference between their periods.
 fn is_same(a: Law, b: Law) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
-        let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());
+        let close = |p: DVec2, q: DVec2| {
+            (p - q).length().min((p + q).length()) < MAX_PERIOD_DIFFERENCE * p.length().max(q.length())
+        };
         (close(a, c) && close(b, d)) || (close(a, d) && close(b, c))
     };
     match (a, b) {

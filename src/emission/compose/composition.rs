@@ -7,8 +7,8 @@
 use super::bands::Bands;
 use super::draw;
 use super::layer::Layer;
-use super::render::{self, Frame, Lights};
-use super::source::{self, Source};
+use super::render::{self, Blend, Lights};
+use super::source::{self, TexelSource};
 use super::tile::Tile;
 use super::weights::{Style, Weights};
 use crate::emission::analysis::{Analysis, Choice};
@@ -167,10 +167,10 @@ impl Composition {
         job: Job,
     ) -> Result<(Image, Image)> {
         let inputs = exemplars(input, 1.0, styles);
-        let sources: Vec<Source> =
-            self.layers.iter().zip(inputs).map(|(layer, (input, _))| Source { layer, input }).collect();
-        let frame = Frame { width: self.width, height: self.height, weights: &self.weights };
-        render::run(&frame, &sources, &self.bands, tile, lights, job)
+        let sources: Vec<TexelSource> =
+            self.layers.iter().zip(inputs).map(|(layer, (input, _))| TexelSource { layer, input }).collect();
+        let blend = Blend { width: self.width, height: self.height, weights: &self.weights };
+        render::run(&blend, &sources, &self.bands, tile, lights, job)
     }
 
     /// Checks that the number and the sizes of the exemplars are those for which the composition was planned.

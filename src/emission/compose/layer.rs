@@ -26,7 +26,7 @@ use glam::{DVec2, Vec3};
 
 /// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
 /// edges by resampling. [judged on 5 photos]
-const CRUMB: f64 = 0.02;
+const MAX_CRUMB: f64 = 0.02;
 /// Minimum side of a patch, in working pixels (pixels of the exemplar at the reduced size of the synthesis).
 /// [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
@@ -59,7 +59,7 @@ pub struct Layer {
 }
 
 /// The settings by which an exemplar's pattern is placed on the texture.
-struct Setting<'a> {
+struct PatternPlacement<'a> {
     params: &'a Params,
     /// The law found in the exemplar (`found`), and the law that the texture uses (`law`).
     /// They differ if the texture is tileable, because its lattice is stretched.
@@ -77,19 +77,19 @@ struct Setting<'a> {
 
 impl Layer {
     pub fn new(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let (window, Source { exemplar, found, regularity, choice }) = source(analysis, input, params, job)?;
+        let (window, LayerExemplar { exemplar, found, regularity, choice }) = source(analysis, input, params, job)?;
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-        let setting = Setting::new(&exemplar, found, window, params)?;
+        let placement = PatternPlacement::new(&exemplar, found, window, params)?;
 
         // Compute the metadata of the exemplar, by which patches are compared: the confidence, and the signed x and y
         // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
-        let metadata = metadata::compute(&working.confidence, is_lit, width, height, setting.cap, job_part)?;
+        let metadata = metadata::compute(&working.confidence, is_lit, width, height, placement.cap, job_part)?;
         let patch_map = match inside {
-            Some(corner) => window::copy(corner, setting.canvas, working.pitch),
-            None => setting.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
+            Some(corner) => window::copy(corner, placement.canvas, working.pitch),
+            None => placement.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
         };
         let has_pieces = inside.is_none() && params.whole_lamps;
         let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
@@ -98,17 +98,17 @@ impl Layer {
             false => Designs::default(),
         };
         let instances = match has_pieces {
-            true => setting.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
+            true => placement.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
             false => Vec::new(),
         };
-        let patch_map = match setting.stretch().filter(|_| by_patches) {
+        let patch_map = match placement.stretch().filter(|_| by_patches) {
             Some(lattices) => {
-                quilt::stretched::stretch(&exemplar, &patch_map, lattices, setting.offset, params.size())?
+                quilt::stretched::stretch(&exemplar, &patch_map, lattices, placement.offset, params.size())?
             }
             None => patch_map,
         };
         let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
-        let (law, scale) = (setting.law, params.scale);
+        let (law, scale) = (placement.law, params.scale);
         Ok(Self {
             exemplar,
             law,
@@ -154,22 +154,22 @@ impl Layer {
     /// if no lamps are copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
-        if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
+        if self.instances.is_empty() { 0.0 } else { MAX_CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
 /// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the
 /// exemplar. At a lower score, the texture is a copy of a part of the photo, ragged outlines included.
 /// [bench photos:tune]
-const SURE: f64 = 0.6;
+const MIN_CLEAN_SCORE: f64 = 0.6;
 
 /// Outlines count as ragged if a photo pixel is at least this many unwarped pixels long, because they then show the
 /// steps between photo pixels. [convention]
-const RAGGED: f64 = 2.0;
+const MIN_RAGGED_PIXEL: f64 = 2.0;
 
 /// The exemplar from which a texture is made, and how its pattern continues: on a lattice, in a row, by repetition or
 /// without a period.
-struct Source {
+struct LayerExemplar {
     exemplar: Exemplar,
     /// The law found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
     found: Law,
@@ -178,8 +178,13 @@ struct Source {
 }
 
 /// Analyses the exemplar. If the texture fits into it, also finds the part of the exemplar that the texture copies.
-fn source(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) -> Result<(Option<Window>, Source)> {
-    let (exemplar, read) = match analysis.filter(|r| r.serves(input, params)) {
+fn source(
+    analysis: Option<Analysis>,
+    input: &Input,
+    params: &Params,
+    job: Job,
+) -> Result<(Option<Window>, LayerExemplar)> {
+    let (exemplar, read) = match analysis.filter(|r| r.is_reusable_for(input, params)) {
         Some(Analysis { exemplar, law, regularity, choice, .. }) => (exemplar, Some((law, regularity, choice))),
         None => {
             let side = working_side(input, params);
@@ -203,7 +208,7 @@ fn source(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) 
         }
     };
     if let Some(window) = window.as_mut().filter(|w| w.is_shown) {
-        if may_be_cleaned && matches!(found, Law::Lattice(_)) && choice.score >= SURE {
+        if may_be_cleaned && matches!(found, Law::Lattice(_)) && choice.score >= MIN_CLEAN_SCORE {
             window.is_shown = false;
         } else {
             (found, regularity, choice) = copied();
@@ -212,18 +217,18 @@ fn source(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) 
     if let Law::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
-    Ok((window, Source { exemplar, found, regularity, choice }))
+    Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
 }
 
 /// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
-/// least [`RAGGED`] unwarped pixels.
+/// least [`MIN_RAGGED_PIXEL`] unwarped pixels.
 fn is_ragged(exemplar: &Exemplar) -> bool {
-    let lamps = exemplar.evidence(Role::is_whole);
+    let lamps = exemplar.measured_lamps(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
-        .is_some_and(|pixel| pixel >= RAGGED)
+        .is_some_and(|pixel| pixel >= MIN_RAGGED_PIXEL)
 }
 
-impl<'a> Setting<'a> {
+impl<'a> PatternPlacement<'a> {
     fn new(exemplar: &Exemplar, found: Law, window: Option<Window>, params: &'a Params) -> Result<Self> {
         let working = &exemplar.working;
         let law = if params.tileable { found.fitted(params.size())? } else { found };
@@ -294,7 +299,7 @@ impl<'a> Setting<'a> {
         if designs.kinds.is_empty() || ends {
             return shown;
         }
-        match Sites::new(exemplar, &exemplar.evidence(Role::is_whole), law) {
+        match Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), law) {
             Some(sites) => {
                 let area = (offset, params.size());
                 lattice_fill::place(exemplar, designs, &sites, law, shown, area, params.seed)

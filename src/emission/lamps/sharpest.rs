@@ -18,7 +18,7 @@ const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 
 /// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
-const SHARP: f64 = 0.4;
+const MIN_SHARP_SHARE: f64 = 0.4;
 
 /// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several such lamps, one is
 /// chosen at random, so that the texture keeps their variety.
@@ -36,7 +36,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
         };
         let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
         let most = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);
-        like.into_iter().filter(|&j| exemplar.photo_area[j] >= SHARP * most).collect()
+        like.into_iter().filter(|&j| exemplar.photo_area[j] >= MIN_SHARP_SHARE * most).collect()
     };
     let mut choices: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (n, instance) in instances.iter_mut().enumerate() {
@@ -60,7 +60,7 @@ pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [In
     let sharp: Vec<Vec<usize>> = (0..designs.kinds.len())
         .map(|kind| {
             let most = clear(kind).map(area).fold(0.0, f64::max);
-            clear(kind).filter(|&k| area(k) >= SHARP * most).collect()
+            clear(kind).filter(|&k| area(k) >= MIN_SHARP_SHARE * most).collect()
         })
         .collect();
     for (n, instance) in instances.iter_mut().enumerate() {

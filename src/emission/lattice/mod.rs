@@ -28,14 +28,14 @@ use law::Law;
 
 /// Minimum correlation of a period, relative to the highest correlation. A shift with a lower correlation probably
 /// moves lamps onto lamps of another kind. [bench emission:patterns]
-const RELATIVE_CORRELATION: f32 = 0.9;
+const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
-const SIDE: usize = 160;
+const MAX_SIDE: usize = 160;
 /// Two shifts count as parallel if the sine of the angle between them is below this: about 17°.
 /// [bench emission:patterns]
-const PARALLEL: f64 = 0.3;
+const MAX_PARALLEL_SINE: f64 = 0.3;
 
 /// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
 /// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
@@ -85,7 +85,7 @@ impl Correlated {
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);
-        let reduce = |n: usize| (n * SIDE.min(longest)).div_ceil(longest).max(1);
+        let reduce = |n: usize| (n * MAX_SIDE.min(longest)).div_ceil(longest).max(1);
         let (width, height) = (reduce(working.width), reduce(working.height));
         let mut mask = Image::new(working.width, working.height, 2)?;
         for (i, pixel) in mask.data.chunks_exact_mut(2).enumerate().filter(|(i, _)| working.shown[*i] && is_within(*i))
@@ -105,7 +105,7 @@ impl Correlated {
 /// next that is not parallel to it.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
-    for (shift, value) in shifts(exemplar, correlated, min_regularity, RELATIVE_CORRELATION, usize::MAX) {
+    for (shift, value) in shifts(exemplar, correlated, min_regularity, MIN_RELATIVE_CORRELATION, usize::MAX) {
         if periods.len() < 2 && !periods.iter().any(|p| is_parallel(p.0, shift)) {
             periods.push((shift, value));
         }
@@ -115,7 +115,7 @@ fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) ->
 
 /// Whether two shifts are nearly parallel.
 pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
-    a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
+    a.normalize().perp_dot(b.normalize()).abs() < MAX_PARALLEL_SINE
 }
 
 /// The shortest shifts that map the lights onto themselves, with their correlations. A shift must move lamps onto

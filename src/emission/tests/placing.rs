@@ -73,17 +73,17 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
 fn lamps_without_a_place_are_left_out() {
     let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
-    let restricted = |ground: &dyn Fn(usize, usize) -> Placement| {
-        let ground: Vec<Placement> = (0..400 * 400).map(|i| ground(i % 400, i / 400)).collect();
+    let restricted = |zones: &dyn Fn(usize, usize) -> TexelZone| {
+        let zones: Vec<TexelZone> = (0..400 * 400).map(|i| zones(i % 400, i / 400)).collect();
         let mut emission = result.clone();
-        emission.restrict(&ground, Monitor::default().job()).map(|()| emission)
+        emission.restrict(&zones, Monitor::default().job()).map(|()| emission)
     };
     // A keep-out zone that touches one lamp must remove all of that lamp, and no other lamp.
     let lamp = &result.luminaires[result.luminaires.len() / 2];
     let corner = lamp.outline[0];
     let touched = restricted(&|x, y| {
         let near = (x as f64 + 0.5 - corner.x).abs() < 1.0 && (y as f64 + 0.5 - corner.y).abs() < 1.0;
-        if near { Placement::KeepOut } else { Placement::Open }
+        if near { TexelZone::KeepOut } else { TexelZone::Open }
     })
     .unwrap();
     assert_eq!(touched.luminaires.len(), result.luminaires.len() - 1);
@@ -97,9 +97,9 @@ fn lamps_without_a_place_are_left_out() {
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
     let mut without = coarse.clone();
-    let ground: Vec<Placement> =
-        (0..150 * 150).map(|i| if i == at { Placement::KeepOut } else { Placement::Open }).collect();
-    without.restrict(&ground, Monitor::default().job()).unwrap();
+    let zones: Vec<TexelZone> =
+        (0..150 * 150).map(|i| if i == at { TexelZone::KeepOut } else { TexelZone::Open }).collect();
+    without.restrict(&zones, Monitor::default().job()).unwrap();
     let near = |i: usize| DVec2::new((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5).distance(lamp_out.centre) < 7.0;
     assert!((0..150 * 150).filter(|&i| near(i)).all(|i| without.texture.data[3 * i..3 * i + 3] == [0.0; 3]));
     assert!(
@@ -109,12 +109,12 @@ fn lamps_without_a_place_are_left_out() {
     );
     // Hidden parts of a lamp are cut off.
     let half =
-        restricted(&|x, _| if x < lamp.centre.x as usize { Placement::Hidden } else { Placement::Open }).unwrap();
+        restricted(&|x, _| if x < lamp.centre.x as usize { TexelZone::Hidden } else { TexelZone::Open }).unwrap();
     assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
     assert!(
         half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3])
     );
-    assert_eq!(restricted(&|_, _| Placement::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
+    assert_eq!(restricted(&|_, _| TexelZone::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
 }
 
 #[test]

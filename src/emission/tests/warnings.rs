@@ -1,7 +1,7 @@
 //! Tests that each warning about textures is raised for a bad texture, and that a good texture raises none.
 
 use super::*;
-use crate::emission::{given, statistics::Statistics};
+use crate::emission::{from_texture, statistics::Statistics};
 use crate::image::Image;
 use crate::job::Monitor;
 use glam::DVec2;
@@ -9,7 +9,7 @@ use glam::DVec2;
 /// A texture of four lamps, with the fields of a texture that was made from a photo.
 fn made() -> Emission {
     let lamps = Image::from_fn(32, 32, |x, y| [f32::from(x % 16 < 6 && y % 16 < 6); 3]).unwrap();
-    let own = given(&lamps, Monitor::default().job()).unwrap();
+    let own = from_texture(&lamps, Monitor::default().job()).unwrap();
     assert_eq!(own.warnings(), [], "a texture of the caller's");
     Emission {
         exemplar_metadata: Image::new(4, 4, 3).unwrap(),
