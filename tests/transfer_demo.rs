@@ -255,5 +255,5 @@ fn without_strokes_the_ceiling_and_its_lamps_are_proposed_with_a_warning() {
     }
     let warnings = transfer.results.warnings(&transfer.input.strokes);
     let proposed = warnings.iter().filter(|(_, w)| w.code == Code::Proposed).map(|(stage, _)| *stage);
-    assert_eq!(proposed.collect::<Vec<_>>(), [Stage::Plane, Stage::Lights]);
+    assert_eq!(proposed.collect::<Vec<_>>(), [Some(Stage::Plane), Some(Stage::Lights)]);
 }

@@ -215,15 +215,15 @@ fn start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_image(
     illuminance: *mut luxfer_illuminance,
-    which: luxfer_illuminance_image,
+    kind: luxfer_illuminance_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(illuminance, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Output) -> &Image = match which {
+        let pick: fn(&Output) -> &Image = match kind {
             LUXFER_ILLUMINANCE_LUX => |o| &o.lux,
             LUXFER_ILLUMINANCE_ERROR => |o| &o.error,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_ILLUMINANCE_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_ILLUMINANCE_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())

@@ -97,7 +97,7 @@ impl LampList {
         let counts = counts.into_iter().flatten().chain(self.others.iter().map(|l| usize::from(l.is_within(size))));
         kinds::number(lamps.iter_mut().zip(counts));
         let listed = self.shapes.iter_mut().flatten().chain(&mut self.others);
-        listed.zip(lamps).for_each(|(lamp, told)| lamp.kind = told.kind);
+        listed.zip(lamps).for_each(|(lamp, numbered)| lamp.kind = numbered.kind);
     }
 
     /// The number of listed lights.
