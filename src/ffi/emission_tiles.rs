@@ -5,7 +5,7 @@
 //! the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
 
 use super::emission::{
-    Exemplar, AddedExemplar, Output, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
+    AddedExemplar, Exemplar, Output, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
 };
 use super::guard::enter;
 use super::handle::{self, Owned};

@@ -190,7 +190,8 @@ pub unsafe extern "C" fn luxfer_guides_get_motion(
 ) -> luxfer_status {
     enter(guides, |stage| {
         let out = Out::new(motion, "motion")?;
-        let (current, previous) = (stage.output()?, handle::borrow_in(stage.context(), previous, "previous")?.output()?);
+        let (current, previous) =
+            (stage.output()?, handle::borrow_in(stage.context(), previous, "previous")?.output()?);
         let (width, height) = (current.depth.width, current.depth.height);
         let image = Pixels::counted(stage.context(), width, height, 2, || guides::motion(&current, &previous))?;
         out.set(handle::give(image));

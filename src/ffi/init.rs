@@ -101,7 +101,11 @@ pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 /// LUXFER_INVALID_ARGUMENT if struct_type is another value, if place is NULL, or if no version of the struct has this
 /// size; LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_init(struct_type: luxfer_struct_type, place: *mut c_void, size: usize) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_init(
+    struct_type: luxfer_struct_type,
+    place: *mut c_void,
+    size: usize,
+) -> luxfer_status {
     guard(|| match struct_type {
         LUXFER_STRUCT_CONTEXT_PARAMS => params::init::<luxfer_context_params>(place.cast(), size),
         LUXFER_STRUCT_IMAGE_VIEW => params::init::<luxfer_image_view>(place.cast(), size),
