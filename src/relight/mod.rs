@@ -41,10 +41,10 @@ mod warnings;
 
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};
-pub use importance::{Importance, MapParams, Response};
+pub use importance::{Importance, ImportanceParams, Response};
 pub use lamps::Lamps;
 pub use params::{Fit, Params, Quantity, TargetGeometry};
-pub use placement::{Aim, PlaceParams, Placement, Pose};
+pub use placement::{Aim, Placement, PlacementParams, Pose};
 pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 pub use sided::Constraint;
