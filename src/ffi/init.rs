@@ -96,8 +96,8 @@ pub const LUXFER_STRUCT_RENDER_PART: luxfer_struct_type = 26;
 pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
-/// struct. If the program was built with an older header, in which the struct is smaller, only the
-/// fields of that version are filled. Any thread.
+/// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
+/// version are filled. Any thread.
 /// LUXFER_INVALID_ARGUMENT if struct_type is another value, if place is NULL, or if no version of the struct has this
 /// size; LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
 #[unsafe(no_mangle)]

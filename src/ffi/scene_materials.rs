@@ -111,9 +111,9 @@ pub struct luxfer_texture_use {
     pub texture: u32,
     /// Set of the mesh's texture coordinates that the material uses for this texture: 0 or 1.
     pub uv_set: u32,
-    /// Law of the texture along u: a LUXFER_WRAP_ value.
+    /// Continuation of the texture along u: a LUXFER_WRAP_ value.
     pub wrap_u: luxfer_wrap,
-    /// Law of the texture along v: a LUXFER_WRAP_ value.
+    /// Continuation of the texture along v: a LUXFER_WRAP_ value.
     pub wrap_v: luxfer_wrap,
     /// Affine map that is applied to the texture coordinates (u, v, 1) before the look-up: two rows of three numbers.
     pub transform: [f32; 6],
