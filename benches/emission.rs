@@ -330,7 +330,7 @@ fn peer(pool: &Pool) -> Result<(), String> {
             pixel.fill(0.0);
         }
     }
-    let peer_result = emission::given(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
+    let peer_result = emission::from_texture(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
     let mut table = Table::new(["program", "seconds"].into_iter().chain(STATISTICS).chain(["broken"]));
     let programs = [("luxfer", ours, &result), ("texture-synthesis", theirs, &peer_result)];
     let scores = programs.map(|(name, seconds, result)| {

@@ -12,8 +12,8 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Constraint, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, PlaceParams, Quantity,
-    Solution, lamp_responses, run, solve_groups,
+    Aspect, Constraint, Goal, GroupParams, Importance, ImportanceParams, Input, Lamps, Params, PlacementParams,
+    Quantity, Solution, TargetGeometry, lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
@@ -276,7 +276,7 @@ fn map(case: &Case) {
     let scene = Arc::new(scene);
     let monitor = Monitor::default();
     let goal = Goal {
-        place: Place::Surface(&case.target),
+        geometry: TargetGeometry::Surface(&case.target),
         quantity: Quantity::Outgoing,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
@@ -284,7 +284,7 @@ fn map(case: &Case) {
         weight: 1.0,
     };
     let (seconds, map) = time(Clock::Wall, || {
-        Importance::trace(&scene, case.emitter, &goal, &MapParams::default(), monitor.job()).expect("a map")
+        Importance::trace(&scene, case.emitter, &goal, &ImportanceParams::default(), monitor.job()).expect("a map")
     });
     let texture = Texture::new(
         "lamps",
@@ -298,8 +298,9 @@ fn map(case: &Case) {
         100.0 * response.light.half_width().y / response.light.mean.y,
         100.0 * (response.band_error.y / response.light.mean.y).abs()
     );
-    let (search, best) =
-        time(Clock::Wall, || map.place(&texture.image, &PlaceParams::default(), monitor.job()).expect("a placement"));
+    let (search, best) = time(Clock::Wall, || {
+        map.place(&texture.image, &PlacementParams::default(), monitor.job()).expect("a placement")
+    });
     println!(
         "the best of its placements: {search:.3} s, {:.2} times the light",
         best.response.light.mean.y / response.light.mean.y
@@ -318,7 +319,7 @@ fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
     let goals = [Goal {
-        place: Place::Surface(&floor),
+        geometry: TargetGeometry::Surface(&floor),
         quantity: Quantity::Incident,
         target: Vec3::splat(100.0),
         aspect: Aspect::Colour,

@@ -30,7 +30,7 @@ fn measure(setting: Setting) {
     let scene = Arc::new(setting.scene.clone());
     let build = || builder.run(|| World::build(scene.clone(), monitor.job())).expect("the scene is valid");
     let (analysed, mut general) = (build(), build());
-    general.generalise();
+    general.discard_analysis();
     let pool = Pool::new(1).expect("a thread");
     let params = Params { width: setting.size[0] / 4, height: setting.size[1] / 4, samples: 8, ..Params::default() };
     let paths = (params.width * params.height) as f64 * f64::from(params.samples);

@@ -22,8 +22,8 @@ use luxfer::image::colour::{linear_to_srgb, srgb_to_linear};
 use luxfer::image::io::{Encoding, encode_png, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
-use luxfer::patch::Vote;
-use luxfer::stylize::{Finder, Guide, Input, Mode, Output, Params, Range, Study, run};
+use luxfer::patch::VoteMode;
+use luxfer::stylize::{Finder, Guide, Input, Mode, Output, Params, Range, Updater, run};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -254,7 +254,7 @@ fn update(pair: &Pair, pool: &Pool) {
     let guides = pair.guides();
     let monitor = Monitor::default();
     let (mut study, _) = pool
-        .run(|| Study::new(&input(&pair.artwork, &guides), &Params::preview(), &|_| (), monitor.job()))
+        .run(|| Updater::new(&input(&pair.artwork, &guides), &Params::preview(), &|_| (), monitor.job()))
         .expect("valid input");
     let (width, height) = (pair.artwork.width, pair.artwork.height);
     let stroke = Image::from_fn(width, height, |x, y| {
@@ -350,7 +350,7 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
 /// Settings of plain EM with a cost for the usage of patches (Kaspar et al. 2015).
 fn occurrence(weight: f32) -> Params {
     let params = Params { mode: Mode::Occurrence, occurrence: weight, ..Params::default() };
-    Params { vote: Vote::Plain, final_vote: Vote::Plain, ..params }
+    Params { vote: VoteMode::Plain, final_vote: VoteMode::Plain, ..params }
 }
 
 /// Compares luxfer with plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. luxfer
@@ -365,8 +365,13 @@ fn rivals(pair: &Pair, pool: &Pool) {
     let (before, ours) = stylise("stylit_full", &Params::default());
 
     // Run plain EM with luxfer's numbers of iterations, and with as many iterations as fit into luxfer's time.
-    let plain =
-        Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() };
+    let plain = Params {
+        mode: Mode::Nearest,
+        sweeps: 3,
+        vote: VoteMode::Plain,
+        final_vote: VoteMode::Plain,
+        ..Params::default()
+    };
     let (seconds, file) = stylise("stylit_plain_em", &plain);
     made.push(("plain EM", Some(seconds), file));
     let more = |count: usize| ((count as f64 * before / seconds).round() as usize).clamp(1, 100);
@@ -473,9 +478,12 @@ fn methods(pair: &Pair, pool: &Pool) {
         ("occurrence, lambda 0.1 (Kaspar 2015)", occurrence(0.1)),
         ("occurrence, lambda 1", occurrence(1.0)),
         ("nearest (Wexler 2007)", Params { sweeps: 3, ..of(Mode::Nearest) }),
-        ("nearest, mean", Params { sweeps: 3, final_vote: Vote::Plain, vote: Vote::Plain, ..of(Mode::Nearest) }),
+        (
+            "nearest, mean",
+            Params { sweeps: 3, final_vote: VoteMode::Plain, vote: VoteMode::Plain, ..of(Mode::Nearest) },
+        ),
         ("greedy (Hertzmann 2001)", of(Mode::Greedy)),
-        ("error budget by table", Params { finder: Finder::Table, ..Params::default() }),
+        ("error budget by table", Params { finder: Finder::KdTree, ..Params::default() }),
     ] {
         let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));
         table.row([vec![name.to_string(), format!("{seconds:.2}")], numbers(&output, &pair.artwork)].concat());
@@ -506,8 +514,8 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
     knob("patch", &[3, 5, 7], |p, v| p.patch = v);
-    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
-    let last = |&final_vote: &Vote| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
+    let votes = [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority];
+    let last = |&final_vote: &VoteMode| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
     knobs.push(("last vote", votes.iter().map(last).collect()));
 
     let mut table = Table::new(["knob", "seconds", "Eq. 3", "energy", "used %", "entropy", "guide error", "texture"]);

@@ -11,7 +11,7 @@
 use luxfer::exec::Pool;
 use luxfer::job::Monitor;
 use luxfer::render::World;
-use luxfer::render::illuminance::{Output, Params, Place, run};
+use luxfer::render::illuminance::{CalculationPoints, Output, Params, run};
 use luxfer::scene::{Environment, Material, Mesh, PunctualLight, Scene};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -38,21 +38,21 @@ fn point_light(position: Vec3, candela: f32) -> PunctualLight {
 }
 
 /// Computes the illuminance on a grid of `columns` × `rows` points, which are the centres of the cells of `place`.
-fn measure(scene: Scene, place: &Place, columns: usize, rows: usize, samples: u32) -> Output {
+fn measure(scene: Scene, place: &CalculationPoints, columns: usize, rows: usize, samples: u32) -> Output {
     let monitor = Monitor::default();
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
     let params = Params { columns, rows, samples, seed: 171 };
     Pool::new(2).unwrap().run(|| run(&world, place, &params, monitor.job()).unwrap())
 }
 
-fn grid(origin: Vec3, across: Vec3, down: Vec3, normal: Vec3) -> Place {
-    Place::Grid { origin, across, down, normal }
+fn grid(origin: Vec3, across: Vec3, down: Vec3, normal: Vec3) -> CalculationPoints {
+    CalculationPoints::Grid { origin, across, down, normal }
 }
 
 /// Checks that every point of a grid lies within its own confidence interval of the expected value, and that no
 /// interval exceeds the relative width `share`.
-fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, share: f64) {
-    let Place::Grid { origin, across, down, .. } = place else { unreachable!() };
+fn compare(output: &Output, place: &CalculationPoints, expected: impl Fn(DVec3) -> f64, share: f64) {
+    let CalculationPoints::Grid { origin, across, down, .. } = place else { unreachable!() };
     let (columns, rows) = (output.lux.width, output.lux.height);
     for y in 0..rows {
         for x in 0..columns {

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::relight::{Aspect, Constraint, Goal, Importance, MapParams, Params, Place, Pose, Quantity};
+use luxfer::relight::{Aspect, Constraint, Goal, Importance, ImportanceParams, Params, Pose, Quantity, TargetGeometry};
 use luxfer::scene::{Camera, Material, Mesh, Scene, Texture, TextureRef, gltf};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -90,7 +90,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
     let target = [(0, 0), (0, 1)];
     let goal = Goal {
-        place: Place::Surface(&target),
+        geometry: TargetGeometry::Surface(&target),
         quantity: Quantity::Incident,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
@@ -106,7 +106,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     let irradiance = |radiance: DVec3| (radiance * std::f64::consts::PI).to_array();
     let row = |seed: u64| {
         let tracing = Params { paths: OUR_PATHS, target_error: 0.0, seed, ..Params::default() };
-        let params = MapParams { width: CELLS, height: CELLS, tracing };
+        let params = ImportanceParams { width: CELLS, height: CELLS, tracing };
         let map = Importance::trace(&scene, 1, &goal, &params, monitor.job()).unwrap();
         let image = map.image().unwrap();
         let cells: Vec<f64> = image.data.iter().map(|v| f64::from(*v) * std::f64::consts::PI).collect();

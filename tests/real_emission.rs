@@ -2,7 +2,7 @@
 //! its width and height.
 
 use glam::DVec2;
-use luxfer::emission::{Continuation, Emission, Input, Luminaire, Params, run};
+use luxfer::emission::{Emission, Input, Law, Luminaire, Params, run};
 use luxfer::exec::Pool;
 use luxfer::image::io::{self, Encoding};
 use luxfer::image::{Image, colour};
@@ -46,7 +46,7 @@ fn doubled(name: &str, photo: &Image, light: &Image) -> Emission {
     eprintln!(
         "{name}: {:.2} s, {:?}, regularity {:.2}, {} lamps, error {:.3}, {:?}",
         start.elapsed().as_secs_f64(),
-        result.continuation,
+        result.law,
         result.regularity,
         result.luminaires.len(),
         result.error,
@@ -63,7 +63,7 @@ fn doubled(name: &str, photo: &Image, light: &Image) -> Emission {
 fn the_panels_of_the_corridor_go_on_at_their_period() {
     let Some((photo, light)) = ceiling("alma", 1.0) else { return };
     let result = doubled("alma", &photo, &light);
-    let Continuation::Row([period, _]) = result.continuation else { panic!("{:?}", result.continuation) };
+    let Law::Row([period, _]) = result.law else { panic!("{:?}", result.law) };
     // The true period of the panels is 3.2067 units of 150 pixels each.
     assert!((period - DVec2::new(0.0, 481.0)).length() < 6.0, "{period}");
     assert!(result.error < 0.1, "{}", result.error);
@@ -83,7 +83,7 @@ fn the_glass_ceiling_keeps_its_panes() {
     let params = Params { width: photo.width, height: photo.height, ..Params::default() };
     let panes = run(&input, &params, Monitor::default().job()).unwrap().luminaires;
     assert_eq!(result.luminaires.len(), 4 * panes.len());
-    let Continuation::Row([period, _]) = result.continuation else { panic!("{:?}", result.continuation) };
+    let Law::Row([period, _]) = result.law else { panic!("{:?}", result.law) };
     let side = photo.width as f64;
     for lamp in &result.luminaires {
         let is_same = |pane: &Luminaire| {

@@ -7,7 +7,7 @@ use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
-use luxfer::patch::Vote;
+use luxfer::patch::VoteMode;
 use luxfer::stylize::{Guide, Input, Mode, Output, Params, Range, run};
 use std::path::PathBuf;
 
@@ -65,7 +65,13 @@ fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
     let budget = stylise(&pair, &Params::default());
     let nearest = stylise(
         &pair,
-        &Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() },
+        &Params {
+            mode: Mode::Nearest,
+            sweeps: 3,
+            vote: VoteMode::Plain,
+            final_vote: VoteMode::Plain,
+            ..Params::default()
+        },
     );
     let energy = |o: &Output| *o.report.levels.last().unwrap().energy.last().unwrap();
     let (rich, poor) = (budget.report.usage, nearest.report.usage);

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec4, Vec3};
 use luxfer::demo::{self, photo};
-use luxfer::emission::{Continuation, Luminaire};
+use luxfer::emission::{Law, Luminaire};
 use luxfer::error::ErrorKind;
 use luxfer::exec::Pool;
 use luxfer::image::Image;
@@ -109,7 +109,7 @@ fn noise_in_the_photo_does_not_change_the_design() {
         let monitor = Monitor::default();
         pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
         let emission = transfer.results.emission.as_ref().unwrap();
-        assert!(matches!(emission.continuation, Continuation::Lattice(_)), "{seed}: {:?}", emission.continuation);
+        assert!(matches!(emission.law, Law::Lattice(_)), "{seed}: {:?}", emission.law);
         // The ceiling has as many lamps as fit at the photo's spacing, and no other lit regions.
         let ceiling = transfer.results.unsolved.as_ref().unwrap().surface.size.as_dvec2();
         let periods = ceiling / room.grid.period.as_dvec2();
@@ -255,5 +255,5 @@ fn without_strokes_the_ceiling_and_its_lamps_are_proposed_with_a_warning() {
     }
     let warnings = transfer.results.warnings(&transfer.input.strokes);
     let proposed = warnings.iter().filter(|(_, w)| w.code == Code::Proposed).map(|(stage, _)| *stage);
-    assert_eq!(proposed.collect::<Vec<_>>(), [Stage::Plane, Stage::Lights]);
+    assert_eq!(proposed.collect::<Vec<_>>(), [Some(Stage::Plane), Some(Stage::Lights)]);
 }

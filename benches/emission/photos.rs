@@ -203,7 +203,7 @@ fn ceiling(name: &str) -> Option<Exemplar> {
 fn table_of_real() -> Table {
     Table::new([
         "photo",
-        "continuation",
+        "law",
         "regularity",
         "whole lamps",
         "lamps",
@@ -232,7 +232,7 @@ fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     let pair = |a: f64, b: f64, digits: usize| format!("{a:.digits$} → {b:.digits$}");
     table.row([
         name.to_string(),
-        format!("{:?}", result.continuation).split('(').next().unwrap_or("").to_string(),
+        format!("{:?}", result.law).split('(').next().unwrap_or("").to_string(),
         format!("{:.2}", result.regularity),
         result.exemplar_lamps.to_string(),
         result.luminaires.len().to_string(),

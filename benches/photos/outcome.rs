@@ -74,7 +74,7 @@ impl Outcome {
         self.results().emission.as_deref()
     }
 
-    fn raised(&self) -> Vec<(Stage, Warning)> {
+    fn raised(&self) -> Vec<(Option<Stage>, Warning)> {
         self.results().warnings(&self.transfer.input.strokes)
     }
 
@@ -86,7 +86,7 @@ impl Outcome {
 
     /// Reports of the run that its texture may be wrong: its error, and its warnings up to the texture.
     pub fn warnings(&self) -> Vec<String> {
-        let of_texture = self.raised().into_iter().filter(|(stage, _)| *stage <= Stage::Emission);
+        let of_texture = self.raised().into_iter().filter(|(stage, _)| *stage <= Some(Stage::Emission));
         let texts = of_texture.map(|(_, w)| format!("{:?} {:.3} (limit {:.3})", w.code, w.severity, w.limit));
         self.failure.iter().cloned().chain(texts).collect()
     }

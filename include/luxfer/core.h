@@ -205,13 +205,13 @@ typedef int32_t luxfer_struct_type;
 #define LUXFER_STRUCT_DEMO_PHOTO_PARAMS 27
 
 /**
- * Fills the struct at place with the defaults of its type, which is given as a LUXFER_STRUCT_ value. The argument
- * size is sizeof the struct. If the program was built with an older header, in which the struct is smaller, only the
- * fields of that version are filled. Any thread.
- * LUXFER_INVALID_ARGUMENT if the type is another value, if place is NULL, or if no version of the struct has this
+ * Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
+ * struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
+ * version are filled. Any thread.
+ * LUXFER_INVALID_ARGUMENT if struct_type is another value, if place is NULL, or if no version of the struct has this
  * size; LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
  */
-luxfer_status luxfer_init(luxfer_struct_type which,
+luxfer_status luxfer_init(luxfer_struct_type struct_type,
                           void *place,
                           size_t size);
 

@@ -54,7 +54,7 @@ typedef int32_t luxfer_artwork;
  * Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
  * LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
-luxfer_status luxfer_demo_create_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
+luxfer_status luxfer_demo_create_scene(luxfer_context *context, luxfer_demo kind, luxfer_scene **scene);
 
 /**
  * Generates a picture of a scene as an artist would paint it. The parameter guides holds the rendered guide images of
@@ -122,7 +122,7 @@ luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
-                                          luxfer_demo_photo_image which,
+                                          luxfer_demo_photo_image kind,
                                           luxfer_image **image);
 
 #ifdef __cplusplus

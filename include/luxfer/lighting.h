@@ -129,7 +129,7 @@ luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
-                                           luxfer_illuminance_image which,
+                                           luxfer_illuminance_image kind,
                                            luxfer_image **image);
 
 /**

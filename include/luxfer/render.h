@@ -159,7 +159,7 @@ luxfer_status luxfer_render_start(luxfer_render *render,
  * 0.
  */
 luxfer_status luxfer_render_get_image(luxfer_render *render,
-                                      luxfer_render_image which,
+                                      luxfer_render_image kind,
                                       luxfer_image **image);
 
 /**

@@ -254,7 +254,7 @@ luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
  * LUXFER_NOT_READY before a job with a mask has succeeded.
  */
 luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
-                                       luxfer_rectify_image which,
+                                       luxfer_rectify_image kind,
                                        luxfer_image **image);
 
 /**
@@ -452,7 +452,7 @@ luxfer_status luxfer_features_start(luxfer_features *features,
  * network.
  */
 luxfer_status luxfer_features_get_image(luxfer_features *features,
-                                        luxfer_features_image which,
+                                        luxfer_features_image kind,
                                         luxfer_image **image);
 
 /**
@@ -620,7 +620,7 @@ luxfer_status luxfer_segment_start(luxfer_segment *segment,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
-                                       luxfer_segment_image which,
+                                       luxfer_segment_image kind,
                                        luxfer_image **image);
 
 /**
@@ -902,7 +902,7 @@ luxfer_status luxfer_emission_start(luxfer_emission *emission,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
-                                        luxfer_emission_image which,
+                                        luxfer_emission_image kind,
                                         luxfer_image **image);
 
 /**

@@ -100,19 +100,19 @@ luxfer_status luxfer_guides_start(luxfer_guides *guides,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
-                                      luxfer_guides_image which,
+                                      luxfer_guides_image kind,
                                       luxfer_image **image);
 
 /**
  * Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
- * The parameter guides is the current frame; the parameter before is the previous frame. For each pixel of the
+ * The parameter guides is the current frame; the parameter previous is the frame before it. For each pixel of the
  * current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
  * in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
  * thread.
  * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
-                                       luxfer_guides *before,
+                                       luxfer_guides *previous,
                                        luxfer_image **motion);
 
 /* ====================================================================================================================
@@ -444,7 +444,7 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
 
 /**
  * Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
- * the size and channels of the old one. changed is a mask with 1 channel, above 0.5 where the new artwork differs
+ * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
  * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
  * the time of luxfer_stylize_start. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
@@ -453,7 +453,7 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
  */
 luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_image *artwork,
-                                    luxfer_image *changed,
+                                    luxfer_image *changed_mask,
                                     luxfer_job **job);
 
 /**
@@ -566,7 +566,7 @@ typedef struct luxfer_stylize_pass {
  * level is finished.
  */
 luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
-                                       luxfer_stylize_image which,
+                                       luxfer_stylize_image kind,
                                        luxfer_image **image);
 
 /**

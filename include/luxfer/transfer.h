@@ -456,7 +456,7 @@ typedef struct luxfer_fixture {
  * luxfer_render_params.preview was 0.
  */
 luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
-                                        luxfer_transfer_image which,
+                                        luxfer_transfer_image kind,
                                         luxfer_image **image);
 
 /**
@@ -466,7 +466,7 @@ luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
  * the other scenes.
  */
 luxfer_status luxfer_transfer_get_scene(luxfer_transfer *transfer,
-                                        luxfer_transfer_scene which,
+                                        luxfer_transfer_scene kind,
                                         luxfer_scene **scene);
 
 /**
@@ -536,7 +536,8 @@ typedef struct luxfer_warning {
     luxfer_warning_code code;
     /**
      * The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
-     * luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene it is LUXFER_STAGE_SCENE.
+     * luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the size of the
+     * scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE.
      */
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
@@ -724,7 +725,8 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
 
 /**
  * Gets the warnings about the result of an object. handle is one of:
- * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+ * - a luxfer_transfer: an implausible size of its scene, then the warnings of all stages that have a result, in their
+ *   order;
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
  * - a luxfer_features;
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;

@@ -1,18 +1,18 @@
 //! Measures the lamps of an exemplar, so that a caller can choose the scale of the pattern by their size or spacing.
 
 use super::agreement::statistics;
+use super::analysis::Analysis;
 use super::compose::layer::outlines;
 use super::exemplar::components::Component;
 use super::lamps::design::Designs;
-use super::lattice::continuation::Continuation;
+use super::lattice::law::Law;
 use super::params::{Input, Params};
-use super::reading::Reading;
 use crate::error::Result;
 use crate::job::Job;
 use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
-pub struct Measure {
+pub struct Measurements {
     /// Medians, over the lamps that the exemplar shows completely (whole lamps), of the longer side and of the shorter
     /// side. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
@@ -25,17 +25,17 @@ pub struct Measure {
     /// Number of columns of the unwarped image that contain at least one usable pixel: on the plane, and not magnified
     /// too much.
     pub width: f64,
-    pub(super) reading: Reading,
+    pub(super) analysis: Analysis,
 }
 
 /// Measures an exemplar. Errors: as for [`super::run`].
-pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
+pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measurements> {
     params.check()?;
     input.check()?;
-    let reading = Reading::new(input, params, job)?;
-    let exemplar = &reading.exemplar;
-    let spacing = match reading.continuation {
-        Continuation::Lattice([a, b]) => a.length().min(b.length()),
+    let analysis = Analysis::new(input, params, job)?;
+    let exemplar = &analysis.exemplar;
+    let spacing = match analysis.law {
+        Law::Lattice([a, b]) => a.length().min(b.length()),
         _ => {
             let centres: Vec<DVec2> = exemplar.lamps().map(|lamp| lamp.centre).collect();
             let mut nearest = statistics::nearest_distances(&centres);
@@ -62,5 +62,5 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     let lamp_sides = [median(|(size, _)| size.max_element()), median(|(size, _)| size.min_element())];
     let lamp_fill = median(|(size, area)| area / size.element_product());
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    Ok(Measure { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, reading })
+    Ok(Measurements { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, analysis })
 }

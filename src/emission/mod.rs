@@ -26,7 +26,7 @@
 //! - the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns drift and cuts
 //!   lamps;
 //! - the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]);
-//! - zones that must stay free of lamps ([`compose::placement`]);
+//! - zones that must stay free of lamps ([`compose::texel_zone`]);
 //! - textures of any size, rendered in tiles of a [`Composition`];
 //! - textures blended from several exemplars ([`compose::draw`]).
 //!
@@ -34,6 +34,7 @@
 //! planes; and exact edges of crossing lines in tileable textures, where stretching the lattice may displace them.
 
 mod agreement;
+mod analysis;
 mod compose;
 mod exemplar;
 mod lamps;
@@ -42,23 +43,22 @@ mod measure;
 mod output;
 mod params;
 mod quilt;
-mod reading;
 #[cfg(test)]
 mod tests;
 mod warnings;
 
 pub use agreement::{pairs, statistics};
+pub use analysis::Choice;
 pub use compose::composition::Composition;
 pub use compose::lamp_list::LampList;
-pub use compose::placement::Placement;
+pub use compose::texel_zone::TexelZone;
 pub use compose::tile::Tile;
 pub use compose::weights::Style;
 pub use lamps::luminaire::Luminaire;
-pub use lattice::continuation::Continuation;
-pub use measure::{Measure, measure};
+pub use lattice::law::Law;
+pub use measure::{Measurements, measure};
 pub use output::Emission;
-pub use params::{Input, Law, Params, SCALES};
-pub use reading::Choice;
+pub use params::{Input, LawMode, Params, SCALES};
 
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
@@ -77,7 +77,7 @@ use quilt::patch_map::PatchMap;
 
 /// Makes an emission from a texture that the caller supplies. A texel counts as light if any of its channels is above
 /// 0.
-pub fn given(texture: &Image, job: Job) -> Result<Emission> {
+pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
     if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
         return Err(Error::argument(format!("the emissive texture holds {bad}; its values must be finite and >= 0")));
@@ -99,9 +99,9 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         exemplar_metadata: Image::default(),
         metadata: Image::default(),
         luminaires,
-        continuation: Continuation::Copy,
+        law: Law::Copy,
         regularity: 0.0,
-        choice: Choice::only(Continuation::Copy),
+        choice: Choice::only(Law::Copy),
         statistics: [statistics; 2],
         error: 0.0,
         sampling_error: 0.0,
@@ -126,13 +126,13 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
 
 /// Like [`blend`], but uses the analysis of the first exemplar that [`measure`] has made, instead of repeating it.
 pub fn blend_measured(
-    measured: Measure,
+    measured: Measurements,
     input: &Input,
     styles: &[Style],
     params: &Params,
     job: Job,
 ) -> Result<Emission> {
-    let composition = Composition::of(Some(measured.reading), input, styles, params, job.part(0.0, 0.85))?;
+    let composition = Composition::of(Some(measured.analysis), input, styles, params, job.part(0.0, 0.85))?;
     make(composition, input, styles, params, job)
 }
 
@@ -152,8 +152,8 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = composition.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
         // If the exemplar repeats as a whole, the exemplar itself is one period.
-        let periods = match layer.continuation {
-            Continuation::Tile(_) => [Some(f64::INFINITY); 2],
+        let periods = match layer.law {
+            Law::Whole(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
         let own = layer.exemplar.statistics(input.unwarped, periods);
@@ -163,13 +163,12 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
     });
     let expected = Statistics::mixed(parts);
     let exemplar_lamps = composition.exemplar_lamps();
-    let Layer { exemplar, continuation, regularity, choice, metadata, patch_map, .. } =
-        composition.layers.swap_remove(0);
-    let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
+    let Layer { exemplar, law, regularity, choice, metadata, patch_map, .. } = composition.layers.swap_remove(0);
+    let periods = if styles.is_empty() { law.periods() } else { [None; 2] };
     let statistics = [expected, statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
     let error = statistics[1].difference(&statistics[0]);
-    let sampling_error = match continuation {
-        Continuation::Lattice(_) | Continuation::Row(_) | Continuation::Free if styles.is_empty() => {
+    let sampling_error = match law {
+        Law::Lattice(_) | Law::Row(_) | Law::Free if styles.is_empty() => {
             let images = (&texture, &mask);
             sampling::error(&exemplar, images, &statistics[1], periods, params.scale, job.part(1.0, 1.0))?
                 .unwrap_or(0.0)
@@ -184,7 +183,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
         exemplar_metadata: metadata,
         metadata: shown,
         luminaires,
-        continuation,
+        law,
         regularity,
         choice,
         statistics,

@@ -1,9 +1,9 @@
 //! The result of emission: the texture, its lamps and its statistics.
 
 use super::agreement::statistics::Statistics;
+use super::analysis::Choice;
 use super::lamps::luminaire::Luminaire;
-use super::lattice::continuation::Continuation;
-use super::reading::Choice;
+use super::lattice::law::Law;
 use crate::image::Image;
 
 #[derive(Clone, Debug)]
@@ -20,11 +20,11 @@ pub struct Emission {
     pub metadata: Image,
     pub luminaires: Vec<Luminaire>,
     /// How the pattern continues beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
-    pub continuation: Continuation,
+    pub law: Law,
     /// Autocorrelation of the lights at a shift by one period, in `[0, 1]`: the lower value of the two periods; 0 if
     /// no period was found.
     pub regularity: f64,
-    /// How well `continuation` predicts the lamps of the photo, and the best alternative.
+    /// How well `law` predicts the lamps of the photo, and the best alternative.
     pub choice: Choice,
     /// Two sets of statistics in texels: those expected from the exemplars, and those of the texture.
     pub statistics: [Statistics; 2],

@@ -23,14 +23,14 @@ pub struct Input<'a> {
     pub photo: Option<(&'a Image, Homography)>,
 }
 
-/// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition of the whole exemplar, or by
-/// patches without a lattice.
+/// How the law of a texture is chosen (see [`Law`](super::Law)): by comparison, by the autocorrelation alone, or by
+/// the caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
-    /// The continuation that best predicts the lamps of the photo. The one found by autocorrelation is kept unless
+pub enum LawMode {
+    /// The law that best predicts the lamps of the photo. The one found by autocorrelation is kept unless
     /// another one scores clearly higher.
     Best,
-    /// The continuation that the autocorrelation of the lights finds with the threshold `min_regularity`.
+    /// The law that the autocorrelation of the lights finds with the threshold `min_regularity`.
     Correlation,
     /// The lattice (for `Row`, the row of lamps) found by the autocorrelation. If it finds none, other lattices (rows)
     /// are proposed, and the best is chosen.
@@ -69,7 +69,7 @@ pub struct Params {
     /// exactly; at 1, none is, and patches are placed without a lattice.
     pub min_regularity: f32,
     /// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
-    pub law: Law,
+    pub law: LawMode,
     /// Parts of the exemplar that unwarping magnifies more than this are not used. Magnification is a ratio of
     /// lengths, relative to the least magnified pixel. In `[1, 1e6]`, or 0 to use the whole exemplar.
     pub max_magnification: f64,
@@ -107,7 +107,7 @@ impl Default for Params {
             metadata_weight: 1.0,
             offset: DVec2::ZERO,
             min_regularity: 0.6,
-            law: Law::Best,
+            law: LawMode::Best,
             max_magnification: 0.0,
             whole_lamps: true,
             even_lamps: false,

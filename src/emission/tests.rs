@@ -122,7 +122,7 @@ fn grids_go_on_in_phase() {
                 exemplar = exemplar.with_corners_cut();
             }
             let result = exemplar.run(&params).unwrap();
-            assert!(matches!(result.continuation, Continuation::Lattice(_)), "{name}: {:?}", result.continuation);
+            assert!(matches!(result.law, Law::Lattice(_)), "{name}: {:?}", result.law);
             let basis = [DVec2::new(px, 0.0), DVec2::new(0.0, py)];
             let area = if px == px.round() { w * h } else { (w * h).round() };
             check(name, &score(&result, 1.0 / (px * py), (0.9 * area, area, area * 1.1), Some(basis)));
@@ -149,7 +149,7 @@ fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
             })
         });
         let result = exemplar.run(&params).unwrap();
-        assert!(matches!(result.continuation, Continuation::Lattice(_)), "{name}: {:?}", result.continuation);
+        assert!(matches!(result.law, Law::Lattice(_)), "{name}: {:?}", result.law);
         let area = std::f64::consts::PI * radius * radius;
         check(name, &score(&result, 1.0 / a.perp_dot(b), (0.9 * area, area, 1.1 * area), Some([a, b])));
     }
@@ -180,7 +180,7 @@ fn missing_lamps_stay_missing_in_proportion() {
     });
     let lit = exemplar.light.data.iter().filter(|&&v| v >= 0.5).count() as f64;
     let result = exemplar.run(&Params { width: 1000, height: 900, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?} {}", result.continuation, result.regularity);
+    assert!(matches!(result.law, Law::Lattice(_)), "{:?} {}", result.law, result.regularity);
     let per_area = lit / 192.0 / (400.0 * 396.0);
     check(
         "missing",
@@ -217,14 +217,14 @@ fn blobs(width: usize, height: usize, gap: f64) -> (Design, usize) {
 fn scattered_lamps_stay_whole_and_as_many() {
     let (exemplar, _) = blobs(256, 256, 26.0);
     let whole = exemplar.run(&Params { width: 256, height: 256, ..Params::default() }).unwrap();
-    assert_eq!(whole.continuation, Continuation::Copy);
+    assert_eq!(whole.law, Law::Copy);
     let lamps = inner(&whole.luminaires, 256, 256);
     let areas: Vec<f64> = lamps.iter().map(|l| l.area).collect();
     let mean = areas.iter().sum::<f64>() / areas.len() as f64;
     let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
     let per_area = whole.mask.data.iter().sum::<f32>() as f64 / mean / 65_536.0;
     let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
-    assert_eq!(result.continuation, Continuation::Free);
+    assert_eq!(result.law, Law::Free);
     let s = score(&result, per_area, (least, mean, most), None);
     // Patches repeat contiguous parts of the exemplar, so the texture's mean lamp area is no more precise than a mean
     // over the n lamps of the exemplar. Allow three standard errors of such a mean: three standard deviations of the
@@ -241,7 +241,7 @@ fn scattered_lamps_stay_whole_and_as_many() {
 fn a_texture_inside_the_exemplar_is_copied_bit_by_bit() {
     let exemplar = Design::new(120, 90, grid(30.0, 30.0, 10.0, 12.0));
     let result = exemplar.run(&Params { width: 120, height: 90, ..Params::default() }).unwrap();
-    assert_eq!(result.continuation, Continuation::Copy);
+    assert_eq!(result.law, Law::Copy);
     assert_eq!(result.error, 0.0);
     for (i, texel) in result.texture.data.chunks_exact(3).enumerate() {
         let lit = exemplar.light.data[i] >= 0.5;
@@ -290,7 +290,7 @@ fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
     let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
     let params = Params { width: 150, height: 120, ..Params::default() };
     let result = run(&input, &params, Monitor::default().job()).unwrap();
-    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
     assert!(result.luminaires.len() >= 4, "{:?}", result.luminaires);
     for lamp in &result.luminaires {
         assert_eq!(lamp.outline.len(), 4, "{:?}", lamp.outline);
@@ -326,7 +326,7 @@ fn the_bits_do_not_depend_on_the_threads() {
 fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
     let exemplar = Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0);
     let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Tile(_)));
+    assert!(matches!(result.law, Law::Whole(_)));
     assert_eq!(result.luminaires.len(), 9);
     // The confidence of edge pixels has noise of up to a tenth, which changes the areas slightly.
     assert!(result.luminaires.iter().all(|l| (l.area / 320.0 - 1.0).abs() < 0.01));
@@ -508,8 +508,8 @@ fn a_chandelier_is_repeated_as_it_hangs() {
         .collect();
     let exemplar = Design::new(300, 280, |x, y| bulbs.iter().any(|b| b.distance(DVec2::new(x, y)) < 5.0));
     let result = exemplar.run(&Params { width: 600, height: 560, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Tile(_)), "{:?}", result.continuation);
-    assert_eq!(result.luminaires.len(), 4 * bulbs.len(), "{:?}", result.continuation);
+    assert!(matches!(result.law, Law::Whole(_)), "{:?}", result.law);
+    assert_eq!(result.luminaires.len(), 4 * bulbs.len(), "{:?}", result.law);
     assert!(result.error < 1e-6, "{}", result.error);
     for bulb in &bulbs {
         for turn in [DVec2::ZERO, DVec2::X * 300.0, DVec2::Y * 280.0, DVec2::new(300.0, 280.0)] {
@@ -527,7 +527,7 @@ fn textures_smaller_than_a_patch_show_what_fits() {
             // With `centred`, the texture is not a copied part of the exemplar.
             let params = Params { width, height, block, scale, centred: true, ..Params::default() };
             let result = exemplar.run(&params).unwrap();
-            assert!(matches!(result.continuation, Continuation::Lattice(_)));
+            assert!(matches!(result.law, Law::Lattice(_)));
             let lamps = inner(&result.luminaires, width, height);
             let area = 196.0 / (scale * scale);
             assert!(lamps.iter().all(|l| (l.area / area - 1.0).abs() < 0.15), "{width} x {height} {lamps:?}");

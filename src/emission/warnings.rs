@@ -1,6 +1,6 @@
 //! Warnings about doubtful emissive textures.
 
-use super::{Continuation, Emission};
+use super::{Emission, Law};
 use crate::warning::{Code, Warning, percent};
 
 /// A warning is given if the statistics of texture and photo differ by more than this share. [judged on 38 photos]
@@ -51,7 +51,7 @@ impl Emission {
     }
 
     fn few_lamps(&self) -> Option<Warning> {
-        let is_copy = self.continuation == Continuation::Copy;
+        let is_copy = self.law == Law::Copy;
         let message = || {
             format!("the number of lamps that the plane shows whole is {}, too few for a pattern", self.exemplar_lamps)
         };
@@ -63,7 +63,7 @@ impl Emission {
     }
 
     fn no_lattice(&self) -> Option<Warning> {
-        let is_free = self.continuation == Continuation::Free;
+        let is_free = self.law == Law::Free;
         let message =
             || format!("the lamps form no lattice, and the texture differs from the photo by {}", percent(self.error));
         let advice = "lower min_regularity of the emission if the lamps are regular";

@@ -43,12 +43,12 @@ pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,
-    which: luxfer_demo,
+    kind: luxfer_demo,
     scene: *mut *mut luxfer_scene,
 ) -> luxfer_status {
     enter(context, |object| {
         let out = Out::new(scene, "scene")?;
-        out.set(handle::give(SceneObject::new(object.context(), Arc::new(generate(which)?))?));
+        out.set(handle::give(SceneObject::new(object.context(), Arc::new(generate(kind)?))?));
         Ok(())
     })
 }
@@ -80,12 +80,12 @@ pub unsafe extern "C" fn luxfer_demo_create_artwork(
     })
 }
 
-fn generate(which: luxfer_demo) -> Result<Scene> {
-    match which {
+fn generate(kind: luxfer_demo) -> Result<Scene> {
+    match kind {
         LUXFER_DEMO_TARGET_ROOM => demo::target_room(),
         LUXFER_DEMO_EXEMPLAR_ROOM => Ok(demo::exemplar_room()?.scene),
         LUXFER_DEMO_SPHERE_ON_TABLE => demo::sphere_on_table(),
         LUXFER_DEMO_STILL_LIFE => demo::still_life(),
-        _ => Err(Error::argument(format!("which is {which}; it must be a LUXFER_DEMO_ value"))),
+        _ => Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_DEMO_ value"))),
     }
 }

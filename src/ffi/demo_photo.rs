@@ -51,13 +51,13 @@ versioned!(luxfer_demo_photo_params, [24], {
 });
 
 /// The result of the generator: the photo and the drawing of its strokes.
-pub(super) struct Taken {
+pub(super) struct Output {
     picture: Image,
     strokes: Image,
 }
 
 impl Handle for luxfer_demo_photo {
-    type Object = Stage<(), Taken>;
+    type Object = Stage<(), Output>;
     const TAG: u64 = tag(b"lux.demo");
     const NAME: &'static str = "luxfer_demo_photo";
 }
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_start(
             let strokes = demo::drawing(&demo::strokes(&room, width, height)?, width, height)?;
             let camera = room.scene.cameras[room.camera].clone();
             let (picture, _) = photo::photograph(Arc::new(room.scene), &camera, &params, job)?;
-            Ok(Taken { picture, strokes })
+            Ok(Output { picture, strokes })
         })
     })
 }
@@ -106,15 +106,15 @@ pub unsafe extern "C" fn luxfer_demo_photo_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_get_image(
     demo: *mut luxfer_demo_photo,
-    which: luxfer_demo_photo_image,
+    kind: luxfer_demo_photo_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(demo, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Taken) -> &Image = match which {
+        let pick: fn(&Output) -> &Image = match kind {
             LUXFER_DEMO_PHOTO_PICTURE => |t| &t.picture,
             LUXFER_DEMO_PHOTO_STROKES => |t| &t.strokes,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_DEMO_PHOTO_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_DEMO_PHOTO_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())

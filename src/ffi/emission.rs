@@ -15,7 +15,7 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Choice, Continuation, Emission, LampList, Luminaire, Style};
+use crate::emission::{self, Choice, Emission, LampList, Law, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -260,7 +260,7 @@ pub(super) struct Exemplar {
 
 /// An exemplar that `luxfer_emission_add_style` has added.
 #[derive(Clone)]
-pub(super) struct Further {
+pub(super) struct AddedExemplar {
     pub exemplar: Exemplar,
     pub scale: f64,
     pub weights: Arc<Pixels>,
@@ -270,12 +270,12 @@ pub(super) struct Further {
 pub(super) struct Inputs {
     unwarped: Option<[Arc<Pixels>; 3]>,
     photo: Option<(Arc<Pixels>, Homography)>,
-    pub styles: Vec<Further>,
+    pub styles: Vec<AddedExemplar>,
 }
 
 /// The result of the stage: a texture, or the plan of a texture.
 #[derive(Default)]
-pub(super) struct Made {
+pub(super) struct Output {
     pub texture: Option<Arc<Emission>>,
     pub plan: Option<Planned>,
 }
@@ -287,7 +287,7 @@ pub(super) struct Planned {
     pub inputs: Inputs,
 }
 
-impl Made {
+impl Output {
     fn luminaires(&self) -> usize {
         let planned = self.plan.as_ref().map(|p| p.lamps.count());
         planned.or(self.texture.as_ref().map(|t| t.luminaires.len())).unwrap_or(0)
@@ -315,7 +315,7 @@ impl Exemplar {
     }
 }
 
-impl Further {
+impl AddedExemplar {
     fn style(&self) -> Style<'_> {
         Style { input: self.exemplar.input(), scale: self.scale, weights: self.weights.image() }
     }
@@ -326,13 +326,13 @@ impl Inputs {
     pub(super) fn with<T>(&self, work: impl FnOnce(&emission::Input, &[Style]) -> Result<T>) -> Result<T> {
         let unwarped = need(&self.unwarped, "luxfer_emission_set_exemplar")?.clone();
         let first = Exemplar { unwarped, photo: self.photo.clone() };
-        let styles: Vec<Style> = self.styles.iter().map(Further::style).collect();
+        let styles: Vec<Style> = self.styles.iter().map(AddedExemplar::style).collect();
         work(&first.input(), &styles)
     }
 }
 
 /// Returns the texture of a stage; an error if the stage has made none or only a plan.
-fn texture(stage: &Stage<Inputs, Made>) -> Result<Arc<Emission>> {
+fn texture(stage: &Stage<Inputs, Output>) -> Result<Arc<Emission>> {
     stage.output()?.texture.clone().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, "the stage has planned a texture; luxfer_emission_start makes one as a whole")
     })
@@ -363,7 +363,7 @@ pub(super) fn photo_of(
 }
 
 impl Handle for luxfer_emission {
-    type Object = Stage<Inputs, Made>;
+    type Object = Stage<Inputs, Output>;
     const TAG: u64 = tag(b"lux.emis");
     const NAME: &'static str = "luxfer_emission";
 }
@@ -433,7 +433,7 @@ pub unsafe extern "C" fn luxfer_emission_start(
         need(&stage.inputs().unwarped, "luxfer_emission_set_exemplar")?;
         stage.start(job, move |inputs, _, job| {
             let made = inputs.with(|input, styles| emission::blend(input, styles, &params, job))?;
-            Ok(Made { texture: Some(Arc::new(made)), plan: None })
+            Ok(Output { texture: Some(Arc::new(made)), plan: None })
         })
     })
 }
@@ -443,17 +443,17 @@ pub unsafe extern "C" fn luxfer_emission_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(
     emission: *mut luxfer_emission,
-    which: luxfer_emission_image,
+    kind: luxfer_emission_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(emission, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Emission) -> &Image = match which {
+        let pick: fn(&Emission) -> &Image = match kind {
             LUXFER_EMISSION_TEXTURE => |e| &e.texture,
             LUXFER_EMISSION_MASK => |e| &e.mask,
             LUXFER_EMISSION_EXEMPLAR_METADATA => |e| &e.exemplar_metadata,
             LUXFER_EMISSION_METADATA => |e| &e.metadata,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_EMISSION_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_EMISSION_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), texture(stage)?, pick)));
         Ok(())
@@ -480,8 +480,8 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
         };
         let (law, choice) = match (&made.plan, &made.texture) {
             (Some(planned), _) => planned.plan.law(),
-            (_, Some(texture)) => (texture.continuation, texture.choice),
-            _ => (Continuation::Copy, Choice::only(Continuation::Copy)),
+            (_, Some(texture)) => (texture.law, texture.choice),
+            _ => (Law::Copy, Choice::only(Law::Copy)),
         };
         out.set(luxfer_emission_report {
             law: emission_law::number(law),

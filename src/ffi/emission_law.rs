@@ -2,7 +2,7 @@
 //!
 //! A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
 
-use crate::emission::{Continuation, Law};
+use crate::emission::{Law, LawMode};
 use crate::error::{Error, Result};
 
 /// The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
@@ -24,15 +24,15 @@ pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
 /// In results only: the texture is a copied part of the exemplar, or the caller supplied the texture.
 pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
 
-/// Converts a LUXFER_LAW_ value of the settings to the [`Law`] of the synthesis.
-pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
+/// Converts a LUXFER_LAW_ value of the settings to the [`LawMode`] of the synthesis.
+pub(super) fn law(number: luxfer_emission_law) -> Result<LawMode> {
     Ok(match number {
-        LUXFER_LAW_BEST => Law::Best,
-        LUXFER_LAW_CORRELATION => Law::Correlation,
-        LUXFER_LAW_LATTICE => Law::Lattice,
-        LUXFER_LAW_ROW => Law::Row,
-        LUXFER_LAW_WHOLE => Law::Whole,
-        LUXFER_LAW_FREE => Law::Free,
+        LUXFER_LAW_BEST => LawMode::Best,
+        LUXFER_LAW_CORRELATION => LawMode::Correlation,
+        LUXFER_LAW_LATTICE => LawMode::Lattice,
+        LUXFER_LAW_ROW => LawMode::Row,
+        LUXFER_LAW_WHOLE => LawMode::Whole,
+        LUXFER_LAW_FREE => LawMode::Free,
         other => {
             let message = format!("emission.law is {other}; it must be a LUXFER_LAW_ value in [0, 5]");
             return Err(Error::argument(message));
@@ -41,12 +41,12 @@ pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
 }
 
 /// Returns the LUXFER_LAW_ value of a law that the synthesis has used.
-pub(super) fn number(continuation: Continuation) -> luxfer_emission_law {
-    match continuation {
-        Continuation::Copy => LUXFER_LAW_COPY,
-        Continuation::Lattice(_) => LUXFER_LAW_LATTICE,
-        Continuation::Row(_) => LUXFER_LAW_ROW,
-        Continuation::Tile(_) => LUXFER_LAW_WHOLE,
-        Continuation::Free => LUXFER_LAW_FREE,
+pub(super) fn number(law: Law) -> luxfer_emission_law {
+    match law {
+        Law::Copy => LUXFER_LAW_COPY,
+        Law::Lattice(_) => LUXFER_LAW_LATTICE,
+        Law::Row(_) => LUXFER_LAW_ROW,
+        Law::Whole(_) => LUXFER_LAW_WHOLE,
+        Law::Free => LUXFER_LAW_FREE,
     }
 }

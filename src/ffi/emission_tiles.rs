@@ -5,7 +5,7 @@
 //! the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
 
 use super::emission::{
-    Exemplar, Further, Made, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
+    AddedExemplar, Exemplar, Output, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
 };
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn luxfer_emission_add_style(
         let exemplar = Exemplar { unwarped, photo: photo_of(context, photo, to_photo)? };
         let weights = handle::borrow_in(context, weights, "weights")?;
         stage.change(|inputs| {
-            inputs.styles.push(Further { exemplar, scale, weights });
+            inputs.styles.push(AddedExemplar { exemplar, scale, weights });
             Ok(())
         })
     })
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
                 let lamps = LampList::new(&plan, input, styles, job.part(0.95, 1.0))?;
                 Ok((plan, lamps))
             })?;
-            Ok(Made { plan: Some(Planned { plan, lamps, inputs: inputs.clone() }), ..Made::default() })
+            Ok(Output { plan: Some(Planned { plan, lamps, inputs: inputs.clone() }), ..Output::default() })
         })
     })
 }

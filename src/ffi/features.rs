@@ -138,13 +138,13 @@ pub(super) struct Inputs {
 }
 
 /// The features of a photo, and the depth map if a network has estimated one.
-pub(super) struct Outcome {
+pub(super) struct Output {
     pub(super) features: Arc<Features>,
     network_depth: Option<Image>,
 }
 
 impl Handle for luxfer_features {
-    type Object = Stage<Inputs, Outcome>;
+    type Object = Stage<Inputs, Output>;
     const TAG: u64 = tag(b"lux.feat");
     const NAME: &'static str = "luxfer_features";
 }
@@ -256,12 +256,12 @@ fn compute(
     network: Option<&DepthNetwork>,
     params: &features::Params,
     job: crate::job::Job,
-) -> Result<Outcome> {
+) -> Result<Output> {
     let Some(network) = network.filter(|_| input.depth.is_none()) else {
-        return Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None });
+        return Ok(Output { features: Arc::new(features::run(input, params, job)?), network_depth: None });
     };
     let (features, depth) = features::run_with_network(input, network, params, job)?;
-    Ok(Outcome { features: Arc::new(features), network_depth: Some(depth) })
+    Ok(Output { features: Arc::new(features), network_depth: Some(depth) })
 }
 
 #[cfg(not(feature = "onnx"))]
@@ -270,8 +270,8 @@ fn compute(
     _: Option<&DepthNetwork>,
     params: &features::Params,
     job: crate::job::Job,
-) -> Result<Outcome> {
-    Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None })
+) -> Result<Output> {
+    Ok(Output { features: Arc::new(features::run(input, params, job)?), network_depth: None })
 }
 
 /// Sets the lines and the camera that a luxfer_rectify has found in this photo; the call copies its latest result.
@@ -355,19 +355,19 @@ pub unsafe extern "C" fn luxfer_features_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_image(
     features: *mut luxfer_features,
-    which: luxfer_features_image,
+    kind: luxfer_features_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(features, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Outcome) -> &Image = match which {
+        let pick: fn(&Output) -> &Image = match kind {
             LUXFER_FEATURES_CHANNELS => |f| &f.features.image,
             LUXFER_FEATURES_DEPTH_CONFIDENCE => |f| &f.features.depth_confidence,
             LUXFER_FEATURES_NETWORK_DEPTH => |f| f.network_depth.as_ref().unwrap_or(&f.features.depth_confidence),
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_FEATURES_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_FEATURES_ value"))),
         };
         let output = stage.output()?;
-        if which == LUXFER_FEATURES_NETWORK_DEPTH && output.network_depth.is_none() {
+        if kind == LUXFER_FEATURES_NETWORK_DEPTH && output.network_depth.is_none() {
             return Err(Error::new(
                 ErrorKind::NotReady,
                 "no network has estimated the depth; call luxfer_features_set_network, without a depth map, and start the stage",

@@ -154,12 +154,12 @@ pub unsafe extern "C" fn luxfer_guides_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_image(
     guides: *mut luxfer_guides,
-    which: luxfer_guides_image,
+    kind: luxfer_guides_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(guides, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Guides) -> &Image = match which {
+        let pick: fn(&Guides) -> &Image = match kind {
             LUXFER_GUIDES_FULL => |g| &g.light[0],
             LUXFER_GUIDES_DIRECT => |g| &g.light[1],
             LUXFER_GUIDES_SPECULAR => |g| &g.light[2],
@@ -169,7 +169,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
             LUXFER_GUIDES_EDGES => |g| &g.edges,
             LUXFER_GUIDES_MATERIALS => |g| &g.materials,
             LUXFER_GUIDES_CAUSTICS => |g| &g.light[5],
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_GUIDES_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_GUIDES_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())
@@ -177,7 +177,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 }
 
 /// Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
-/// The parameter guides is the current frame; the parameter before is the previous frame. For each pixel of the
+/// The parameter guides is the current frame; the parameter previous is the frame before it. For each pixel of the
 /// current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
 /// in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
 /// thread.
@@ -185,14 +185,15 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(
     guides: *mut luxfer_guides,
-    before: *mut luxfer_guides,
+    previous: *mut luxfer_guides,
     motion: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(guides, |stage| {
         let out = Out::new(motion, "motion")?;
-        let (now, before) = (stage.output()?, handle::borrow_in(stage.context(), before, "before")?.output()?);
-        let (width, height) = (now.depth.width, now.depth.height);
-        let image = Pixels::counted(stage.context(), width, height, 2, || guides::motion(&now, &before))?;
+        let (current, previous) =
+            (stage.output()?, handle::borrow_in(stage.context(), previous, "previous")?.output()?);
+        let (width, height) = (current.depth.width, current.depth.height);
+        let image = Pixels::counted(stage.context(), width, height, 2, || guides::motion(&current, &previous))?;
         out.set(handle::give(image));
         Ok(())
     })

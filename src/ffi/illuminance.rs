@@ -15,7 +15,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::render::illuminance::{self, Output, Place};
+use crate::render::illuminance::{self, CalculationPoints, Output};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
 ) -> luxfer_status {
     enter(illuminance, |stage| {
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
-        start(stage, Place::Grid { origin, across, down, normal }, params, job)
+        start(stage, CalculationPoints::Grid { origin, across, down, normal }, params, job)
     })
 }
 
@@ -188,13 +188,13 @@ pub unsafe extern "C" fn luxfer_illuminance_start_mesh(
         if back > 1 {
             return Err(Error::argument(format!("back is {back}; it must be 0 or 1")));
         }
-        start(stage, Place::Mesh { mesh: mesh as usize, front: back == 0 }, params, job)
+        start(stage, CalculationPoints::Mesh { mesh: mesh as usize, front: back == 0 }, params, job)
     })
 }
 
 fn start(
     stage: &Arc<Stage<Inputs, Output>>,
-    place: Place,
+    place: CalculationPoints,
     params: *const luxfer_illuminance_params,
     job: *mut *mut luxfer_job,
 ) -> Result<()> {
@@ -215,15 +215,15 @@ fn start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_image(
     illuminance: *mut luxfer_illuminance,
-    which: luxfer_illuminance_image,
+    kind: luxfer_illuminance_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(illuminance, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Output) -> &Image = match which {
+        let pick: fn(&Output) -> &Image = match kind {
             LUXFER_ILLUMINANCE_LUX => |o| &o.lux,
             LUXFER_ILLUMINANCE_ERROR => |o| &o.error,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_ILLUMINANCE_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_ILLUMINANCE_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())

@@ -17,7 +17,7 @@ use super::scene::{colour, luxfer_scene};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::relight::{self, Goal, Importance, MapParams, Place, Placement};
+use crate::relight::{self, Goal, Importance, ImportanceParams, Placement, TargetGeometry};
 use crate::scene::Texture;
 use glam::{DMat3, Mat3, Vec3};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ pub struct luxfer_importance_params {
 }
 
 versioned!(luxfer_importance_params, [40], {
-    let d = MapParams::default();
+    let d = ImportanceParams::default();
     Self {
         struct_size: 40,
         width: d.width as u32,
@@ -162,13 +162,13 @@ pub unsafe extern "C" fn luxfer_importance_start(
             seed: p.seed,
             ..relight::Params::default()
         };
-        let params = MapParams { width: p.width as usize, height: p.height as usize, tracing };
+        let params = ImportanceParams { width: p.width as usize, height: p.height as usize, tracing };
         let emitter = need(&stage.inputs().emitter, "luxfer_importance_set_scene")?.clone();
         let scene = emitter.scene.snapshot();
         let triangles = emitter.triangles(&scene)?;
         stage.start(job, move |_, _, job| {
             let goal = Goal {
-                place: Place::Surface(&triangles),
+                geometry: TargetGeometry::Surface(&triangles),
                 quantity,
                 target: Vec3::ONE,
                 aspect: relight::Aspect::Colour,

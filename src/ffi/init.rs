@@ -95,14 +95,18 @@ pub const LUXFER_STRUCT_RENDER_PART: luxfer_struct_type = 26;
 /// The struct luxfer_demo_photo_params.
 pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 
-/// Fills the struct at place with the defaults of its type, which is given as a LUXFER_STRUCT_ value. The argument
-/// size is sizeof the struct. If the program was built with an older header, in which the struct is smaller, only the
-/// fields of that version are filled. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the type is another value, if place is NULL, or if no version of the struct has this
+/// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
+/// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
+/// version are filled. Any thread.
+/// LUXFER_INVALID_ARGUMENT if struct_type is another value, if place is NULL, or if no version of the struct has this
 /// size; LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_init(which: luxfer_struct_type, place: *mut c_void, size: usize) -> luxfer_status {
-    guard(|| match which {
+pub unsafe extern "C" fn luxfer_init(
+    struct_type: luxfer_struct_type,
+    place: *mut c_void,
+    size: usize,
+) -> luxfer_status {
+    guard(|| match struct_type {
         LUXFER_STRUCT_CONTEXT_PARAMS => params::init::<luxfer_context_params>(place.cast(), size),
         LUXFER_STRUCT_IMAGE_VIEW => params::init::<luxfer_image_view>(place.cast(), size),
         LUXFER_STRUCT_SCENE_LOAD_PARAMS => params::init::<luxfer_scene_load_params>(place.cast(), size),

@@ -24,7 +24,7 @@ use super::strokes::luxfer_strokes;
 #[cfg(feature = "stylize")]
 use super::stylize::luxfer_stylize;
 use super::transfer::luxfer_transfer;
-use super::warning::{self, Doubtful, luxfer_warnings};
+use super::warning::{self, HasWarnings, luxfer_warnings};
 use crate::error::{Error, Result};
 use std::ffi::c_void;
 
@@ -50,7 +50,7 @@ impl Kind {
         }
     }
 
-    const fn with_warnings<H: Doubtful>() -> Self {
+    const fn with_warnings<H: HasWarnings>() -> Self {
         Self { create_warnings: Some(warning::create::<H>), ..Self::of::<H>() }
     }
 

@@ -2,14 +2,14 @@
 
 use crate::error::Result;
 use crate::image::try_collect;
-use crate::relight::{Aspect, Constraint, Goal, Place, Quantity};
+use crate::relight::{Aspect, Constraint, Goal, Quantity, TargetGeometry};
 use crate::scene::Scene;
 use glam::Vec3;
 
 /// A surface or a grid, and the light that it should receive.
 #[derive(Clone)]
 pub(super) struct StoredGoal {
-    pub place: Where,
+    pub geometry: StoredGeometry,
     pub quantity: Quantity,
     pub target: Vec3,
     pub aspect: Aspect,
@@ -18,7 +18,7 @@ pub(super) struct StoredGoal {
 }
 
 #[derive(Clone)]
-pub(super) enum Where {
+pub(super) enum StoredGeometry {
     Mesh(u32),
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
@@ -26,22 +26,24 @@ pub(super) enum Where {
 impl StoredGoal {
     /// Returns the indices (mesh, triangle) of each triangle of the goal's surface; empty for a grid.
     pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
-        match self.place {
-            Where::Mesh(mesh) => {
+        match self.geometry {
+            StoredGeometry::Mesh(mesh) => {
                 let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
                 try_collect((0..count).map(|t| (mesh as usize, t)))
             }
-            Where::Grid { .. } => Ok(Vec::new()),
+            StoredGeometry::Grid { .. } => Ok(Vec::new()),
         }
     }
 
     /// Returns the goal in the form that the solver takes; `triangles` come from [`Self::triangles`].
     pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
-        let place = match self.place {
-            Where::Mesh(_) => Place::Surface(triangles),
-            Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
+        let geometry = match self.geometry {
+            StoredGeometry::Mesh(_) => TargetGeometry::Surface(triangles),
+            StoredGeometry::Grid { origin, across, down, normal } => {
+                TargetGeometry::Grid { origin, across, down, normal }
+            }
         };
         let Self { quantity, target, aspect, constraint, weight, .. } = *self;
-        Goal { place, quantity, target, aspect, constraint, weight }
+        Goal { geometry, quantity, target, aspect, constraint, weight }
     }
 }

@@ -6,7 +6,7 @@
 use super::geometry::list;
 use super::guard::enter;
 use super::illuminance::luxfer_illuminance_grid;
-use super::lamp_goal::{StoredGoal, Where};
+use super::lamp_goal::{StoredGeometry, StoredGoal};
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
 use super::relight::{constraint, luxfer_constraint, luxfer_quantity, quantity};
@@ -35,7 +35,14 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
         let constraint = [Constraint::Exactly; 3];
         add(
             stage,
-            StoredGoal { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, constraint, weight },
+            StoredGoal {
+                geometry: StoredGeometry::Mesh(mesh),
+                quantity,
+                target,
+                aspect: Aspect::Colour,
+                constraint,
+                weight,
+            },
         )
     })
 }
@@ -53,9 +60,9 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
     enter(lamps, |stage| {
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
         let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
-        let place = Where::Grid { origin, across, down, normal };
+        let geometry = StoredGeometry::Grid { origin, across, down, normal };
         let (quantity, constraint) = (Quantity::Incident, [Constraint::Exactly; 3]);
-        add(stage, StoredGoal { place, quantity, target, aspect: Aspect::Luminance, constraint, weight })
+        add(stage, StoredGoal { geometry, quantity, target, aspect: Aspect::Luminance, constraint, weight })
     })
 }
 
@@ -66,7 +73,7 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
     stage.change(|inputs| {
         let (scene, _) = need(&inputs.emission, "luxfer_lamps_set_scene")?;
         let meshes = scene.snapshot().meshes.len();
-        if let Where::Mesh(mesh) = goal.place
+        if let StoredGeometry::Mesh(mesh) = goal.geometry
             && mesh as usize >= meshes
         {
             return Err(missing("mesh", mesh, meshes));

@@ -11,7 +11,7 @@ use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
-use crate::relight::{Aim, PlaceParams, Pose};
+use crate::relight::{Aim, PlacementParams, Pose};
 use glam::{DVec2, Vec3};
 
 /// Objective of a placement: a LUXFER_AIM_ value.
@@ -55,7 +55,7 @@ pub struct luxfer_placement_params {
 }
 
 versioned!(luxfer_placement_params, [112], {
-    let d = PlaceParams::default();
+    let d = PlacementParams::default();
     Self {
         struct_size: 112,
         aim: LUXFER_AIM_MAX_LUMINANCE,
@@ -72,13 +72,13 @@ versioned!(luxfer_placement_params, [112], {
 });
 
 impl luxfer_placement_params {
-    fn params(&self) -> Result<PlaceParams> {
+    fn params(&self) -> Result<PlacementParams> {
         let pose = |offset: [f64; 2], scale: [f64; 2], rotation| Pose {
             offset: DVec2::from_array(offset),
             scale: DVec2::from_array(scale),
             rotation,
         };
-        Ok(PlaceParams {
+        Ok(PlacementParams {
             aim: match self.aim {
                 LUXFER_AIM_MAX_LUMINANCE => Aim::Brightest,
                 LUXFER_AIM_MIN_LUMINANCE => Aim::Darkest,

@@ -107,7 +107,7 @@ versioned!(luxfer_plan_report, [56], {
 
 /// The result of a plan: the settings, and the predicted time and error, of each planned stage.
 #[derive(Default)]
-pub(super) struct Made {
+pub(super) struct Output {
     whole: Expected,
     render: Option<(render::Params, Expected)>,
     relight: Option<(relight::Params, Expected)>,
@@ -115,13 +115,13 @@ pub(super) struct Made {
     stylize: Option<Stylisation>,
 }
 
-impl From<plan::Rendering> for Made {
+impl From<plan::Rendering> for Output {
     fn from(plan: plan::Rendering) -> Self {
         Self { whole: plan.expected, render: Some((plan.params, plan.expected)), ..Self::default() }
     }
 }
 
-impl From<plan::Lighting> for Made {
+impl From<plan::Lighting> for Output {
     fn from(plan: plan::Lighting) -> Self {
         let plan::Lighting { relight, render, solving, rendering, whole } = plan;
         Self { whole, render: Some((render, rendering)), relight: Some((relight, solving)), ..Self::default() }
@@ -136,7 +136,7 @@ pub(super) struct Stylisation {
 }
 
 #[cfg(feature = "stylize")]
-impl Made {
+impl Output {
     pub(super) fn of_stylisation(plan: plan::Stylisation, keep_for_update: bool) -> Self {
         let stylize = Stylisation { params: plan.params, keep_for_update };
         Self { whole: plan.expected, stylize: Some(stylize), ..Self::default() }
@@ -153,7 +153,7 @@ fn planned<'a, T>(part: &'a Option<T>, does: &str) -> Result<&'a T> {
 }
 
 impl Handle for luxfer_plan {
-    type Object = Stage<(), Made>;
+    type Object = Stage<(), Output>;
     const TAG: u64 = tag(b"lux.plan");
     const NAME: &'static str = "luxfer_plan";
 }
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
         let goal = params::read_required(params)?.goal()?;
         stage.start(job, move |(), _, job| {
             let world = object.world(&scene, job.part(0.0, 0.3))?;
-            plan::rendering(&world, &camera, &settings, goal, &plan::wall(), job.part(0.3, 1.0)).map(Made::from)
+            plan::rendering(&world, &camera, &settings, goal, &plan::wall(), job.part(0.3, 1.0)).map(Output::from)
         })
     })
 }
@@ -218,7 +218,7 @@ pub unsafe extern "C" fn luxfer_plan_start_transfer(
         let planned = super::transfer::snapshot(&transfer, params::read(settings)?)?;
         let goal = params::read_required(params)?.goal()?;
         plan::check(&planned, goal)?;
-        stage.start(job, move |(), _, job| plan::lighting(&planned, goal, &plan::wall(), job).map(Made::from))
+        stage.start(job, move |(), _, job| plan::lighting(&planned, goal, &plan::wall(), job).map(Output::from))
     })
 }
 

@@ -8,7 +8,7 @@ use super::guard::enter;
 use super::handle::{self, Owned};
 use super::job::luxfer_job;
 use super::params::{self, Report};
-use super::plan::{Made, luxfer_plan, luxfer_plan_params};
+use super::plan::{Output, luxfer_plan, luxfer_plan_params};
 use super::status::luxfer_status;
 use super::stylize::luxfer_stylize;
 use super::stylize_params::luxfer_stylize_params;
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
         let goal = params::read_required(params)?.goal()?;
         stage.start(job, move |(), _, job| {
             let planned = inputs.with_input(|input| plan::stylisation(input, &settings, goal, &plan::wall(), job))?;
-            Ok(Made::of_stylisation(planned, keep_for_update))
+            Ok(Output::of_stylisation(planned, keep_for_update))
         })
     })
 }

@@ -393,15 +393,15 @@ pub unsafe extern "C" fn luxfer_rectify_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_image(
     rectify: *mut luxfer_rectify,
-    which: luxfer_rectify_image,
+    kind: luxfer_rectify_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(rectify, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Unwarped) -> &Image = match which {
+        let pick: fn(&Unwarped) -> &Image = match kind {
             LUXFER_RECTIFY_UNWARPED => |u| &u.image,
             LUXFER_RECTIFY_VALID => |u| &u.valid,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RECTIFY_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_RECTIFY_ value"))),
         };
         let output = stage.output()?;
         out.set(handle::give(Pixels::part(stage.context(), unwarped(&output)?.clone(), pick)));

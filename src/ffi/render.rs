@@ -169,22 +169,22 @@ impl Inputs {
     }
 
     /// Returns a snapshot of a rendering's inputs: scene, camera and settings. `params` may be NULL for the defaults.
-    pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
+    pub(super) fn snapshot(&self, params: *const luxfer_render_params) -> Result<RenderSnapshot> {
         let (object, scene, camera) = self.view()?;
         let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params()? };
-        Ok(Shot { object, scene, camera, params })
+        Ok(RenderSnapshot { object, scene, camera, params })
     }
 }
 
 /// The inputs of a rendering as they are at the start of its job; later changes do not affect them.
-pub(super) struct Shot {
+pub(super) struct RenderSnapshot {
     object: Arc<SceneObject>,
     scene: Arc<Scene>,
     pub(super) camera: Camera,
     pub(super) params: render::Params,
 }
 
-impl Shot {
+impl RenderSnapshot {
     /// Returns the scene prepared for tracing.
     pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
         self.object.world(&self.scene, job)
@@ -250,10 +250,10 @@ pub unsafe extern "C" fn luxfer_render_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let shot = stage.inputs().shot(params)?;
+        let snapshot = stage.inputs().snapshot(params)?;
         stage.start(job, move |_, stage, job| {
-            let world = shot.world(job.part(0.0, 0.05))?;
-            render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
+            let world = snapshot.world(job.part(0.0, 0.05))?;
+            render::run(&world, &snapshot.camera, &snapshot.params, job.part(0.05, 1.0), &mut |film| {
                 // If memory is short, the job skips this intermediate image.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);
@@ -279,12 +279,12 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_image(
     render: *mut luxfer_render,
-    which: luxfer_render_image,
+    kind: luxfer_render_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(render, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Film) -> &Image = match which {
+        let pick: fn(&Film) -> &Image = match kind {
             LUXFER_RENDER_BEAUTY => |f| &f.beauty,
             LUXFER_RENDER_VARIANCE => |f| &f.variance,
             LUXFER_RENDER_PATHS => |f| &f.paths,
@@ -297,7 +297,7 @@ pub unsafe extern "C" fn luxfer_render_get_image(
                 out.set(handle::give(Pixels::counted(context, width, height, 3, make)?));
                 return Ok(());
             }
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RENDER_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_RENDER_ value"))),
         };
         let film = stage.output()?;
         let unseen_lights = film.unseen_lights;

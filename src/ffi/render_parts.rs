@@ -110,14 +110,14 @@ pub unsafe extern "C" fn luxfer_render_start_part(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let shot = stage.inputs().shot(params)?;
-        let part = params::read(part)?.part(&shot.params);
+        let snapshot = stage.inputs().snapshot(params)?;
+        let part = params::read(part)?.part(&snapshot.params);
         let path = PathBuf::from(text(path, "path")?);
         // Find out before the rendering, not after hours, whether the file can be written.
         io::Target::new(&path)?;
         stage.start(job, move |_, _, job| {
-            let world = shot.world(job.part(0.0, 0.05))?;
-            let rendered = parts::run(&world, &shot.camera, &shot.params, &part, job.part(0.05, 0.99))?;
+            let world = snapshot.world(job.part(0.0, 0.05))?;
+            let rendered = parts::run(&world, &snapshot.camera, &snapshot.params, &part, job.part(0.05, 0.99))?;
             rendered.save(&path)?;
             Ok(rendered.film)
         })
@@ -165,10 +165,10 @@ pub unsafe extern "C" fn luxfer_render_start_merge(
 ) -> luxfer_status {
     enter(render, |stage| {
         let inputs = stage.inputs();
-        let (shot, files) = (inputs.shot(params)?, inputs.parts);
+        let (snapshot, files) = (inputs.snapshot(params)?, inputs.parts);
         stage.start(job, move |_, _, job| -> Result<Film> {
-            let world = shot.world(job.part(0.0, 0.1))?;
-            parts::merge(&world, &shot.camera, &shot.params, &files, job.part(0.1, 1.0))
+            let world = snapshot.world(job.part(0.0, 0.1))?;
+            parts::merge(&world, &snapshot.camera, &snapshot.params, &files, job.part(0.1, 1.0))
         })
     })
 }

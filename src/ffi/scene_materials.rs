@@ -294,7 +294,7 @@ pub unsafe extern "C" fn luxfer_scene_get_material_texture(
         let out = Report::new(texture_use, size)?;
         let scene = object.snapshot();
         let used = *slot(&mut material(&scene, material_index)?.clone(), role)?;
-        out.set(used.map_or_else(luxfer_texture_use::defaults, |used| told(&scene, &used)));
+        out.set(used.map_or_else(luxfer_texture_use::defaults, |used| to_texture_use(&scene, &used)));
         Ok(())
     })
 }
@@ -389,7 +389,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
 }
 
 /// Returns the `luxfer_texture_use` that describes how a material uses a texture.
-fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
+fn to_texture_use(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,
         Wrap::Clamp => LUXFER_WRAP_CLAMP,

@@ -255,16 +255,16 @@ pub unsafe extern "C" fn luxfer_segment_start(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_image(
     segment: *mut luxfer_segment,
-    which: luxfer_segment_image,
+    kind: luxfer_segment_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(segment, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Segmentation) -> &Image = match which {
+        let pick: fn(&Segmentation) -> &Image = match kind {
             LUXFER_SEGMENT_MASK => |s| &s.mask,
             LUXFER_SEGMENT_CONFIDENCE => |s| &s.confidence,
             LUXFER_SEGMENT_UNSEEN => |s| &s.unseen,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_SEGMENT_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_SEGMENT_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())

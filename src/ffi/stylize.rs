@@ -326,13 +326,13 @@ pub unsafe extern "C" fn luxfer_stylize_start(
             None => None,
         };
         stage.start(job, move |inputs, stage, job| {
-            let publish = |glimpse: stylize::Glimpse| stage.publish(Stylised::unfinished(glimpse));
+            let publish = |intermediate: stylize::IntermediateResult| stage.publish(Stylised::unfinished(intermediate));
             let (before, motion) = (previous.as_ref().map(|p| &*p.0), previous.as_ref().map(|p| p.1.image()));
             inputs.with_input(|input| {
                 let input = stylize::Input { previous: before, motion, ..*input };
                 if keep {
-                    let (study, output) = stylize::Study::new(&input, &params, &publish, job)?;
-                    Ok(Stylised::finished(output, Some(study)))
+                    let (updater, output) = stylize::Updater::new(&input, &params, &publish, job)?;
+                    Ok(Stylised::finished(output, Some(updater)))
                 } else {
                     Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
                 }
@@ -342,7 +342,7 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 }
 
 /// Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
-/// the size and channels of the old one. changed is a mask with 1 channel, above 0.5 where the new artwork differs
+/// the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
 /// from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
 /// the time of luxfer_stylize_start. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
@@ -352,24 +352,24 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 pub unsafe extern "C" fn luxfer_stylize_update(
     stylize: *mut luxfer_stylize,
     artwork: *mut luxfer_image,
-    changed: *mut luxfer_image,
+    changed_mask: *mut luxfer_image,
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(stylize, |stage| {
         let artwork = handle::borrow_in(stage.context(), artwork, "artwork")?;
-        let changed = handle::borrow_in(stage.context(), changed, "changed")?;
+        let changed_mask = handle::borrow_in(stage.context(), changed_mask, "changed_mask")?;
         let before = stage.output().ok();
-        let study: Option<Arc<Mutex<stylize::Study>>> = before.as_ref().and_then(|b| b.study());
-        let (Some(before), Some(study)) = (before, study) else {
+        let updater: Option<Arc<Mutex<stylize::Updater>>> = before.as_ref().and_then(|b| b.updater());
+        let (Some(before), Some(updater)) = (before, updater) else {
             return Err(Error::new(
                 ErrorKind::InvalidOperation,
                 "there is nothing to update; start with keep_for_update = 1 and wait for the job to succeed",
             ));
         };
         stage.start(job, move |_, _, job| {
-            let study = &mut *super::guard::lock(&study);
-            let picture = study.repaint(artwork.image(), changed.image(), job.part(0.0, 0.95))?;
-            Ok(before.updated(picture, study.sources(job.part(0.95, 1.0))?))
+            let updater = &mut *super::guard::lock(&updater);
+            let picture = updater.repaint(artwork.image(), changed_mask.image(), job.part(0.0, 0.95))?;
+            Ok(before.updated(picture, updater.sources(job.part(0.95, 1.0))?))
         })
     })
 }

@@ -4,7 +4,7 @@ use super::scene::missing;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::patch::Field;
-use crate::stylize::{Glimpse, LevelReport, Output, Study, Usage};
+use crate::stylize::{IntermediateResult, LevelReport, Output, Updater, Usage};
 use std::sync::{Arc, Mutex};
 
 /// The output of a run: the picture so far, and more results if the run has finished.
@@ -28,20 +28,20 @@ pub(super) struct Finished {
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
     field: Arc<Field>,
-    study: Option<Arc<Mutex<Study>>>,
+    updater: Option<Arc<Mutex<Updater>>>,
 }
 
 impl Stylised {
-    pub(super) fn unfinished(glimpse: Glimpse) -> Self {
+    pub(super) fn unfinished(intermediate: IntermediateResult) -> Self {
         Self {
-            picture: Arc::new(glimpse.picture),
-            halvings: glimpse.halvings,
-            levels: Arc::new(glimpse.levels.to_vec()),
+            picture: Arc::new(intermediate.picture),
+            halvings: intermediate.halvings,
+            levels: Arc::new(intermediate.levels.to_vec()),
             finished: None,
         }
     }
 
-    pub(super) fn finished(output: Output, study: Option<Study>) -> Self {
+    pub(super) fn finished(output: Output, updater: Option<Updater>) -> Self {
         let report = output.report;
         let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
         let guide_rms = (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt();
@@ -57,7 +57,7 @@ impl Stylised {
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
                 field: Arc::new(output.field),
-                study: study.map(|s| Arc::new(Mutex::new(s))),
+                updater: updater.map(|s| Arc::new(Mutex::new(s))),
             }),
         }
     }
@@ -73,8 +73,8 @@ impl Stylised {
         Ok(self.need_finished()?.field.clone())
     }
 
-    pub(super) fn study(&self) -> Option<Arc<Mutex<Study>>> {
-        self.finished.as_ref().and_then(|f| f.study.clone())
+    pub(super) fn updater(&self) -> Option<Arc<Mutex<Updater>>> {
+        self.finished.as_ref().and_then(|f| f.updater.clone())
     }
 
     /// Returns the results of a finished run; an error if the run has not finished.

@@ -7,7 +7,7 @@ use super::guard::guard;
 use super::params::{self, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::patch::Vote;
+use crate::patch::VoteMode;
 use crate::stylize::{self, Finder, Mode};
 
 /// A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset.
@@ -133,8 +133,8 @@ pub struct luxfer_stylize_params {
 versioned!(luxfer_stylize_params, [104], { Self::of(&stylize::Params::default()) });
 
 const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
-const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
-const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
+const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::KdTree];
+const VOTES: [VoteMode; 4] = [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority];
 
 /// Returns the setting at `index`, an integer of the C interface, in `values`; an error if `index` is out of range.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {

@@ -137,16 +137,16 @@ versioned!(luxfer_stylize_pass, [32], {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_image(
     stylize: *mut luxfer_stylize,
-    which: luxfer_stylize_image,
+    kind: luxfer_stylize_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(stylize, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Stylised) -> Result<&Arc<Image>> = match which {
+        let pick: fn(&Stylised) -> Result<&Arc<Image>> = match kind {
             LUXFER_STYLIZE_IMAGE_PICTURE => |s| Ok(&s.picture),
             LUXFER_STYLIZE_IMAGE_GUIDE_ERROR => |s| Ok(&s.need_finished()?.guide_error),
             LUXFER_STYLIZE_IMAGE_SOURCES => |s| Ok(&s.need_finished()?.sources),
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_STYLIZE_IMAGE_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_STYLIZE_IMAGE_ value"))),
         };
         let image = pick(&*stage.output()?)?.clone();
         out.set(handle::give(Pixels::part(stage.context(), image, |i| i)));

@@ -237,13 +237,13 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_image(
     transfer: *mut luxfer_transfer,
-    which: luxfer_transfer_image,
+    kind: luxfer_transfer_image,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(transfer, |stage| {
         let out = Out::new(image, "image")?;
         let (context, r) = (stage.context(), stage.output()?);
-        let part = match which {
+        let part = match kind {
             LUXFER_TRANSFER_FEATURES => Pixels::part(context, made(&r.features, "FEATURES")?.clone(), |f| &f.image),
             LUXFER_TRANSFER_PLANE_MASK => Pixels::part(context, made(&r.plane, "PLANE")?.clone(), |s| &s.mask),
             LUXFER_TRANSFER_PLANE_CONFIDENCE => {
@@ -263,7 +263,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
                 Pixels::part(context, film.clone(), preview(film)?)
             }
             LUXFER_TRANSFER_RENDER_VARIANCE => Pixels::part(context, made(&r.film, "RENDER")?.clone(), |f| &f.variance),
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_TRANSFER_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_TRANSFER_ value"))),
         };
         out.set(handle::give(part));
         Ok(())
@@ -277,17 +277,17 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_scene(
     transfer: *mut luxfer_transfer,
-    which: luxfer_transfer_scene,
+    kind: luxfer_transfer_scene,
     scene: *mut *mut luxfer_scene,
 ) -> luxfer_status {
     enter(transfer, |stage| {
         let out = Out::new(scene, "scene")?;
         let results = stage.output()?;
-        let found = match which {
+        let found = match kind {
             LUXFER_SCENE_UNSOLVED => made(&results.unsolved, "EMISSION")?.scene.clone(),
             LUXFER_SCENE_LIT => made(&results.lit, "RELIGHT")?.scene.clone(),
             LUXFER_SCENE_WHITE => made(&results.lit, "RELIGHT")?.in_white().scene,
-            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_SCENE_ value"))),
+            _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_SCENE_ value"))),
         };
         out.set(handle::give(SceneObject::of_result(stage.context(), found)));
         Ok(())

@@ -116,7 +116,8 @@ pub struct luxfer_warning {
     /// Kind of the warning: a LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
     /// The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
-    /// luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene it is LUXFER_STAGE_SCENE.
+    /// luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the size of the
+    /// scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
@@ -194,12 +195,12 @@ fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (luxfer_stage, W
 }
 
 /// A handle whose object has warnings.
-pub(super) trait Doubtful: Handle {
+pub(super) trait HasWarnings: Handle {
     fn list(object: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>>;
 }
 
 /// Creates the list of an object's warnings.
-pub(super) fn create<H: Doubtful>(handle: *mut c_void, warnings: *mut *mut luxfer_warnings) -> luxfer_status {
+pub(super) fn create<H: HasWarnings>(handle: *mut c_void, warnings: *mut *mut luxfer_warnings) -> luxfer_status {
     enter(handle.cast::<H>(), |object| {
         let out = Out::new(warnings, "warnings")?;
         let list = H::list(object)?.into_iter().map(|(stage, warning)| Entry::new(stage, warning)).collect();
@@ -208,14 +209,15 @@ pub(super) fn create<H: Doubtful>(handle: *mut c_void, warnings: *mut *mut luxfe
     })
 }
 
-impl Doubtful for luxfer_transfer {
+impl HasWarnings for luxfer_transfer {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let list = stage.output()?.warnings(stage.inputs().strokes());
-        Ok(list.into_iter().map(|(stage, warning)| (stage as luxfer_stage, warning)).collect())
+        let number = |stage: Option<Stage>| stage.map_or(LUXFER_STAGE_SCENE, |stage| stage as luxfer_stage);
+        Ok(list.into_iter().map(|(stage, warning)| (number(stage), warning)).collect())
     }
 }
 
-impl Doubtful for luxfer_rectify {
+impl HasWarnings for luxfer_rectify {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let output = stage.output()?;
         let unwarped = output.unwarped.as_ref().map_or(Vec::new(), |unwarped| unwarped.warnings());
@@ -223,13 +225,13 @@ impl Doubtful for luxfer_rectify {
     }
 }
 
-impl Doubtful for luxfer_features {
+impl HasWarnings for luxfer_features {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         Ok(of(Stage::Features, stage.output()?.features.warnings()).collect())
     }
 }
 
-impl Doubtful for luxfer_segment {
+impl HasWarnings for luxfer_segment {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let (made, inputs) = (stage.output()?, stage.inputs());
         let lit = inputs.region.as_ref().and_then(|region| segment::almost_all_lit(&made.mask, region.image()));
@@ -242,20 +244,20 @@ impl Doubtful for luxfer_segment {
     }
 }
 
-impl Doubtful for luxfer_emission {
+impl HasWarnings for luxfer_emission {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let list = stage.output()?.texture.as_ref().map_or(Vec::new(), |texture| texture.warnings());
         Ok(of(Stage::Emission, list).collect())
     }
 }
 
-impl Doubtful for luxfer_relight {
+impl HasWarnings for luxfer_relight {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         Ok(of(Stage::Relight, stage.output()?.warnings()).collect())
     }
 }
 
-impl Doubtful for luxfer_scene {
+impl HasWarnings for luxfer_scene {
     fn list(scene: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let list = scene.snapshot().warnings();
         Ok(list.into_iter().map(|warning| (LUXFER_STAGE_SCENE, warning)).collect())

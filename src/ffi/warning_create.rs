@@ -10,7 +10,8 @@ use crate::error::Error;
 use std::ffi::c_void;
 
 /// Gets the warnings about the result of an object. handle is one of:
-/// - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+/// - a luxfer_transfer: an implausible size of its scene, then the warnings of all stages that have a result, in their
+///   order;
 /// - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
 /// - a luxfer_features;
 /// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;

@@ -5,7 +5,7 @@
 //! multiplied by their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit
 //! with and without SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their
 //! borders between sweeps. Its random numbers depend on position only, so the field does not depend on the number of
-//! threads. [`Table`] is an alternative search, a k-d tree.
+//! threads. [`KdTree`] is an alternative search, a k-d tree.
 //!
 //! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has
 //! `(W - w + 1) × (H - w + 1)` patches of width `w`.
@@ -20,25 +20,25 @@
 
 mod domain;
 mod field;
+mod kd_tree;
 mod kernel;
 mod occurrence;
 mod position;
 mod pyramid;
 mod quantised;
 mod search;
-mod table;
 mod vote;
 
 pub use domain::Domain;
 pub use field::Field;
+pub use kd_tree::{KdTree, Means};
 pub use kernel::{Kernel, Patch};
 pub use occurrence::Occurrence;
 pub use position::{NONE, pack, unpack};
 pub use pyramid::{halve, halve_mask, level_count, level_size};
 pub use quantised::{QuantisedImage, Quantiser};
 pub use search::{Search, Sweep};
-pub use table::{Means, Table};
-pub use vote::{Vote, origin, vote};
+pub use vote::{VoteMode, origin, vote};
 
 /// Maximum side in pixels of an image in which patches are matched: a coordinate fits into half of a `u32`.
 pub const MAX_SIDE: usize = 32_768;

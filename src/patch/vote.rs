@@ -10,7 +10,7 @@ use crate::job::Job;
 
 /// How the pixels placed at the same position are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vote {
+pub enum VoteMode {
     /// The mean, as in StyLit.
     Plain,
     /// The mean weighted by `1 / (1 + E / mean E)`, where E is the distance of a match.
@@ -23,7 +23,7 @@ pub enum Vote {
 }
 
 /// An exemplar pixel that at least one patch places at the target pixel, with its votes.
-struct Ballot {
+struct VoteCandidate {
     /// Packed position of the source minus packed position of the target, wrapping. It is equal for patches that
     /// continue each other.
     offset: u32,
@@ -38,7 +38,7 @@ pub fn vote(
     field: &Field,
     style: &Image,
     patch: usize,
-    how: Vote,
+    mode: VoteMode,
     job: Job,
     wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
@@ -46,7 +46,7 @@ pub fn vote(
     let matched = field.error.iter().filter(|&&e| e != u32::MAX).count().max(1);
     let scale = (field.energy() / matched as f64).max(1.0);
     exec::for_rows(&mut out.data, width * channels, job, |y, row| {
-        let mut ballots: Vec<Ballot> = Vec::with_capacity(patch * patch);
+        let mut candidates: Vec<VoteCandidate> = Vec::with_capacity(patch * patch);
         for (x, pixel) in row.chunks_exact_mut(channels).enumerate().filter(|(x, _)| wanted(y * width + x)) {
             let colour = |offset: u32| {
                 let (px, py) = unpack(offset.wrapping_add(pack(x, y)));
@@ -57,12 +57,12 @@ pub fn vote(
                 pixel.copy_from_slice(colour(offset));
                 continue;
             }
-            let weight = |i: usize| match how {
-                Vote::Weighted => 1.0 / (1.0 + f64::from(field.error[i]) / scale),
+            let weight = |i: usize| match mode {
+                VoteMode::Weighted => 1.0 / (1.0 + f64::from(field.error[i]) / scale),
                 _ => 1.0,
             };
-            collect(&mut ballots, field, patch, [x, y], weight);
-            match &ballots[..] {
+            collect(&mut candidates, field, patch, [x, y], weight);
+            match &candidates[..] {
                 [] => continue,
                 [only] => {
                     pixel.copy_from_slice(colour(only.offset));
@@ -70,16 +70,17 @@ pub fn vote(
                 }
                 _ => (),
             }
-            let total: f64 = ballots.iter().map(|b| b.weight).sum();
+            let total: f64 = candidates.iter().map(|b| b.weight).sum();
             for (c, value) in pixel.iter_mut().enumerate() {
-                let sum: f64 = ballots.iter().map(|b| b.weight * f64::from(colour(b.offset)[c])).sum();
+                let sum: f64 = candidates.iter().map(|b| b.weight * f64::from(colour(b.offset)[c])).sum();
                 *value = (sum / total) as f32;
             }
-            if matches!(how, Vote::Nearest | Vote::Majority) {
-                let count = |b: &Ballot| if how == Vote::Majority { b.count } else { 0 };
-                let distance =
-                    |b: &Ballot| -> f32 { colour(b.offset).iter().zip(&*pixel).map(|(s, m)| (s - m) * (s - m)).sum() };
-                let best = (ballots.iter())
+            if matches!(mode, VoteMode::Nearest | VoteMode::Majority) {
+                let count = |b: &VoteCandidate| if mode == VoteMode::Majority { b.count } else { 0 };
+                let distance = |b: &VoteCandidate| -> f32 {
+                    colour(b.offset).iter().zip(&*pixel).map(|(s, m)| (s - m) * (s - m)).sum()
+                };
+                let best = (candidates.iter())
                     .min_by(|a, b| count(b).cmp(&count(a)).then_with(|| distance(a).total_cmp(&distance(b))));
                 if let Some(best) = best {
                     pixel.copy_from_slice(colour(best.offset));
@@ -91,8 +92,14 @@ pub fn vote(
 
 /// Collects the exemplar pixels that the patches over a pixel place there; `weight(i)` is the weight of patch `i`.
 #[inline(always)]
-fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usize; 2], weight: impl Fn(usize) -> f64) {
-    ballots.clear();
+fn collect(
+    candidates: &mut Vec<VoteCandidate>,
+    field: &Field,
+    patch: usize,
+    [x, y]: [usize; 2],
+    weight: impl Fn(usize) -> f64,
+) {
+    candidates.clear();
     for fy in fields_over(y, patch, field.height) {
         for fx in fields_over(x, patch, field.width) {
             let i = fy * field.width + fx;
@@ -101,9 +108,9 @@ fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usiz
             }
             let offset = field.at[i].wrapping_sub(pack(fx, fy));
             let weight = weight(i);
-            match ballots.iter_mut().find(|b| b.offset == offset) {
+            match candidates.iter_mut().find(|b| b.offset == offset) {
                 Some(b) => (b.count, b.weight) = (b.count + 1, b.weight + weight),
-                None => ballots.push(Ballot { offset, count: 1, weight }),
+                None => candidates.push(VoteCandidate { offset, count: 1, weight }),
             }
         }
     }
@@ -146,11 +153,14 @@ mod tests {
         let mut field = Field::new(5, 1).unwrap();
         field.at = [6, 7, 18, 27, 33].map(|x| pack(x, 0)).to_vec();
         field.error = vec![1; 5];
-        let middle = |how| {
+        let middle = |mode| {
             let mut out = Image::new(9, 5, 1).unwrap();
-            vote(&mut out, &field, &style, 5, how, Monitor::default().job(), |_| true).unwrap();
+            vote(&mut out, &field, &style, 5, mode, Monitor::default().job(), |_| true).unwrap();
             out.pixel(4, 2)[0]
         };
-        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority].map(middle), [0.5, 0.5, 0.5, 0.0]);
+        assert_eq!(
+            [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority].map(middle),
+            [0.5, 0.5, 0.5, 0.0]
+        );
     }
 }

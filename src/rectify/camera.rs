@@ -1,6 +1,6 @@
 //! Estimates the camera from vanishing points: focal length and orthonormal room axes, given the principal point.
 
-use super::focal::{Expected, USUAL_SPREAD};
+use super::focal::{FocalPrior, USUAL_SPREAD};
 use super::params::Params;
 use super::sphere::{Refined, round_covariance};
 use super::squareness::{self, Squareness};
@@ -15,21 +15,21 @@ use glam::{DMat3, DVec2, DVec3};
 pub const FREE_ERROR: f64 = 0.5;
 
 /// The estimated camera, with the vanishing point of each room axis.
-pub struct Oriented {
+pub struct EstimatedCamera {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
     /// The prior of the focal length.
-    pub expected: Expected,
+    pub expected: FocalPrior,
     /// For each input vanishing point, the index of the room axis to which it was assigned; `None` if it was not
     /// assigned.
     pub axis_of: Vec<Option<usize>>,
 }
 
 /// Assigns the vanishing points to room axes, estimates the focal length and makes the axes orthonormal.
-pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
+pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> EstimatedCamera {
     let principal = params.principal(width, height);
-    let expected = Expected::new(params, width);
+    let expected = FocalPrior::new(params, width);
     let orthogonal = &found.points[..found.points.len().min(3)];
     let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
@@ -83,7 +83,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let free = [0, 1, 2].map(|axis| named[axis].map(|k| as_axis(&found.free[k], axis)));
     let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), expected);
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
-    Oriented { perspective, vanishing_points, squareness, expected, axis_of }
+    EstimatedCamera { perspective, vanishing_points, squareness, expected, axis_of }
 }
 
 /// Returns the focal length in pixels and its source: the given focal length, or else an estimate from the vanishing
@@ -92,7 +92,7 @@ fn focal_length(
     points: &[VanishingPoint],
     principal: DVec2,
     given: Option<f64>,
-    expected: Expected,
+    expected: FocalPrior,
 ) -> (f64, FocalSource) {
     match (given, focal_from_points(points, principal, expected.focal)) {
         (Some(f), _) => (f, FocalSource::Given),
@@ -108,7 +108,7 @@ fn focal_length(
 }
 
 /// Re-estimates the camera from the vanishing points of its axes, ignoring points that no segment supports.
-pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: Expected) -> Perspective {
+pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: FocalPrior) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
     let (focal, _) = focal_length(&known, camera.principal, given, expected);

@@ -3,25 +3,28 @@
 use super::params::Params;
 use crate::geometry::FocalSource;
 
-/// Prior of the focal length over photos of rooms. `USUAL_FOCAL`: median of the focal length as a share of the image
-/// width. `USUAL_SPREAD`: standard deviation of its logarithm. [origin not recorded]
-const USUAL_FOCAL: f64 = 0.85;
+/// Prior of the focal length over photos of rooms. `USUAL_FOCAL_PER_WIDTH`: median of the focal length as a share of
+/// the image width, also in portrait photos. `USUAL_SPREAD`: standard deviation of its logarithm. [origin not
+/// recorded]
+pub const USUAL_FOCAL_PER_WIDTH: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 
 /// The prior of a focal length, in pixels, and the standard deviation of its logarithm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
+pub struct FocalPrior {
     pub focal: f64,
     pub spread: f64,
     pub(super) source: FocalSource,
 }
 
-impl Expected {
+impl FocalPrior {
     /// Returns the prior from the photo's metadata or, without metadata, the usual focal length for this width.
     pub(super) fn new(params: &Params, width: usize) -> Self {
         match params.expected_focal {
             Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
-            None => Self { focal: USUAL_FOCAL * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed },
+            None => {
+                Self { focal: USUAL_FOCAL_PER_WIDTH * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed }
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 //! yield candidate points; pairs of candidates, or a candidate and a line, yield triplets of points. The best triplets
 //! are then refined: rotation and focal length together.
 
+use super::focal::USUAL_FOCAL_PER_WIDTH;
 use super::sphere::{WeightedLine, project, refine, unproject};
 use crate::error::Result;
 use crate::exec;
@@ -14,10 +15,11 @@ use glam::{DMat3, DQuat, DVec3};
 /// image side: angles of view from 20 to 110 degrees. [origin not recorded]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Prior of the focal length. `USUAL_FOCAL`: median in units of half the longer image side (0.85 of the width of a
-/// landscape photo). `USUAL_SPREAD`: standard deviation of the logarithm. [origin not recorded]
-pub const USUAL_FOCAL: f64 = 1.7;
-pub const USUAL_SPREAD: f64 = 0.4;
+/// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side; of a
+/// landscape photo, it is the median of [`super::focal`], of a portrait photo, a longer focal length. `SEARCH_SPREAD`:
+/// standard deviation of the logarithm. [origin not recorded]
+pub const USUAL_FOCAL: f64 = 2.0 * USUAL_FOCAL_PER_WIDTH;
+const SEARCH_SPREAD: f64 = 0.4;
 
 /// Penalty of a triplet whose focal length deviates from the prior by one standard deviation, as a share of the total
 /// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length.
@@ -180,7 +182,7 @@ fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
         explained += e.weight * points.iter().map(|&p| e.agreement(p)).fold(0.0, f64::max);
         total += e.weight;
     }
-    let unusual = (triplet.focal / USUAL_FOCAL).ln() / USUAL_SPREAD;
+    let unusual = (triplet.focal / USUAL_FOCAL).ln() / SEARCH_SPREAD;
     explained / total - FOCAL_COST * unusual * unusual
 }
 
@@ -232,7 +234,7 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
         }
         // Add the prior of the focal length as a weak observation. A given focal length stays fixed by a large
         // diagonal term.
-        let firmness = if focal.is_some() { 1e12 } else { 0.01 / (USUAL_SPREAD * USUAL_SPREAD) } * scale;
+        let firmness = if focal.is_some() { 1e12 } else { 0.01 / (SEARCH_SPREAD * SEARCH_SPREAD) } * scale;
         normal[3][3] += firmness;
         if focal.is_none() {
             right[3] -= firmness * (current.focal / USUAL_FOCAL).ln();

@@ -63,7 +63,7 @@ pub mod vanishing;
 mod warnings;
 
 pub use distortion::Distortion;
-pub use focal::Expected;
+pub use focal::FocalPrior;
 pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
 pub use resample::warp;
 pub use squareness::Squareness;
@@ -95,7 +95,7 @@ pub struct View {
     /// if only segments were given.
     pub distortion: Option<Distortion>,
     /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
-    pub expected_focal: Expected,
+    pub expected_focal: FocalPrior,
 }
 
 /// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite yield no lines.

@@ -99,13 +99,13 @@ struct Grower<'a> {
 }
 
 /// A region's segment, its number of pixels, and the width of its bounding rectangle across the segment.
-struct Found {
+struct FittedSegment {
     segment: Segment,
     pixels: usize,
     width: f64,
 }
 
-impl Found {
+impl FittedSegment {
     fn density(&self) -> f64 {
         self.pixels as f64 / (self.segment.length() * self.width).max(1.0)
     }
@@ -123,7 +123,7 @@ impl Found {
 impl Grower<'_> {
     /// Grows the region around a seed and fits a segment to it. If the region is not dense enough, first tightens the
     /// tolerance of the gradient direction, then cuts off pixels far from the seed.
-    fn straight_region(&mut self, seed: u32) -> Option<Found> {
+    fn straight_region(&mut self, seed: u32) -> Option<FittedSegment> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;
         if found.density() < MIN_DENSITY {
@@ -193,7 +193,7 @@ impl Grower<'_> {
     /// Fits a line by total least squares, weighting each pixel by its gradient magnitude, which locates an edge to a
     /// fraction of a pixel. Excludes the ends, where corners bend the gradient. Returns `None` if the region has too
     /// few pixels to have a direction, or is wider than it is long.
-    fn fit(&self) -> Option<Found> {
+    fn fit(&self) -> Option<FittedSegment> {
         if self.region.len() < 8 {
             return None;
         }
@@ -207,7 +207,7 @@ impl Grower<'_> {
         let (centre, direction) = self.axis(inner).unwrap_or((centre, direction));
         let (low, high) = self.extent(centre, direction);
         let segment = Segment { a: centre + direction * low.x, b: centre + direction * high.x };
-        let found = Found { segment, pixels: self.region.len(), width: high.y - low.y + 1.0 };
+        let found = FittedSegment { segment, pixels: self.region.len(), width: high.y - low.y + 1.0 };
         (segment.length() > found.width).then_some(found)
     }
 

@@ -5,7 +5,7 @@
 //! pixels stay hidden in photos where two directions run parallel to the image sides: any pixel aspect ratio then
 //! agrees with the lines.
 
-use super::focal::Expected;
+use super::focal::FocalPrior;
 use super::sphere::Refined;
 use glam::DVec3;
 
@@ -56,7 +56,7 @@ pub fn measure(
     directions: &[Option<Refined>; 3],
     focal: f64,
     is_given: bool,
-    expected: Expected,
+    expected: FocalPrior,
 ) -> [Option<Squareness>; 3] {
     let pair = |beside: usize| {
         let [a, b] = [(beside + 1) % 3, (beside + 2) % 3].map(|k| directions[k].as_ref());

@@ -58,7 +58,7 @@ pub struct Vanishing {
 
 /// A direction refined with priors on right angles to the other directions (`expected`), and without them (`free`).
 #[derive(Clone, Copy)]
-struct Found {
+struct DirectionEstimate {
     expected: Refined,
     free: Refined,
 }
@@ -129,7 +129,7 @@ fn orthogonal_and_further(
     count: usize,
     seed: u64,
     job: Job,
-) -> Result<(Vec<Found>, f64)> {
+) -> Result<(Vec<DirectionEstimate>, f64)> {
     let Some(triplet) = manhattan::search(lines, given, seed, job.part(0.0, 0.8))? else {
         return Ok((Vec::new(), given.unwrap_or(manhattan::USUAL_FOCAL)));
     };
@@ -142,17 +142,17 @@ fn orthogonal_and_further(
             lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
         let Some(start) = manhattan::strongest(&rest, focal, seed, job.part(0.8, 0.9))? else { break };
         let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
-        found.push(Found { expected: point, free: point });
+        found.push(DirectionEstimate { expected: point, free: point });
     }
     Ok((found, focal))
 }
 
 /// Returns the direction unchanged, with the covariance that the lines imply.
-fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
+fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> DirectionEstimate {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
     let point = Refined { direction, covariance };
-    Found { expected: point, free: point }
+    DirectionEstimate { expected: point, free: point }
 }
 
 /// Assigns every segment to the point it agrees with best. Returns the index of the point for each segment, and the
@@ -174,7 +174,7 @@ fn assign(lines: &[(usize, WeightedLine)], points: &[DVec3], count: usize) -> (V
 /// direction once more with the prior that it is at right angles to the other directions, which helps if a direction
 /// has few lines. Drops directions that fewer than two lines determine, directions with an error above `MAX_ERROR`,
 /// and directions that have drifted into another direction.
-fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Found> {
+fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<DirectionEstimate> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
     for _ in 0..3 {
@@ -182,7 +182,7 @@ fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Foun
         current = current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
     }
     let groups = nearest(lines, &current, focal);
-    let squared: Vec<Found> = (0..current.len())
+    let squared: Vec<DirectionEstimate> = (0..current.len())
         .map(|i| {
             let from = current[i];
             let expected: Vec<RightAngle> = (0..current.len())
@@ -193,10 +193,13 @@ fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Foun
                     RightAngle { to, variance: SQUARENESS * SQUARENESS + error * error + by_focal * by_focal }
                 })
                 .collect();
-            Found { expected: refine_near(&groups[i], from.direction, focal, &expected).unwrap_or(from), free: from }
+            DirectionEstimate {
+                expected: refine_near(&groups[i], from.direction, focal, &expected).unwrap_or(from),
+                free: from,
+            }
         })
         .collect();
-    let mut kept: Vec<Found> = Vec::new();
+    let mut kept: Vec<DirectionEstimate> = Vec::new();
     for found in squared {
         let r = &found.expected;
         let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < 0.9);

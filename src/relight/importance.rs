@@ -28,7 +28,7 @@ use glam::{DVec3, Mat3, Vec2, Vec3};
 use std::sync::Arc;
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct MapParams {
+pub struct ImportanceParams {
     /// Number of cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
@@ -36,7 +36,7 @@ pub struct MapParams {
     pub tracing: Params,
 }
 
-impl Default for MapParams {
+impl Default for ImportanceParams {
     fn default() -> Self {
         Self { width: 64, height: 64, tracing: Params::default() }
     }
@@ -92,14 +92,14 @@ impl Importance {
     /// # Errors
     /// Parameters out of range; a material or a target that does not exist; surfaces without texture coordinates;
     /// cancelled.
-    pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &MapParams, job: Job) -> Result<Self> {
+    pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &ImportanceParams, job: Job) -> Result<Self> {
         check_range("width", params.width, 1, MAX_CELLS)?;
         check_range("height", params.height, 1, MAX_CELLS)?;
         let tracing = &params.tracing;
         tracing.check()?;
         let even = evenly_lit(scene, emitter, params)?;
         let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
-        let points = Sampler::new(scene, goal.place, goal.quantity)?;
+        let points = Sampler::new(scene, goal.geometry, goal.quantity)?;
         let bins = Bins::new(&world, emitter, Division::Cells { width: params.width, height: params.height });
         let mut batches = Batches::new(&world, &points, bins, tracing.seed)?;
         let stop = Stop::new(tracing);
@@ -118,7 +118,7 @@ impl Importance {
         }
     }
 
-    fn of(batches: &Batches, params: &MapParams) -> Self {
+    fn of(batches: &Batches, params: &ImportanceParams) -> Self {
         let means = batches.means();
         Self {
             width: params.width,
@@ -250,7 +250,7 @@ impl Importance {
 }
 
 /// Returns the scene with uniform emission on the emissive surfaces: a white texture with one texel per cell.
-fn evenly_lit(scene: &Arc<Scene>, emitter: usize, params: &MapParams) -> Result<Scene> {
+fn evenly_lit(scene: &Arc<Scene>, emitter: usize, params: &ImportanceParams) -> Result<Scene> {
     if emitter >= scene.materials.len() {
         return Err(Error::argument(format!(
             "the emitter is material {emitter}; the scene has {} materials",

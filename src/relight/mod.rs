@@ -41,10 +41,10 @@ mod warnings;
 
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};
-pub use importance::{Importance, MapParams, Response};
+pub use importance::{Importance, ImportanceParams, Response};
 pub use lamps::Lamps;
-pub use params::{Fit, Params, Place, Quantity};
-pub use placement::{Aim, PlaceParams, Placement, Pose};
+pub use params::{Fit, Params, Quantity, TargetGeometry};
+pub use placement::{Aim, Placement, PlacementParams, Pose};
 pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 pub use sided::Constraint;
@@ -82,7 +82,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
         check_range("target", channel, 0.0, f32::MAX)?;
     }
     let scene = input.world.scene();
-    let points = target::Sampler::new(scene, Place::Surface(input.target_triangles), params.quantity)?;
+    let points = target::Sampler::new(scene, TargetGeometry::Surface(input.target_triangles), params.quantity)?;
     let bins = Bins::new(input.world, input.emitter, Division::Whole);
     let mut batches = Batches::new(input.world, &points, bins, params.seed)?;
     if params.fit == Fit::LeastSquares {

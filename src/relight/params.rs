@@ -26,7 +26,7 @@ pub enum Fit {
 
 /// The geometry of a target: where its light is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place<'a> {
+pub enum TargetGeometry<'a> {
     /// A surface, given by its triangles as (mesh, triangle). Light is measured on the side from which the triangles
     /// wind counter-clockwise. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),

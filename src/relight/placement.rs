@@ -69,7 +69,7 @@ impl Pose {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlaceParams {
+pub struct PlacementParams {
     pub aim: Aim,
     /// Bounds: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`. Parameters with equal bounds
     /// are fixed. An offset whose range covers a period of the texture is unbounded, and so is a rotation whose range
@@ -81,7 +81,7 @@ pub struct PlaceParams {
     pub seed: u64,
 }
 
-impl Default for PlaceParams {
+impl Default for PlacementParams {
     /// Searches for the brightest target over all offsets, at the current scale and rotation.
     fn default() -> Self {
         let shifted = |by: f64| Pose { offset: DVec2::splat(by), ..Pose::IDENTITY };
@@ -128,7 +128,7 @@ impl Importance {
     ///
     /// # Errors
     /// Parameters out of range; cancelled.
-    pub fn place(&self, texture: &Image, params: &PlaceParams, job: Job) -> Result<Placement> {
+    pub fn place(&self, texture: &Image, params: &PlacementParams, job: Job) -> Result<Placement> {
         let bounds = params.bounds()?;
         let search = self.search(texture, params.aim, job.part(0.0, 0.1))?;
         // Start from the current placement, clamped to the bounds, and from points of a low-discrepancy sequence
@@ -177,7 +177,7 @@ const KRONECKER: [f64; 5] = [
     0.531_555_401_119_246_3,
 ];
 
-impl PlaceParams {
+impl PlacementParams {
     fn bounds(&self) -> Result<Bounds<5>> {
         check_range("starts", self.starts, 1, 4096)?;
         if let Aim::Radiance(target) = self.aim {

@@ -3,7 +3,7 @@
 use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
-use super::params::{Params, Place, Quantity};
+use super::params::{Params, Quantity, TargetGeometry};
 use super::sided::Constraint;
 use super::target::Sampler;
 use super::transport::{Batches, Means, Stop};
@@ -25,7 +25,7 @@ pub enum Aspect {
 /// One of several lighting goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal<'a> {
-    pub place: Place<'a>,
+    pub geometry: TargetGeometry<'a>,
     pub quantity: Quantity,
     /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light, the illuminance divided by π.
     pub target: Vec3,
@@ -119,7 +119,7 @@ pub fn lamp_responses(
     }
     let scene = world.scene();
     let samplers: Vec<Sampler> =
-        goals.iter().map(|goal| Sampler::new(scene, goal.place, goal.quantity)).collect::<Result<_>>()?;
+        goals.iter().map(|goal| Sampler::new(scene, goal.geometry, goal.quantity)).collect::<Result<_>>()?;
     let mut batches: Vec<Batches> = samplers
         .iter()
         .map(|points| Batches::new(world, points, Bins::new(world, emitter, Division::Lamps(lamps)), params.seed))

@@ -1,6 +1,6 @@
 //! Samples points of the target uniformly by area, with their reflectance.
 
-use super::params::{Place, Quantity};
+use super::params::{Quantity, TargetGeometry};
 use crate::error::{Error, Result};
 use crate::render::{self, PathSink, SurfacePoint, World};
 use crate::scene::{Material, Mesh, Scene};
@@ -49,10 +49,10 @@ impl Target {
 
 impl<'a> Sampler<'a> {
     /// `scene` provides the reflectance of the target and the lamps to exclude.
-    pub fn new(scene: &'a Scene, place: Place<'a>, quantity: Quantity) -> Result<Self> {
-        match place {
-            Place::Surface(triangles) => Surface::new(scene, triangles, quantity).map(Self::Surface),
-            Place::Grid { origin, across, down, normal } => {
+    pub fn new(scene: &'a Scene, geometry: TargetGeometry<'a>, quantity: Quantity) -> Result<Self> {
+        match geometry {
+            TargetGeometry::Surface(triangles) => Surface::new(scene, triangles, quantity).map(Self::Surface),
+            TargetGeometry::Grid { origin, across, down, normal } => {
                 let unit = normal.normalize_or_zero();
                 if !(origin.is_finite() && across.is_finite() && down.is_finite()) || unit == Vec3::ZERO {
                     return Err(Error::argument(format!(

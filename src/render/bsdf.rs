@@ -22,7 +22,7 @@ const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// The BSDF parameters of a material at one surface point.
 #[derive(Clone, Copy, Debug)]
-pub struct Substance {
+pub struct BsdfParams {
     /// Albedo of the diffuse layer, already multiplied by 1 - metallic and by 1 - transmission.
     pub diffuse: Vec3,
     /// Reflectance of the top layer at normal incidence (`f0`) and at grazing incidence (`f90`).
@@ -37,7 +37,7 @@ pub struct Substance {
     pub dielectric_f0: f32,
 }
 
-impl Substance {
+impl BsdfParams {
     /// Returns the share of a ray's light that continues in a straight line; `cosine` is the cosine of the angle
     /// between the ray and the normal.
     pub fn through(&self, cosine: f32) -> Vec3 {
@@ -62,7 +62,7 @@ pub struct Bsdf<'a> {
 
 /// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
 struct Layers<'a> {
-    substance: Substance,
+    bsdf_params: BsdfParams,
     /// The two tangents of the shading frame; its third axis is the shading normal.
     tangents: [Vec3; 2],
     wo: Vec3,
@@ -118,7 +118,7 @@ impl<'a> Bsdf<'a> {
     /// the scene has a top layer.
     #[inline]
     pub fn new(
-        substance: &Substance,
+        bsdf_params: &BsdfParams,
         layered: bool,
         [shading, geometric]: [Vec3; 2],
         wo: Vec3,
@@ -127,12 +127,12 @@ impl<'a> Bsdf<'a> {
         let side = 1f32.copysign(geometric.dot(wo));
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
-        let diffuse = substance.diffuse;
+        let diffuse = bsdf_params.diffuse;
         // Return early for diffuse surfaces, so that the unused layers are not copied.
         if !layered {
             return Self { diffuse, normal, geometric, layers: None };
         }
-        let layers = Layers::new(substance, normal, geometric.dot(wo), wo, table);
+        let layers = Layers::new(bsdf_params, normal, geometric.dot(wo), wo, table);
         Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
@@ -153,7 +153,7 @@ impl<'a> Bsdf<'a> {
 
     /// Returns the reflectance plus the transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
-        let above = self.layers.as_ref().map(|l| l.substance.f0 + l.substance.transmission);
+        let above = self.layers.as_ref().map(|l| l.bsdf_params.f0 + l.bsdf_params.transmission);
         self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
@@ -164,7 +164,7 @@ impl<'a> Bsdf<'a> {
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
             None => self.diffuse != Vec3::ZERO,
-            Some(Layers { substance: s, .. }) => {
+            Some(Layers { bsdf_params: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
                 is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
             }
@@ -226,8 +226,8 @@ impl<'a> Bsdf<'a> {
 }
 
 impl<'a> Layers<'a> {
-    fn new(substance: &Substance, normal: Vec3, upright: f32, wo: Vec3, table: Option<&'a AlbedoTable>) -> Self {
-        let s = substance;
+    fn new(bsdf_params: &BsdfParams, normal: Vec3, upright: f32, wo: Vec3, table: Option<&'a AlbedoTable>) -> Self {
+        let s = bsdf_params;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
         // Compute two albedos of the top layer for light from the viewer's direction: the largest channel of the whole
@@ -256,7 +256,7 @@ impl<'a> Layers<'a> {
         let through = s.through(upright);
         let sum = diffuse + top + through.max_element();
         let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
-        Self { substance: *s, tangents: [t, b], wo, through, shares, lobe, left_over }
+        Self { bsdf_params: *s, tangents: [t, b], wo, through, shares, lobe, left_over }
     }
 
     fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
@@ -264,7 +264,7 @@ impl<'a> Layers<'a> {
         if self.wo.z <= 0.0 {
             return (lobes, pdf);
         }
-        let s = &self.substance;
+        let s = &self.bsdf_params;
         let [diffuse, top] = self.shares;
         if diffuse > 0.0 {
             let left = self.left_over * (1.0 - self.coat_albedo(cosine)).max(0.0);
@@ -287,7 +287,7 @@ impl<'a> Layers<'a> {
     /// Returns the albedo of the dielectric top layer for a direction; `cosine` is the cosine of its angle to the
     /// normal.
     fn coat_albedo(&self, cosine: f32) -> f32 {
-        let s = &self.substance;
+        let s = &self.bsdf_params;
         match &self.lobe {
             Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
             None if s.f90 > 0.0 => ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x,
@@ -320,7 +320,7 @@ impl<'a> Layers<'a> {
 
     fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<BsdfSample> {
         let direction = from_local(frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
-        let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / self.shares[1];
+        let weight = ggx::schlick(self.bsdf_params.f0, self.bsdf_params.f90, self.wo.z) / self.shares[1];
         let scattered = BsdfSample { direction, weight, lobes: Lobes::NONE, kind: ScatterKind::Mirror };
         (direction.dot(geometric) > 0.0).then_some(scattered)
     }
@@ -342,8 +342,8 @@ struct TopAlbedo<'a> {
 }
 
 impl<'a> TopAlbedo<'a> {
-    fn new(table: &'a AlbedoTable, substance: &Substance) -> Self {
-        Self { row: table.row(substance.roughness), weights: Vec2::new(substance.dielectric_f0, substance.f90) }
+    fn new(table: &'a AlbedoTable, bsdf_params: &BsdfParams) -> Self {
+        Self { row: table.row(bsdf_params.roughness), weights: Vec2::new(bsdf_params.dielectric_f0, bsdf_params.f90) }
     }
 
     fn of(&self, scale_and_bias: Vec2) -> f32 {

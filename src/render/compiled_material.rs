@@ -1,6 +1,6 @@
 //! Materials prepared for path tracing: parameters that do not vary with a texture are computed once per material.
 
-use super::bsdf::Substance;
+use super::bsdf::BsdfParams;
 use crate::scene::Material;
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub struct CompiledMaterial {
     /// The BSDF parameters; valid only where no texture varies them.
-    pub substance: Substance,
+    pub bsdf_params: BsdfParams,
     /// Whether textures vary the parameters.
     pub is_textured: bool,
     /// Whether the material may have layers besides the diffuse one.
@@ -37,14 +37,14 @@ impl CompiledMaterial {
 
 /// Converts the metallic-roughness parameters at a surface point to the parameters of the layers (glTF 2.0, appendix
 /// B.2).
-pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> Substance {
+pub fn bsdf_params(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> BsdfParams {
     let base = base.clamp(Vec3::ZERO, Vec3::ONE);
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
     let transmission = material.transmission.clamp(0.0, 1.0);
     let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
     // A dielectric with an index of refraction of 1 has no interface, so it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
-    Substance {
+    BsdfParams {
         diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
         f0: Vec3::splat(dielectric_f0).lerp(base, metallic),
         f90: if has_interface { 1.0 } else { metallic },

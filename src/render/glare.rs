@@ -146,7 +146,7 @@ struct Lamp {
 }
 
 /// A luminaire as seen from an eye, without occlusion.
-struct Sight {
+struct ApparentLamp {
     towards: DVec3,
     distance: f64,
     area: f64,
@@ -164,14 +164,14 @@ impl Lamp {
 
     /// Returns direction, distance, projected area (m²) and intensity (cd) of the luminaire as seen from `eye`; `None`
     /// if the eye sees the opening edge-on.
-    fn sight(&self, world: &World, eye: DVec3) -> Option<Sight> {
+    fn seen_from(&self, world: &World, eye: DVec3) -> Option<ApparentLamp> {
         let (towards, distance) = (self.position - eye).normalize_and_length();
         let u = self.local(-towards);
         let area = self.opening.projected_area(u);
         let largest = DVec3::AXES.map(|axis| self.opening.projected_area(axis)).into_iter().fold(0.0, f64::max);
         let (c, gamma) = (u.y.atan2(u.x).to_degrees(), u.x.hypot(u.y).atan2(u.z).to_degrees());
         let candela = world.scene().distributions[self.distribution].intensity(c, gamma) * self.factor;
-        (area > largest * EDGE_ON).then_some(Sight { towards, distance, area, candela })
+        (area > largest * EDGE_ON).then_some(ApparentLamp { towards, distance, area, candela })
     }
 
     /// Returns which share of the opening's projected area is visible, and the mean squared transmittance over the
@@ -217,19 +217,19 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     let (mut sources, mut rated) = (Vec::new(), Vec::new());
     rated.resize(world.scene().lights.len(), false);
     for lamp in lamps {
-        let Some(sight) = lamp.sight(world, position) else { continue };
+        let Some(seen) = lamp.seen_from(world, position) else { continue };
         rated[lamp.light] = true;
         // A luminaire behind the observer causes no glare.
-        if sight.candela <= 0.0 || sight.towards.dot(ahead) <= 0.0 {
+        if seen.candela <= 0.0 || seen.towards.dot(ahead) <= 0.0 {
             continue;
         }
-        let (visible, squared_share) = lamp.visibility(world, position, sight.towards);
+        let (visible, squared_share) = lamp.visibility(world, position, seen.towards);
         if visible > 0.0 {
-            let towards = [right, up, -ahead].map(|axis| sight.towards.dot(axis));
+            let towards = [right, up, -ahead].map(|axis| seen.towards.dot(axis));
             sources.push(Source {
                 light: lamp.light,
-                luminance: sight.candela / sight.area * squared_share.sqrt(),
-                solid_angle: sight.area / sight.distance.powi(2) * visible,
+                luminance: seen.candela / seen.area * squared_share.sqrt(),
+                solid_angle: seen.area / seen.distance.powi(2) * visible,
                 position_index: position_index(DVec3::from_array(towards)),
             });
         }
@@ -253,10 +253,10 @@ fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: 
             if job.is_cancelled() {
                 return (0.0, 0.0, 0.0);
             }
-            let mut split = Split { rated, scattered: false, indirect: DVec3::ZERO, unrated: DVec3::ZERO };
-            path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut split);
-            indirect += split.indirect;
-            unrated += split.unrated;
+            let mut observer = GlareObserver { rated, scattered: false, indirect: DVec3::ZERO, unrated: DVec3::ZERO };
+            path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut observer);
+            indirect += observer.indirect;
+            unrated += observer.unrated;
         }
         *mean = luminance(indirect) / f64::from(per_batch) / PI;
     }
@@ -272,7 +272,7 @@ fn luminance(light: DVec3) -> f64 {
 
 /// Divides the light that paths carry to an eye: indirect light (`indirect`), and direct light from lights that the
 /// rating ignores (`unrated`).
-struct Split<'a> {
+struct GlareObserver<'a> {
     /// For each light of the scene, whether the rating takes it into account.
     rated: &'a [bool],
     /// Whether the path has scattered so far at a surface other than a clear pane.
@@ -281,7 +281,7 @@ struct Split<'a> {
     unrated: DVec3,
 }
 
-impl Observer for Split<'_> {
+impl Observer for GlareObserver<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let light = (importance * emission).as_dvec3();
         // At each vertex, the light sample comes before the call of `scatter` for that vertex. A light sample at a

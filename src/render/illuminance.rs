@@ -36,7 +36,7 @@ impl Default for Params {
 
 /// The points at which to compute illuminance.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum CalculationPoints {
     /// A parallelogram, given by a corner and two edges, which is divided into `columns × rows` cells: columns along
     /// `across` and rows along `down`. The points are the centres of the cells. They receive light on the side of
     /// `normal`, which need not be perpendicular to the edges.
@@ -84,7 +84,7 @@ const SALT: u64 = 0x6c65_6172_6e69_6e67;
 /// # Errors
 /// Parameters out of range; a grid with a zero normal; a mesh that does not exist or has no texture coordinates;
 /// cancelled.
-pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Output> {
+pub fn run(world: &World, place: &CalculationPoints, params: &Params, job: Job) -> Result<Output> {
     check_range("columns", params.columns, 1, MAX_SIDE)?;
     check_range("rows", params.rows, 1, MAX_SIDE)?;
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
@@ -189,9 +189,9 @@ impl Receivers {
     }
 }
 
-fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers> {
+fn receivers(world: &World, place: &CalculationPoints, params: &Params) -> Result<Receivers> {
     match place {
-        Place::Grid { origin, across, down, normal } => {
+        CalculationPoints::Grid { origin, across, down, normal } => {
             let unit = normal.normalize_or_zero();
             let finite = [origin, across, down, normal].iter().all(|v| v.is_finite());
             if !finite || unit == Vec3::ZERO {
@@ -204,7 +204,7 @@ fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers>
             let (across, down) = (*across / columns as f32, *down / rows as f32);
             Ok(Receivers::Grid { origin: world.from_scene(*origin), across, down, normal: unit, columns })
         }
-        Place::Mesh { mesh, front } => {
+        CalculationPoints::Mesh { mesh, front } => {
             let texels = texels(world, *mesh, params)?;
             Ok(Receivers::Texels { mesh: *mesh as u32, front: *front, texels })
         }

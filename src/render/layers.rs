@@ -7,7 +7,7 @@
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
-use super::lpe::{Automaton, EmitterAs, Expression, Trail};
+use super::lpe::{Automaton, EmitterAs, Expression, PathTracker};
 use super::path::{Observer, PrimaryHit, Strategy};
 use super::shared::MAX_SHARED;
 use super::world::{Pane, World};
@@ -162,7 +162,7 @@ impl<'a> Layers<'a> {
         Recorder {
             layers: self,
             beauty: Vec3::ZERO,
-            trail: Trail::new(&self.automaton),
+            tracker: PathTracker::new(&self.automaton),
             sums: vec![DVec3::ZERO; self.automaton.lists().len()],
             surfaces: Surfaces::default(),
         }
@@ -225,7 +225,7 @@ pub struct Recorder<'a> {
     layers: &'a Layers<'a>,
     /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
-    pub(super) trail: Trail<'a>,
+    pub(super) tracker: PathTracker<'a>,
     /// Sums of the light of the pixel's paths, one for each list of expressions in [`Automaton::lists`].
     sums: Vec<DVec3>,
     surfaces: Surfaces,
@@ -236,7 +236,7 @@ impl Recorder<'_> {
     #[inline]
     pub fn start(&mut self) {
         self.beauty = Vec3::ZERO;
-        self.trail.start();
+        self.tracker.start();
     }
 
     /// Ends the path, adds its light to the sums and returns its radiance in the main image. A path whose radiance is
@@ -244,7 +244,7 @@ impl Recorder<'_> {
     #[inline]
     pub fn end_path(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.trail.end(|list, light| self.sums[list] += light.as_dvec3());
+            self.tracker.end(|list, light| self.sums[list] += light.as_dvec3());
         }
         self.beauty
     }
@@ -309,7 +309,7 @@ impl Observer for Recorder<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.layers.world, contribution.into(), source, strategy);
+        self.tracker.add(self.layers.world, contribution.into(), source, strategy);
     }
 
     #[inline]
@@ -324,11 +324,11 @@ impl Observer for Recorder<'_> {
 
     #[inline]
     fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
-        self.trail.scatter(mesh, kind, lobes);
+        self.tracker.scatter(mesh, kind, lobes);
     }
 
     #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        self.trail.panes_wanted()
+        self.tracker.panes_wanted()
     }
 }

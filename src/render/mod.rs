@@ -66,7 +66,7 @@ pub use world::World;
 use crate::error::{Error, Result};
 use crate::job::{Job, Monitor};
 use crate::scene::{Camera, MAX_LIGHT};
-use film::{AdaptiveSampler, Canvas, Clock};
+use film::{Accumulator, AdaptiveSampler, Clock};
 use glam::{Vec2, Vec3};
 use params::check_camera;
 use sampler::Sampler;
@@ -133,31 +133,31 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);
-    let mut canvas = Canvas::new(world, camera, &guided)?;
+    let mut accumulator = Accumulator::new(world, camera, &guided)?;
     let mut plan = AdaptiveSampler::new(params);
-    let mut publish_film = |canvas: &Canvas, clock: &mut Clock| {
+    let mut publish_film = |accumulator: &Accumulator, clock: &mut Clock| {
         clock.publish(|| {
-            let mut film = canvas.film(always.job())?;
-            preview::add_preview(&mut film, canvas, params, always.job())?;
+            let mut film = accumulator.film(always.job())?;
+            preview::add_preview(&mut film, accumulator, params, always.job())?;
             publish(&film);
             Ok(film)
         })
     };
     let (mut published, mut done) = (None, 0.0);
-    while let Some(pass) = plan.next(&canvas, &clock, job.part(done, done))? {
-        let next = canvas.progress(&pass, params.samples).clamp(done, 1.0);
-        let cut = clock.sample(|deadline| canvas.extend(&pass, deadline, job.part(done, next)));
+    while let Some(pass) = plan.next(&accumulator, &clock, job.part(done, done))? {
+        let next = accumulator.progress(&pass, params.samples).clamp(done, 1.0);
+        let cut = clock.sample(|deadline| accumulator.extend(&pass, deadline, job.part(done, next)));
         done = next.max(clock.spent());
         job.report(done);
         published = None;
         if clock.is_publish_due() || cut.is_err() {
-            published = Some(publish_film(&canvas, &mut clock)?);
+            published = Some(publish_film(&accumulator, &mut clock)?);
         }
         cut?;
     }
     let film = match published {
         Some(film) => film,
-        None => publish_film(&canvas, &mut clock)?,
+        None => publish_film(&accumulator, &mut clock)?,
     };
     check_finite(&film)?;
     job.report(1.0);

@@ -97,7 +97,7 @@ impl<S: PathSink> Observer for Contributions<'_, S> {
 }
 
 /// The next segment of a path, as it leaves a vertex or the eye.
-pub(super) struct Leg {
+pub(super) struct PathSegment {
     pub ray: Ray,
     /// Id of the triangle from which the ray starts, or `NONE`.
     pub from: u32,
@@ -109,7 +109,7 @@ pub(super) struct Leg {
     pub light_u: (f64, f32),
 }
 
-impl Leg {
+impl PathSegment {
     /// Returns the segment that leaves the eye along a ray of unit direction.
     pub fn from_eye(ray: Ray, light_u: (f64, f32)) -> Self {
         Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, light_u }
@@ -137,7 +137,7 @@ pub fn trace<O: Observer>(
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
-    walk(world, Leg::from_eye(ray, light_u), 0, length, sampler, observer);
+    walk(world, PathSegment::from_eye(ray, light_u), 0, length, sampler, observer);
 }
 
 /// Estimates the irradiance at a point, on its front or back side, with one path.
@@ -146,25 +146,25 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     let receiver = Bsdf::receiver(normal);
     let block = sampler.next();
     let light_u = (block.fine(0), block.get(1));
-    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, light_u, sampler, observer) {
-        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: Some(reciprocal(leg.throughput)) };
-        walk(world, leg, 0, length, sampler, observer);
+    if let Some(segment) = scatter(world, vertex, &receiver, Vec3::ONE, None, light_u, sampler, observer) {
+        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: Some(reciprocal(segment.throughput)) };
+        walk(world, segment, 0, length, sampler, observer);
     }
 }
 
-/// Traces the rest of a path, from the segment `leg` on; `scattered` is the number of bounces before this segment.
+/// Traces the rest of a path, from `segment` on; `scattered` is the number of bounces before this segment.
 pub(super) fn walk<O: Observer>(
     world: &World,
-    mut leg: Leg,
+    mut segment: PathSegment,
     scattered: u32,
     mut length: PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
     for bounce in scattered.. {
-        let Some((vertex, distance)) = intersect(world, &leg, sampler, observer) else { return };
-        match continue_path(world, &leg, &vertex, distance, bounce, &mut length, sampler, observer) {
-            Some(next) => leg = next,
+        let Some((vertex, distance)) = intersect(world, &segment, sampler, observer) else { return };
+        match continue_path(world, &segment, &vertex, distance, bounce, &mut length, sampler, observer) {
+            Some(next) => segment = next,
             None => return,
         }
     }
@@ -175,16 +175,16 @@ pub(super) fn walk<O: Observer>(
 #[inline(always)]
 pub(super) fn intersect<O: Observer>(
     world: &World,
-    leg: &Leg,
+    segment: &PathSegment,
     sampler: &Sampler,
     observer: &mut O,
 ) -> Option<(Vertex, f32)> {
-    let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
-        add_environment(world, leg, observer);
+    let Some(hit) = world.closest(&segment.ray, segment.from, || sampler.ray_seed()) else {
+        add_environment(world, segment, observer);
         return None;
     };
     let vertex = Vertex::of_hit(world, &hit);
-    add_emission(world, leg, &vertex, observer);
+    add_emission(world, segment, &vertex, observer);
     Some((vertex, hit.t))
 }
 
@@ -193,21 +193,21 @@ pub(super) fn intersect<O: Observer>(
 #[inline(always)]
 pub(super) fn continue_path<O: Observer>(
     world: &World,
-    leg: &Leg,
+    segment: &PathSegment,
     vertex: &Vertex,
     distance: f32,
     bounce: u32,
     length: &mut PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
-) -> Option<Leg> {
+) -> Option<PathSegment> {
     if bounce == length.max_bounces {
         return None;
     }
     // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
     // and splitting in light transport simulation"). The single value `roulette_weight` replaces their estimate of the
     // radiance yet to be found.
-    let mut throughput = leg.throughput;
+    let mut throughput = segment.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
@@ -220,11 +220,11 @@ pub(super) fn continue_path<O: Observer>(
         }
         throughput /= survival;
     }
-    let bsdf = vertex.bsdf(world, -leg.ray.direction);
-    if bounce == 0 && leg.from == NONE {
+    let bsdf = vertex.bsdf(world, -segment.ray.direction);
+    if bounce == 0 && segment.from == NONE {
         observer.primary_hit(|| PrimaryHit::new(vertex, &bsdf, distance));
     }
-    let next = scatter(world, vertex, &bsdf, throughput, leg.mis, leg.light_u, sampler, observer)?;
+    let next = scatter(world, vertex, &bsdf, throughput, segment.mis, segment.light_u, sampler, observer)?;
     length.roulette_weight.get_or_insert_with(|| reciprocal(next.throughput));
     Some(next)
 }
@@ -239,7 +239,7 @@ pub(super) fn scatter<O: Observer>(
     light_u: (f64, f32),
     sampler: &mut Sampler,
     observer: &mut O,
-) -> Option<Leg> {
+) -> Option<PathSegment> {
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     if let Some(light) = sample_light(world, &receiver, bsdf, light_u) {
         add_direct_light(world, vertex, bsdf, throughput, &light, observer);
@@ -255,7 +255,7 @@ pub(super) fn scatter<O: Observer>(
         ScatterKind::Mirror => None,
         ScatterKind::Pane => mis,
     };
-    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
+    Some(PathSegment { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
 /// Samples a light, unless the BSDF is specular.
@@ -328,11 +328,11 @@ pub(super) fn connection_weight(
 }
 
 /// Adds the emission of a surface that a BSDF sample has hit, with the MIS weight against light sampling.
-fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer: &mut O) {
+fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
     let emitter = &lights.emitters.emitters[index];
-    let direction = leg.ray.direction;
+    let direction = segment.ray.direction;
     if !emitter.faces(direction) {
         return;
     }
@@ -340,25 +340,25 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = leg.mis.map_or(1.0, |(receiver, pdf)| {
+    let weight = segment.mis.map_or(1.0, |(receiver, pdf)| {
         let distance = vertex.position.distance(receiver.position);
         let light_pdf = lights.surface_pdf(&receiver, index, (emission, uv), direction, distance);
         power_heuristic(pdf, light_pdf)
     });
     let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };
-    observer.add(source, leg.throughput * weight, emission, Strategy::BsdfSample);
+    observer.add(source, segment.throughput * weight, emission, Strategy::BsdfSample);
 }
 
 /// Adds the environment's radiance along a BSDF sample, with the MIS weight against light sampling.
-fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
+fn add_environment<O: Observer>(world: &World, segment: &PathSegment, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
-    let emission = environment::radiance(environment, leg.ray.direction);
+    let emission = environment::radiance(environment, segment.ray.direction);
     if emission == Vec3::ZERO {
         return;
     }
     let weight =
-        leg.mis.map_or(1.0, |(_, pdf)| power_heuristic(pdf, world.lights().environment_pdf(leg.ray.direction)));
-    observer.add(LightSource::Environment, leg.throughput * weight, emission, Strategy::BsdfSample);
+        segment.mis.map_or(1.0, |(_, pdf)| power_heuristic(pdf, world.lights().environment_pdf(segment.ray.direction)));
+    observer.add(LightSource::Environment, segment.throughput * weight, emission, Strategy::BsdfSample);
 }
 
 /// Returns the reciprocal of each channel; 0 for channels that are not positive.

@@ -3,7 +3,7 @@
 
 use super::aov::Aov;
 use super::denoise::{self, Input};
-use super::film::Canvas;
+use super::film::Accumulator;
 use super::output::Film;
 use super::params::Params;
 use crate::error::{Error, ErrorKind, Result};
@@ -25,7 +25,7 @@ pub fn guided(params: &Params) -> Params {
 
 /// Adds the preview to a film that was rendered with the [`guided`] parameters. Removes the guide images that were not
 /// requested.
-pub fn add_preview(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
+pub fn add_preview(film: &mut Film, accumulator: &Accumulator, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {
             let layer = film.layers.iter().find(|l| l.expression.is_none() && l.name == aov.name());
@@ -33,7 +33,7 @@ pub fn add_preview(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) 
                 .map(|l| &l.image)
                 .ok_or_else(|| Error::new(ErrorKind::Internal, format!("the render has no layer {}", aov.name())))
         };
-        let [one, other] = canvas.halves(job)?;
+        let [one, other] = accumulator.halves(job)?;
         let input = Input {
             halves: [&one, &other],
             variance: &film.variance,

@@ -5,7 +5,7 @@
 //! Only materials of meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate.
 //! The number of bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
 
-use super::bsdf::{MIRROR_ROUGHNESS, Substance};
+use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
 use super::compiled_material::{self, CompiledMaterial};
 use super::ggx::{self, AlbedoTable};
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, TextureRef};
@@ -213,17 +213,17 @@ impl Requirements {
         &mut self,
         index: usize,
         compiled: &CompiledMaterial,
-        extremes: impl Iterator<Item = Substance>,
+        extremes: impl Iterator<Item = BsdfParams>,
         table: Option<&AlbedoTable>,
     ) {
         self.alpha |= compiled.has_alpha;
         self.normal_maps |= compiled.has_normal_map;
-        for substance in extremes {
-            self.include(&substance);
-            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
+        for bsdf_params in extremes {
+            self.include(&bsdf_params);
+            if bsdf_params.transmission != Vec3::ZERO && bsdf_params.roughness >= MIRROR_ROUGHNESS {
                 self.frosted.get_or_insert(index);
             }
-            let albedo = albedo_bound(&substance, table);
+            let albedo = albedo_bound(&bsdf_params, table);
             if self.brightest.is_none() || albedo.max_element() > self.albedo.max_element() {
                 self.brightest = Some(index);
             }
@@ -276,7 +276,7 @@ impl Requirements {
     }
 
     /// Adds the kinds of scattering that occur with the BSDF parameters `s`.
-    fn include(&mut self, s: &Substance) {
+    fn include(&mut self, s: &BsdfParams) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
         self.mirror |= s.f90 > 0.0 && s.roughness < MIRROR_ROUGHNESS;
@@ -313,7 +313,7 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     let colour = material.base_color * base.high.truncate();
     let (metallic, roughness) = (material.metallic * layers.high.z, material.roughness * layers.high.y);
     CompiledMaterial {
-        substance: compiled_material::substance(material, colour, metallic, roughness),
+        bsdf_params: compiled_material::bsdf_params(material, colour, metallic, roughness),
         is_textured: base_varies || layers_vary,
         layered: extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
         has_normal_map: material.normal_texture.is_some() && !is_neutral,
@@ -325,7 +325,7 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
 /// Returns the BSDF parameters of a material for the four combinations of its smallest or largest metalness with its
 /// smallest or largest roughness. All parameters of the layers are linear or monotone in between, so these are the
 /// extremes.
-fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
+fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = BsdfParams> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
         [a.min(b), a.max(b)]
@@ -333,11 +333,11 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
     let metallic = ends(material.metallic, layers.low.z, layers.high.z);
     let roughness = ends(material.roughness, layers.low.y, layers.high.y);
-    metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
+    metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::bsdf_params(material, colour, m, r)))
 }
 
 /// Returns an upper bound, over all directions, of the albedo with the BSDF parameters `s`.
-fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
+fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
     // Number of intervals between the cosines at which the albedo is evaluated. [origin not recorded]
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;

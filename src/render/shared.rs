@@ -12,7 +12,7 @@
 
 use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::{LightSample, Receiver};
-use super::path::{self, Leg, Observer, PathLength, PrimaryHit, Strategy};
+use super::path::{self, Observer, PathLength, PathSegment, PrimaryHit, Strategy};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
 use super::world::{Pane, World};
@@ -90,15 +90,15 @@ struct PrimaryVertex<'w> {
     bsdf: Bsdf<'w>,
     /// Roulette weight for light from the secondary vertices; see [`PathLength::roulette_weight`].
     roulette_weight: Vec3,
-    continuation: Option<Continuation>,
+    scattered: Option<ScatteredSegment>,
 }
 
 /// The BSDF sample at a primary vertex, with the segment that follows it.
-struct Continuation {
+struct ScatteredSegment {
     direction: Vec3,
     lobes: Lobes,
     pdf: f32,
-    leg: Leg,
+    segment: PathSegment,
 }
 
 /// A secondary vertex, and the light that it sends to every primary vertex that sees it.
@@ -116,7 +116,7 @@ enum SecondaryLight<'w> {
         /// A light sample, and its weight without the BSDF ([`path::connection_weight`]).
         light_sample: Option<(LightSample, Vec3)>,
         /// Direction of the BSDF sample at the secondary vertex, and its solid-angle pdf.
-        continuation: Option<(Vec3, f32)>,
+        bsdf_sample: Option<(Vec3, f32)>,
     },
 }
 
@@ -149,19 +149,19 @@ pub fn trace<W: ReplayObserver>(
     let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
     scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
-        let continuation = primaries[number].as_mut().and_then(|s| s.continuation.take());
-        if let (Some(primary), Some(continuation)) = (&primaries[number], &continuation)
+        let scattered = primaries[number].as_mut().and_then(|s| s.scattered.take());
+        if let (Some(primary), Some(scattered)) = (&primaries[number], &scattered)
             && let Some(secondary) = trace_secondary(
                 world,
                 primary,
-                continuation,
+                scattered,
                 roulette_weight,
                 &mut starts[number],
                 &mut observers[number],
                 scratch,
             )
         {
-            let viewers = Viewers::of(world, &secondary, number, continuation, &primaries);
+            let viewers = Viewers::of(world, &secondary, number, scattered, &primaries);
             viewers.replay(&secondary, &primaries, observers, scratch);
         }
     }
@@ -175,34 +175,34 @@ fn trace_primary<'w, W: ReplayObserver>(
     observer: &mut W,
 ) -> Option<PrimaryVertex<'w>> {
     let Start { ray, light_u, length, sampler } = start;
-    let leg = Leg::from_eye(*ray, *light_u);
-    let (vertex, distance) = path::intersect(world, &leg, sampler, observer)?;
+    let segment = PathSegment::from_eye(*ray, *light_u);
+    let (vertex, distance) = path::intersect(world, &segment, sampler, observer)?;
     if length.max_bounces == 0 {
         return None;
     }
-    let bsdf = vertex.bsdf(world, -leg.ray.direction);
+    let bsdf = vertex.bsdf(world, -segment.ray.direction);
     if !bsdf.is_shareable() {
-        if let Some(next) = path::continue_path(world, &leg, &vertex, distance, 0, length, sampler, observer) {
+        if let Some(next) = path::continue_path(world, &segment, &vertex, distance, 0, length, sampler, observer) {
             path::walk(world, next, 1, *length, sampler, observer);
         }
         return None;
     }
     observer.primary_hit(|| PrimaryHit::new(&vertex, &bsdf, distance));
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    if let Some(light) = path::sample_light(world, &receiver, &bsdf, leg.light_u) {
+    if let Some(light) = path::sample_light(world, &receiver, &bsdf, segment.light_u) {
         path::add_direct_light(world, &vertex, &bsdf, Vec3::ONE, &light, observer);
     }
-    let continuation = path::sample_direction(&bsdf, sampler).and_then(|(scattered, light_u)| {
-        let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
-        let (direction, throughput) = (scattered.direction, scattered.weight);
+    let scattered = path::sample_direction(&bsdf, sampler).and_then(|(sample, light_u)| {
+        let ScatterKind::NonSpecular(pdf) = sample.kind else { return None };
+        let (direction, throughput) = (sample.direction, sample.weight);
         let mis = Some((receiver, pdf));
-        let leg = Leg { ray: vertex.ray(direction), from: vertex.id, throughput, mis, light_u };
+        let segment = PathSegment { ray: vertex.ray(direction), from: vertex.id, throughput, mis, light_u };
         let brings = throughput.is_finite() && throughput != Vec3::ZERO;
-        brings.then_some(Continuation { direction, lobes: scattered.lobes, pdf, leg })
+        brings.then_some(ScatteredSegment { direction, lobes: sample.lobes, pdf, segment })
     });
     let colour = bsdf.colour();
     let roulette_weight = colour * *length.roulette_weight.get_or_insert_with(|| path::reciprocal(colour));
-    Some(PrimaryVertex { vertex, bsdf, roulette_weight, continuation })
+    Some(PrimaryVertex { vertex, bsdf, roulette_weight, scattered })
 }
 
 /// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary
@@ -211,24 +211,24 @@ fn trace_primary<'w, W: ReplayObserver>(
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
-    continuation: &Continuation,
+    scattered: &ScatteredSegment,
     roulette_weight: Vec3,
     start: &mut Start,
     observer: &mut W,
     scratch: &mut Scratch<W::Tape>,
 ) -> Option<SecondaryVertex<'w>> {
-    let Continuation { direction, lobes, pdf, leg } = continuation;
+    let ScatteredSegment { direction, lobes, pdf, segment } = scattered;
     let Start { length, sampler, .. } = start;
     observer.restart();
     observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(*pdf), *lobes);
-    let (vertex, distance) = path::intersect(world, leg, sampler, observer)?;
+    let (vertex, distance) = path::intersect(world, segment, sampler, observer)?;
     if length.max_bounces == 1 {
         return None;
     }
     let surface = vertex.surface(world);
     let bsdf = surface.seen_from(-*direction);
     if !bsdf.is_shareable() || !is_surely_visible(world, primary, &vertex) {
-        if let Some(next) = path::continue_path(world, leg, &vertex, distance, 1, length, sampler, observer) {
+        if let Some(next) = path::continue_path(world, segment, &vertex, distance, 1, length, sampler, observer) {
             path::walk(world, next, 2, *length, sampler, observer);
         }
         return None;
@@ -236,9 +236,9 @@ fn trace_secondary<'w, W: ReplayObserver>(
     // Record the subpath with a throughput of 1 at the secondary vertex.
     let length = PathLength { max_bounces: length.max_bounces, roulette_weight: Some(roulette_weight) };
     let light = if bsdf.is_view_independent() {
-        record_view_independent(world, &vertex, &bsdf, leg.light_u, length, sampler, &mut scratch.tape)
+        record_view_independent(world, &vertex, &bsdf, segment.light_u, length, sampler, &mut scratch.tape)
     } else {
-        record_view_dependent(world, &vertex, surface, &bsdf, leg.light_u, length, sampler, scratch)
+        record_view_dependent(world, &vertex, surface, &bsdf, segment.light_u, length, sampler, scratch)
     };
     light.map(|light| SecondaryVertex { vertex, light })
 }
@@ -284,9 +284,9 @@ fn record_view_dependent<'w, T: Tape>(
         let importance = path::connection_weight(world, vertex, &light, pdf, Some(panes));
         (importance != Vec3::ZERO).then_some((light, importance))
     });
-    let continuation = path::sample_direction(bsdf, sampler).and_then(|(scattered, light_u)| {
+    let bsdf_sample = path::sample_direction(bsdf, sampler).and_then(|(scattered, light_u)| {
         let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
-        let leg = Leg {
+        let segment = PathSegment {
             ray: vertex.ray(scattered.direction),
             from: vertex.id,
             throughput: Vec3::ONE,
@@ -297,11 +297,11 @@ fn record_view_dependent<'w, T: Tape>(
             roulette_weight: length.roulette_weight.map(|roulette_weight| roulette_weight * scattered.weight),
             ..length
         };
-        path::walk(world, leg, 2, length, sampler, tape);
+        path::walk(world, segment, 2, length, sampler, tape);
         tape.end().then_some((scattered.direction, pdf))
     });
-    let has_light = light_sample.is_some() || continuation.is_some();
-    has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
+    let has_light = light_sample.is_some() || bsdf_sample.is_some();
+    has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, bsdf_sample })
 }
 
 /// Whether no surface lies between two vertices, not even a transparent one. A path passes a partly transparent
@@ -331,17 +331,17 @@ impl Viewers {
         world: &World,
         secondary: &SecondaryVertex,
         owner: usize,
-        continuation: &Continuation,
+        scattered: &ScatteredSegment,
         primaries: &[Option<PrimaryVertex>; MAX_SHARED],
     ) -> Self {
         let surface = &secondary.vertex;
         let solid_angle_per_area =
             |from: &Vertex, cosine: f32| cosine.abs() / from.position.distance_squared(surface.position);
-        let cosine = surface.normal.dot(continuation.direction);
+        let cosine = surface.normal.dot(scattered.direction);
         let list = std::array::from_fn(|number| {
             let primary = primaries[number].as_ref()?;
             if number == owner {
-                let Continuation { direction, lobes, pdf, .. } = *continuation;
+                let ScatteredSegment { direction, lobes, pdf, .. } = *scattered;
                 return Some(Viewer {
                     number,
                     direction,
@@ -371,7 +371,7 @@ impl Viewers {
         // Where surfaces touch, the pdfs are not finite. Then let only the path's own pixel use the vertex.
         if !(area_pdf.is_finite() && area_pdf > 0.0) {
             viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
-            viewers.area_pdf = continuation.pdf;
+            viewers.area_pdf = scattered.pdf;
         }
         viewers
     }
@@ -390,7 +390,7 @@ impl Viewers {
                 continue;
             };
             let importance = viewer.lobes.sum() * (viewer.solid_angle_per_area / self.area_pdf);
-            let SecondaryLight::ViewDependent { surface, light_sample, continuation } = &secondary.light else {
+            let SecondaryLight::ViewDependent { surface, light_sample, bsdf_sample } = &secondary.light else {
                 observer.replay_from(primary.vertex.mesh, viewer.lobes, &scratch.tape, importance);
                 continue;
             };
@@ -403,7 +403,7 @@ impl Viewers {
                 let importance = importance * lobes.sum() * *weight;
                 observer.add(light.source, importance, light.emission, Strategy::LightSample { mesh, lobes });
             }
-            if let Some((direction, pdf)) = continuation {
+            if let Some((direction, pdf)) = bsdf_sample {
                 let (lobes, _) = bsdf.eval(*direction);
                 observer.scatter(mesh, ScatterKind::NonSpecular(*pdf), lobes);
                 observer.replay(&scratch.tape, importance * lobes.sum() / *pdf);

@@ -4,7 +4,7 @@
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
 use super::layers::{Layers, Recorder};
-use super::lpe::{Automaton, PathOutcome, Trail};
+use super::lpe::{Automaton, PathOutcome, PathTracker};
 use super::path::{Observer, Strategy};
 use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
@@ -53,7 +53,7 @@ pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,
     sum: Vec3,
-    trail: Trail<'a>,
+    tracker: PathTracker<'a>,
     /// States from which observers may start: those after scattering at the primary vertices (`viewers`), and those in
     /// which the subpath begins (`origins`).
     viewers: Vec<u16>,
@@ -64,7 +64,15 @@ pub struct LpeTape<'a> {
 impl<'a> LpeTape<'a> {
     pub fn new(world: &'a World, automaton: &'a Automaton) -> Self {
         let [viewers, origins] = [const { Vec::new() }; 2];
-        Self { world, automaton, sum: Vec3::ZERO, trail: Trail::new(automaton), viewers, origins, outcome: Vec::new() }
+        Self {
+            world,
+            automaton,
+            sum: Vec3::ZERO,
+            tracker: PathTracker::new(automaton),
+            viewers,
+            origins,
+            outcome: Vec::new(),
+        }
     }
 }
 
@@ -73,17 +81,17 @@ impl Observer for LpeTape<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let contribution = importance * emission;
         self.sum += contribution;
-        self.trail.add(self.world, contribution.into(), source, strategy);
+        self.tracker.add(self.world, contribution.into(), source, strategy);
     }
 
     #[inline]
     fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
-        self.trail.scatter(mesh, kind, lobes);
+        self.tracker.scatter(mesh, kind, lobes);
     }
 
     #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        self.trail.panes_wanted()
+        self.tracker.panes_wanted()
     }
 }
 
@@ -97,18 +105,18 @@ impl Tape for LpeTape<'_> {
     fn begin(&mut self) {
         self.origins.clone_from(&self.viewers);
         self.sum = Vec3::ZERO;
-        self.trail.start_from(&self.origins);
+        self.tracker.start_from(&self.origins);
     }
 
     fn begin_behind(&mut self, mesh: u32) {
         self.origins.clear();
         self.viewers.iter().for_each(|&state| self.automaton.spread(state, mesh, true, &mut self.origins));
         self.sum = Vec3::ZERO;
-        self.trail.start_from(&self.origins);
+        self.tracker.start_from(&self.origins);
     }
 
     fn end(&mut self) -> bool {
-        self.trail.end_from(&self.origins, &mut self.outcome);
+        self.tracker.end_from(&self.origins, &mut self.outcome);
         self.sum != Vec3::ZERO
     }
 }
@@ -125,22 +133,22 @@ impl<'a> ReplayObserver for Recorder<'a> {
 
     #[inline]
     fn restart(&mut self) {
-        self.trail.restart();
+        self.tracker.restart();
     }
 
     fn take_panes(&mut self, panes: &[Pane]) {
-        self.trail.set_panes(panes);
+        self.tracker.set_panes(panes);
     }
 
     #[inline]
     fn replay(&mut self, tape: &LpeTape, importance: Vec3) {
         self.beauty += importance * tape.sum;
-        self.trail.follow(&tape.outcome, importance.into());
+        self.tracker.replay(&tape.outcome, importance.into());
     }
 
     #[inline]
     fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &LpeTape, importance: Vec3) {
         self.beauty += importance * tape.sum;
-        self.trail.follow_from(mesh, lobes, &tape.outcome, importance.into());
+        self.tracker.replay_from_camera(mesh, lobes, &tape.outcome, importance.into());
     }
 }

@@ -1,6 +1,6 @@
 //! Texture look-ups at a surface point: opacity, BSDF parameters, and tangents for normal maps.
 
-use super::bsdf::Substance;
+use super::bsdf::BsdfParams;
 use super::compiled_material::{self, CompiledMaterial};
 use super::facet::Facet;
 use crate::scene::{Material, Mesh, Scene, TextureRef};
@@ -29,9 +29,9 @@ impl<'w> TextureContext<'w> {
     }
 
     /// Returns the BSDF parameters at this point.
-    pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
+    pub fn bsdf_params(&self, compiled: &CompiledMaterial) -> BsdfParams {
         if !compiled.is_textured {
-            return compiled.substance;
+            return compiled.bsdf_params;
         }
         let material = self.material;
         let mut base = material.base_color * self.vertex_colour().truncate();
@@ -43,7 +43,7 @@ impl<'w> TextureContext<'w> {
             let texel = self.look_up(texture);
             (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
         }
-        compiled_material::substance(material, base, metallic, roughness)
+        compiled_material::bsdf_params(material, base, metallic, roughness)
     }
 
     /// Returns the interpolated vertex colour; 1 if the mesh has no vertex colours.

@@ -1,6 +1,6 @@
 //! Vertices of light paths: surface points with position, orientation and material.
 
-use super::bsdf::{Bsdf, Substance};
+use super::bsdf::{Bsdf, BsdfParams};
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::texture_context::TextureContext;
@@ -80,12 +80,12 @@ impl Vertex {
         // Skip the look-ups for flat surfaces and uniform materials, which are the most frequent.
         let shading =
             if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
-        let substance = if compiled.is_textured {
-            TextureContext::new(world.scene(), facet, self.triangle, self.barycentric).substance(compiled)
+        let bsdf_params = if compiled.is_textured {
+            TextureContext::new(world.scene(), facet, self.triangle, self.barycentric).bsdf_params(compiled)
         } else {
-            compiled.substance
+            compiled.bsdf_params
         };
-        Surface { substance, layered: compiled.layered, normals: [shading, self.normal], table: world.albedo_table() }
+        Surface { bsdf_params, layered: compiled.layered, normals: [shading, self.normal], table: world.albedo_table() }
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
@@ -113,7 +113,7 @@ impl Vertex {
 
 /// The shading data of a surface point that do not depend on the viewer.
 pub struct Surface<'w> {
-    substance: Substance,
+    bsdf_params: BsdfParams,
     /// Whether the material may have layers besides the diffuse one.
     layered: bool,
     /// Shading normal and geometric normal, both on the front side.
@@ -125,6 +125,6 @@ impl<'w> Surface<'w> {
     /// Returns the BSDF for a viewer in direction `wo`.
     #[inline]
     pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
-        Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)
+        Bsdf::new(&self.bsdf_params, self.layered, self.normals, wo, self.table)
     }
 }

@@ -113,7 +113,7 @@ impl World {
 
     /// Discards the scene analysis, so that every hit evaluates every shading feature. This changes estimates only by
     /// rounding. Benchmarks use this function to measure how much time the analysis saves.
-    pub fn generalise(&mut self) {
+    pub fn discard_analysis(&mut self) {
         let general = self.compiled_materials.iter().map(CompiledMaterial::without_analysis).collect();
         self.compiled_materials = Arc::new(general);
         self.facets = Arc::new(self.facets.iter().map(Facet::without_analysis).collect());
@@ -228,11 +228,11 @@ impl World {
         if !self.any_see_through {
             return self.accel.closest(ray, |hit| hit.triangle != from);
         }
-        self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, &seed))
+        self.accel.closest(ray, |hit| hit.triangle != from && self.is_present(hit, &seed))
     }
 
     /// Whether the surface is present at a hit, according to its opacity. With alpha blending, the decision is random.
-    fn is_there(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
+    fn is_present(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
         let facet = self.facet(hit.triangle);
         if !self.compiled_material(facet).has_alpha {
             return true;
@@ -302,7 +302,7 @@ impl World {
             AlphaMode::Blend => context.opacity().clamp(0.0, 1.0),
         };
         let through = if context.material.transmission > 0.0 && there > 0.0 {
-            context.substance(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
+            context.bsdf_params(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };

@@ -65,26 +65,26 @@ impl Blank {
 }
 
 /// The parameters of the classifier, converted to `f32` for the tiles.
-struct Judge<'a> {
+struct Classifier<'a> {
     /// The image channel of each column of the samples.
     channels: &'a [usize],
     /// Whether the image has [`CHANNELS`] channels and `channels` lists all of them.
     is_usual: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
-    logit: Form,
+    logit: QuadraticForm,
     /// Indices into `channels` of the features in the logit, in the order of its terms.
     deciding: Vec<usize>,
     /// For each class, a quadratic form of all `channels` that is at most 1 inside the ellipsoid around the class's
     /// samples, and larger outside.
-    seen: [Form; 2],
+    seen: [QuadraticForm; 2],
     /// Calibration factors on the logit: for pixels like the painted ones, and for pixels unlike them.
     calibration: [f32; 2],
 }
 
-impl Judge<'_> {
-    /// Deinterleaves and standardises the channels of a tile. It is inlined into `judge`, which is compiled once per
-    /// instruction set.
+impl Classifier<'_> {
+    /// Deinterleaves and standardises the channels of a tile. It is inlined into `classify`, which is compiled once
+    /// per instruction set.
     #[inline(always)]
     fn standardise(&self, pixels: &[f32], count: usize, tile: &mut Tile) {
         if self.is_usual {
@@ -109,13 +109,13 @@ impl Judge<'_> {
 
 /// The quadratic form `xᵀAx + bᵀx + c` of standardised features. `a` holds the upper triangle of `A` row by row; it is
 /// empty if `A` is zero.
-struct Form {
+struct QuadraticForm {
     a: Vec<f32>,
     b: Vec<f32>,
     c: f32,
 }
 
-impl Form {
+impl QuadraticForm {
     fn of_model(chosen: &Chosen) -> Self {
         let d = chosen.columns.len();
         let w: Vec<f32> = chosen.weights.iter().map(|&w| w as f32).collect();
@@ -185,17 +185,17 @@ widest! {
     /// Classifies up to [`TILE`] pixels; results after the last pixel are undefined. `likely` is the index of the
     /// ellipsoid that contained all pixels of an earlier tile. It is tested first, which saves time and does not
     /// change the result.
-    fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
-        judge.standardise(pixels, count, tile);
-        let planes = &tile.all[..judge.channels.len()];
+    fn classify(classifier: &Classifier, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
+        classifier.standardise(pixels, count, tile);
+        let planes = &tile.all[..classifier.channels.len()];
 
         // Find the distance from the nearer ellipsoid. If one ellipsoid contains all pixels, `beyond` is 0, and the
         // other one need not be evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
-        for turn in 0..judge.seen.len() {
-            let region = (*likely + turn) % judge.seen.len();
-            let distance = judge.seen[region].evaluate(planes);
+        for turn in 0..classifier.seen.len() {
+            let region = (*likely + turn) % classifier.seen.len();
+            let distance = classifier.seen[region].evaluate(planes);
             for k in 0..TILE {
                 nearest[k] = nearest[k].min(distance[k]);
             }
@@ -214,15 +214,15 @@ widest! {
             }
         }
 
-        let logit = if judge.deciding.len() == planes.len() {
-            judge.logit.evaluate(planes)
+        let logit = if classifier.deciding.len() == planes.len() {
+            classifier.logit.evaluate(planes)
         } else {
-            for (to, &column) in tile.deciding.iter_mut().zip(&judge.deciding) {
+            for (to, &column) in tile.deciding.iter_mut().zip(&classifier.deciding) {
                 *to = planes[column];
             }
-            judge.logit.evaluate(&tile.deciding[..judge.deciding.len()])
+            classifier.logit.evaluate(&tile.deciding[..classifier.deciding.len()])
         };
-        let [familiar, unfamiliar] = judge.calibration;
+        let [familiar, unfamiliar] = classifier.calibration;
         let (mut mask, mut probability) = ([0.0; TILE], [0.0; TILE]);
         for k in 0..TILE {
             let calibration = familiar + (unfamiliar - familiar) * beyond[k];
@@ -245,14 +245,14 @@ pub fn run(
 ) -> Result<Classified> {
     let (width, height) = (features.width, features.height);
     let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
-    let judges = Judge {
+    let classifier = Classifier {
         channels,
         is_usual: features.channels == CHANNELS && channels.len() == CHANNELS,
         mean: single(&chosen.standard.mean),
         scale: single(&chosen.standard.scale),
-        logit: Form::of_model(chosen),
+        logit: QuadraticForm::of_model(chosen),
         deciding: chosen.columns.clone(),
-        seen: chosen.seen.each_ref().map(Form::of_ellipsoid),
+        seen: chosen.seen.each_ref().map(QuadraticForm::of_ellipsoid),
         calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };
     let Blank { mut mask, mut confidence, mut unseen } = blank;
@@ -270,7 +270,7 @@ pub fn run(
         for x in (0..width).step_by(TILE) {
             let n = TILE.min(width - x);
             let pixels = &source[x * features.channels..(x + n) * features.channels];
-            let mut answer = judge(&judges, pixels, features.channels, &mut tile, &mut likely);
+            let mut answer = classify(&classifier, pixels, features.channels, &mut tile, &mut likely);
             if !(answer.all_finite && looks_at_all) {
                 bad.fetch_add(count_bad(pixels), Ordering::Relaxed);
             }

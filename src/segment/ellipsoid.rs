@@ -7,7 +7,7 @@ use crate::simd::widest;
 
 /// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
 /// at least 0.1 along each feature; the deviation over both classes is 1.
-const LEAST_VARIANCE: f64 = 0.01;
+const MIN_VARIANCE: f64 = 0.01;
 /// Percentage of a class's samples that lie inside its ellipsoid.
 const WITHIN: usize = 99;
 
@@ -47,7 +47,7 @@ impl<'a> Spread<'a> {
         for (rows, block) in features.blocks() {
             add_products(block, &of_members(rows), &centre, &mut covariance);
         }
-        (0..d).for_each(|i| covariance[i * d + i] += LEAST_VARIANCE);
+        (0..d).for_each(|i| covariance[i * d + i] += MIN_VARIANCE);
         Self { features, members, centre, covariance }
     }
 

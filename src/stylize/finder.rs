@@ -4,7 +4,7 @@ use super::level::Level;
 use super::params::{Finder, Params};
 use crate::error::Result;
 use crate::job::Job;
-use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
+use crate::patch::{Domain, Field, KdTree, Means, Search, Sweep};
 
 /// Number of patches of the k-d tree that are compared with each patch. Three times this number takes twice the time
 /// and lowers the energy (StyLit, Eq. 3) by one per cent. [bench stylit]
@@ -14,32 +14,32 @@ const TRIES: usize = 8;
 pub(super) struct Nearest<'a> {
     level: &'a Level<'a>,
     sweeps: usize,
-    tables: Option<Tables>,
+    trees: Option<KdTrees>,
 }
 
-struct Tables {
+struct KdTrees {
     source_means: Means,
     target_means: Means,
-    source: Table,
-    target: Table,
+    source: KdTree,
+    target: KdTree,
 }
 
 impl<'a> Nearest<'a> {
     pub fn new(level: &'a Level, params: &Params, job: Job) -> Result<Self> {
-        let tables = match params.finder {
+        let trees = match params.finder {
             Finder::PatchMatch => None,
-            Finder::Table => {
+            Finder::KdTree => {
                 let source_means = Means::new(&level.source, level.problem.patch, job)?;
                 let target_means = Means::new(&level.target, level.problem.patch, job)?;
-                Some(Tables {
-                    source: Table::new(&source_means, &level.allowed, job)?,
-                    target: Table::new(&target_means, &level.wanted, job)?,
+                Some(KdTrees {
+                    source: KdTree::new(&source_means, &level.allowed, job)?,
+                    target: KdTree::new(&target_means, &level.wanted, job)?,
                     source_means,
                     target_means,
                 })
             }
         };
-        Ok(Self { level, sweeps: params.sweeps, tables })
+        Ok(Self { level, sweeps: params.sweeps, trees })
     }
 
     /// Searches the exemplar for better matches of the target patches. `index` is the number of the call; each call
@@ -52,7 +52,7 @@ impl<'a> Nearest<'a> {
         job: Job,
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
-        match &self.tables {
+        match &self.trees {
             None => self.sweep(search, field, Sweep { index, radius: 64, initial_samples: 4 }, job, active),
             Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
         }
@@ -68,7 +68,7 @@ impl<'a> Nearest<'a> {
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
         let search = self.level.reverse(free);
-        match &self.tables {
+        match &self.trees {
             None => self.sweep(&search, field, Sweep { index, radius: 32, initial_samples: 2 }, job, active),
             Some(t) => search.look_up(field, &t.target, &t.source_means, TRIES, job, active),
         }

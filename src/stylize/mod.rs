@@ -10,7 +10,7 @@
 //!
 //! The modules: `guides` normalises the guides, `level` quantises one pyramid level, `finder` searches for nearest
 //! patches, `budget` finds the knee of the errors, `retrieve` matches under the budget, and `multires` runs from
-//! coarse to fine. `study` follows changes of the artwork, `animate` advances from frame to frame, and `greedy` is
+//! coarse to fine. `updater` follows changes of the artwork, `animate` advances from frame to frame, and `greedy` is
 //! Hertzmann's algorithm for comparison. `report` measures the result, and `pilot` predicts time and energy from runs
 //! at low resolution.
 //!
@@ -47,19 +47,19 @@ mod picture;
 mod pilot;
 mod report;
 mod retrieve;
-mod study;
+mod updater;
 
 #[cfg(test)]
 mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
-pub use output::{Glimpse, Output, Publish};
+pub use output::{IntermediateResult, Output, Publish};
 pub use params::{Finder, Input, Mode, Params};
 pub use pilot::{PilotRuns, Prediction};
 pub use report::{LevelReport, Report, Usage};
-pub use retrieve::Pass;
-pub use study::Study;
+pub use retrieve::PassReport;
+pub use updater::Updater;
 
 use crate::error::Result;
 use crate::job::Job;

@@ -5,15 +5,15 @@ use super::animate::{keep, moved};
 use super::finder::Nearest;
 use super::greedy;
 use super::level::{Level, Problem};
-use super::output::{Glimpse, Output, Publish};
+use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
-use super::picture::{Provenance, decode, decode_into, paint, restore_known};
+use super::picture::{DecodeInput, decode, decode_into, paint, restore_known};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
-use super::retrieve::{Pass, retrieve};
+use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, unpack};
+use crate::patch::{Field, NONE, Occurrence, Search, Sweep, VoteMode, level_count, unpack};
 use crate::rng::hash;
 
 /// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
@@ -84,7 +84,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         if l == 0 {
             return finish(level, state, reports, &setup, job);
         }
-        publish(Glimpse { picture: decode(&state.picture, job)?, halvings: l + halved, levels: &reports });
+        publish(IntermediateResult { picture: decode(&state.picture, job)?, halvings: l + halved, levels: &reports });
         field = Some(state.field);
     }
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
@@ -128,8 +128,8 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
         _ => Vec::new(),
     };
     let mut picture = problem.blank_picture()?;
-    let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
-    paint(&mut picture, &field, problem, how, job.part(0.1, 0.12), |_| true)?;
+    let vote_mode = if params.mode == Mode::LitSphere { VoteMode::Nearest } else { params.vote };
+    paint(&mut picture, &field, problem, vote_mode, job.part(0.1, 0.12), |_| true)?;
     Ok(State { field, picture, kept })
 }
 
@@ -153,10 +153,10 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
         report.passes.extend(passes);
         report.energy.push(energy(&state.field, level));
         // Paint by voting, except in the greedy mode, which has painted while matching.
-        let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
+        let vote_mode = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
         match params.mode {
             Mode::Greedy => restore_known(&mut state.picture, level.problem),
-            _ => paint(&mut state.picture, &state.field, level.problem, how, part(0.9, 1.0), |_| true)?,
+            _ => paint(&mut state.picture, &state.field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?,
         }
     }
     Ok(report)
@@ -170,7 +170,7 @@ fn rematch(
     l: usize,
     k: usize,
     job: Job,
-) -> Result<Option<Vec<Pass>>> {
+) -> Result<Option<Vec<PassReport>>> {
     let State { field, picture, kept } = state;
     // The distance of a match changes only if the patch contains a changed pixel, so rematch only these patches. The
     // first iteration of `Params::polish` is an exception: it rematches all patches, because they were assigned under
@@ -207,8 +207,8 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     let usage = Usage::of(&field, &level)?;
     drop(level);
     let mut image = picture.try_clone()?;
-    let provenance = Provenance { field: &field, problem, artwork: setup.input.artwork, known: setup.input.known };
-    decode_into(&mut image, &picture, provenance, job.part(1.0, 1.0), |_| true)?;
+    let decode_input = DecodeInput { field: &field, problem, artwork: setup.input.artwork, known: setup.input.known };
+    decode_into(&mut image, &picture, decode_input, job.part(1.0, 1.0), |_| true)?;
     let report = Report {
         levels,
         usage,
@@ -250,7 +250,7 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     search.rescore(&mut field, job.part(0.0, 0.05), wanted)?;
     if level.wanted.len().saturating_mul(level.allowed.len()) <= EXHAUSTIVE {
         search.exhaustive(&mut field, job.part(0.05, 1.0), wanted)?;
-    } else if params.finder == Finder::Table {
+    } else if params.finder == Finder::KdTree {
         let nearest = Nearest::new(&level, params, job.part(0.05, 0.4))?;
         nearest.forward(&search, &mut field, 0, job.part(0.4, 1.0), wanted)?;
     } else {

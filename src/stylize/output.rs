@@ -14,7 +14,7 @@ pub struct Output {
 }
 
 /// An intermediate result, published after each level except the last, coarsest first.
-pub struct Glimpse<'a> {
+pub struct IntermediateResult<'a> {
     /// The current picture in linear colour, at the size of the level.
     pub picture: Image,
     /// Number of halvings (rounding down) from the target's size to the picture's.
@@ -24,4 +24,4 @@ pub struct Glimpse<'a> {
 }
 
 /// Callback that receives intermediate results.
-pub type Publish<'a> = &'a (dyn Fn(Glimpse) + Sync);
+pub type Publish<'a> = &'a (dyn Fn(IntermediateResult) + Sync);

@@ -3,7 +3,7 @@
 use super::guides::Guide;
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
-use crate::patch::{Field, MAX_SIDE, Vote};
+use crate::patch::{Field, MAX_SIDE, VoteMode};
 
 /// The matching method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum Finder {
     /// PatchMatch (Barnes et al. 2009).
     PatchMatch,
     /// A k-d tree over patch means, an alternative to PatchMatch.
-    Table,
+    KdTree,
 }
 
 #[derive(Clone, Copy)]
@@ -99,9 +99,9 @@ pub struct Params {
     /// Cost of a seam in the sweeps of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between two
     /// neighbouring target patches whose matches are not neighbours in the exemplar.
     pub seam: f32,
-    pub vote: Vote,
+    pub vote: VoteMode,
     /// The vote that forms the final picture from the final field.
-    pub final_vote: Vote,
+    pub final_vote: VoteMode,
     /// Share of the previous frame's matches that are kept where they fit, in `[0, 1]`; no effect without motion. Use
     /// a different `seed` for each frame; otherwise the same blocks change in every frame.
     pub coherence: f32,
@@ -138,8 +138,8 @@ impl Default for Params {
             passes: 6,
             settle: 2,
             seam: 0.2,
-            vote: Vote::Weighted,
-            final_vote: Vote::Majority,
+            vote: VoteMode::Weighted,
+            final_vote: VoteMode::Majority,
             coherence: 1.0,
             match_appearance: 0.0,
             occurrence: 0.1,
@@ -162,8 +162,8 @@ impl Params {
             coverage: 0.95,
             passes: 64,
             settle: 0,
-            vote: Vote::Plain,
-            final_vote: Vote::Plain,
+            vote: VoteMode::Plain,
+            final_vote: VoteMode::Plain,
             ..Self::default()
         }
     }
@@ -196,7 +196,7 @@ impl Params {
         check_range("settle", self.settle, 0, 100)?;
         check_range("seam", self.seam, 0.0, 100.0)?;
         check_range("coherence", self.coherence, 0.0, 1.0)?;
-        if self.mode == Mode::Occurrence && self.finder == Finder::Table {
+        if self.mode == Mode::Occurrence && self.finder == Finder::KdTree {
             return Err(Error::argument(
                 "mode is occurrence and search is table; with this mode it must be PatchMatch",
             ));

@@ -6,18 +6,18 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
-use crate::patch::{Field, Vote, origin, vote};
+use crate::patch::{Field, VoteMode, origin, vote};
 
 /// Paints the pixels for which `wanted` holds by a vote of the patches that cover them, and restores the known pixels.
 pub(super) fn paint(
     picture: &mut Image,
     field: &Field,
     problem: &Problem,
-    how: Vote,
+    mode: VoteMode,
     job: Job,
     wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
-    vote(picture, field, &problem.style, problem.patch, how, job, wanted)?;
+    vote(picture, field, &problem.style, problem.patch, mode, job, wanted)?;
     restore_known(picture, problem);
     Ok(())
 }
@@ -41,8 +41,8 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The sources of a picture: the matches, and the images from which the matched patches were painted.
-pub(super) struct Provenance<'a> {
+/// The input of the decoder: the matches, and the images from which the matched patches were painted.
+pub(super) struct DecodeInput<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,
     /// The artwork and the known part of the target, both in linear colour.
@@ -56,11 +56,11 @@ pub(super) struct Provenance<'a> {
 pub(super) fn decode_into(
     image: &mut Image,
     picture: &Image,
-    provenance: Provenance,
+    input: DecodeInput,
     job: Job,
     wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
-    let Provenance { field, problem, artwork, known } = provenance;
+    let DecodeInput { field, problem, artwork, known } = input;
     let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
     let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
     exec::for_rows(&mut image.data, width * channels, job, |y, row| {

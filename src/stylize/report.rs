@@ -1,7 +1,7 @@
 //! Measures a run: energy, coverage, patch usage, guide error.
 
 use super::level::{Level, Problem};
-use super::retrieve::Pass;
+use super::retrieve::PassReport;
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
@@ -19,7 +19,7 @@ pub struct LevelReport {
     /// finest.
     pub energy: Vec<f64>,
     /// Retrieval passes of each iteration.
-    pub passes: Vec<Vec<Pass>>,
+    pub passes: Vec<Vec<PassReport>>,
 }
 
 /// Usage statistics of the exemplar patches in the result.

@@ -33,7 +33,7 @@ use crate::patch::{Domain, Field, NONE, pack, unpack};
 
 /// The outcome of a retrieval pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pass {
+pub struct PassReport {
     /// Share of the exemplar patches whose error lies left of the knee of the sorted errors.
     pub knee: f64,
     /// Number of target patches matched in this pass.
@@ -57,7 +57,7 @@ pub(super) fn retrieve(
     params: &Params,
     round: u64,
     job: Job,
-) -> Result<Vec<Pass>> {
+) -> Result<Vec<PassReport>> {
     let wanted = level.wanted.len();
     let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
@@ -82,7 +82,7 @@ pub(super) fn retrieve(
         nearest.reverse(&mut reverse, &free, index, job, |i| lost[i] && level.allowed.contains_index(i))?;
         let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
-        passes.push(Pass { knee, gained, coverage });
+        passes.push(PassReport { knee, gained, coverage });
         if (gained as f64) < MIN_GAIN * wanted as f64 {
             break;
         }

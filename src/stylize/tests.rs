@@ -3,7 +3,7 @@ use crate::error::ErrorKind;
 use crate::exec::Pool;
 use crate::image::Image;
 use crate::job::Monitor;
-use crate::patch::Vote;
+use crate::patch::VoteMode;
 use crate::rng::Rng;
 use std::sync::Mutex;
 
@@ -58,7 +58,7 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
             assert!(output.image == art, "{mode:?} {w} x {h}");
             assert!(output.report.guide_error.data.iter().all(|&e| e == 0.0));
         }
-        let table = Params { finder: Finder::Table, ..Params::default() };
+        let table = Params { finder: Finder::KdTree, ..Params::default() };
         assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
         // With constant guides, only the position distinguishes the patches.
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
@@ -77,7 +77,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         Params { mode: Mode::Occurrence, levels: 3, iterations: 2, ..Params::default() },
         Params { iterations: 1, finest_iterations: 2, passes: 4, ..Params::paper() },
         Params::preview(),
-        Params { finder: Finder::Table, levels: 2, iterations: 1, ..Params::default() },
+        Params { finder: Finder::KdTree, levels: 2, iterations: 1, ..Params::default() },
     ] {
         let with = |threads: usize| {
             Pool::new(threads).unwrap().run(|| stylise(&input(&art, &[guide(&a, &b)]), &params)).unwrap()
@@ -189,7 +189,7 @@ fn energy_per_iteration_falls_for_nearest_patches() {
     let (a, b) = (scene(80, 64, 40.0, 30.0, 22.0), scene(80, 64, 30.0, 34.0, 18.0));
     let art = artwork(&a);
     let params =
-        Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: Vote::Plain, ..Params::default() };
+        Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: VoteMode::Plain, ..Params::default() };
     let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
     // Matching lowers the energy (StyLit, Eq. 3) for a fixed picture, and averaging lowers it for a fixed field.
     let energy = &output.report.levels[0].energy;
@@ -274,7 +274,7 @@ fn extremes_have_an_answer() {
     for value in [0.0, 0.3, 0.7] {
         finite(stylise(&input(&art, &[guide(&flat(33, 21, 0.3), &flat(50, 64, value))]), &fast).unwrap());
     }
-    let table = Params { finder: Finder::Table, ..Params::default() };
+    let table = Params { finder: Finder::KdTree, ..Params::default() };
     for (w, h) in [(1, 1), (3, 2), (150, 4)] {
         let b = scene(w, h, 2.0, 2.0, 3.0);
         finite(stylise(&input(&art, &[guide(&a, &b)]), &table).unwrap());
@@ -344,7 +344,7 @@ fn contradictions_are_named() {
         Params { coarse_guides: 1e4, ..default.clone() },
         Params { guide_weight: f32::INFINITY, ..default.clone() },
         Params { coverage: -0.1, ..default.clone() },
-        Params { mode: Mode::Occurrence, finder: Finder::Table, ..default.clone() },
+        Params { mode: Mode::Occurrence, finder: Finder::KdTree, ..default.clone() },
     ] {
         assert_eq!(stylise(&good, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
@@ -357,13 +357,13 @@ fn each_level_is_published_progress_ends_at_one_and_cancel_is_obeyed() {
     let guides = [guide(&a, &b)];
     let monitor = Monitor::default();
     let seen = Mutex::new(Vec::new());
-    let publish = |g: Glimpse| seen.lock().unwrap().push((g.picture.width, g.halvings, g.levels.len()));
+    let publish = |g: IntermediateResult| seen.lock().unwrap().push((g.picture.width, g.halvings, g.levels.len()));
     run_and_publish(&input(&art, &guides), &Params::default(), &publish, monitor.job()).unwrap();
     assert_eq!(*seen.lock().unwrap(), [(50, 1, 1)]);
     assert_eq!(monitor.progress(), 1.0);
 
     let monitor = Monitor::default();
-    let stop = |_: Glimpse| monitor.cancel();
+    let stop = |_: IntermediateResult| monitor.cancel();
     let error = run_and_publish(&input(&art, &guides), &Params::default(), &stop, monitor.job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Cancelled);
     assert!(monitor.progress() < 1.0);
@@ -433,23 +433,23 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
     let guides = [guide(&a, &b)];
     for preview in [false, true] {
         let params = if preview { Params::preview() } else { Params::fast() };
-        let (mut study, before) =
-            Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
+        let (mut updater, before) =
+            Updater::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
         let whole = stylise(&input(&art, &guides), &params).unwrap();
         assert!(before.image == whole.image);
-        let (mut late, _) = Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
+        let (mut late, _) = Updater::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
 
         // Paint the ball green; the background stays unchanged.
         let changed = Image::from_fn(80, 60, |x, y| [a.pixel(x, y)[2]]).unwrap();
         for (p, _) in art.data.chunks_exact_mut(3).zip(&changed.data).filter(|(_, c)| **c > 0.5) {
             p.copy_from_slice(&[0.0, 1.0, 0.0]);
         }
-        let after = study.repaint(&art, &changed, Monitor::default().job()).unwrap();
+        let after = updater.repaint(&art, &changed, Monitor::default().job()).unwrap();
         let scale = if preview { 2 } else { 1 };
         let (ball, corner) = (after.pixel(36 / scale, 30 / scale), (4 / scale, 4 / scale));
         assert!(ball[1] > 0.9 && ball[0] < 0.1, "{ball:?}");
         assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
-        assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
+        assert!(updater.repaint(&b, &before.image, Monitor::default().job()).is_err());
 
         // An update that was cancelled is completed by the next update.
         let stopped = Monitor::default();
@@ -464,7 +464,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
             bad.data[3 * i..3 * i + 3].copy_from_slice(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
             black.data[3 * i..3 * i + 3].fill(0.0);
         }
-        let picture = study.repaint(&bad, &changed, Monitor::default().job()).unwrap();
+        let picture = updater.repaint(&bad, &changed, Monitor::default().job()).unwrap();
         assert!(picture == late.repaint(&black, &changed, Monitor::default().job()).unwrap());
     }
 }

@@ -49,7 +49,7 @@ pub struct Distance {
 
 impl Distance {
     /// A distance that is known, with an error of 0.
-    pub fn given(metres: f64) -> Self {
+    pub fn exact(metres: f64) -> Self {
         Self { metres, error: 0.0 }
     }
 

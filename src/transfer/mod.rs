@@ -9,11 +9,11 @@ mod check;
 mod clipping;
 mod colour;
 mod distance;
-mod ground;
 mod pattern;
 mod schedule;
 mod schedule_file;
 mod stages;
+mod texel_zones;
 mod viewpoint;
 mod warnings;
 

@@ -1,7 +1,7 @@
 //! The pattern of lights on the surface: size, rotation, offset, and margins without lamps.
 
 use super::distance::Distance;
-use crate::emission::{self, Measure};
+use crate::emission::{self, Measurements};
 use crate::error::{Error, Result, check_range};
 use crate::job::Job;
 use crate::scene::surface::Surface;
@@ -66,7 +66,7 @@ pub(super) struct Sizing {
     /// The distance of the photo's camera from the lit plane, from which this size follows.
     pub distance: Distance,
     /// The measured sizes of the exemplar's lamps; `None` if the size of the pattern does not depend on them.
-    pub measured: Option<Measure>,
+    pub measured: Option<Measurements>,
 }
 
 pub(super) struct TexelGrid {
@@ -104,12 +104,12 @@ impl Pattern {
         job: Job,
     ) -> Result<Sizing> {
         if self.scale == Scale::Distance && plane_distance > 0.0 {
-            let distance = Distance::given(plane_distance);
+            let distance = Distance::exact(plane_distance);
             return Ok(Sizing { pixel: pixel * plane_distance, distance, measured: None });
         }
         let measured = emission::measure(exemplar, params, job)?;
         let per_length = |metres: f64, pixels: f64, name: &str| match pixels > 0.0 {
-            true => Ok(Distance::given(metres / pixels / pixel)),
+            true => Ok(Distance::exact(metres / pixels / pixel)),
             false => Err(Error::degenerate(format!(
                 "the pattern cannot be scaled by {name}: the photo shows too few whole ones; scale it by the distance"
             ))),

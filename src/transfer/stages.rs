@@ -3,7 +3,7 @@
 use super::check::need;
 use super::distance::Distance;
 use super::pattern::Sizing;
-use super::{LitScene, Results, Transfer, colour, ground, viewpoint};
+use super::{LitScene, Results, Transfer, colour, texel_zones, viewpoint};
 use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
@@ -152,7 +152,7 @@ impl Transfer {
         let pattern = &self.params.pattern;
         let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation)? };
         let (mut emission, distance) = match &self.input.texture {
-            Some(texture) => (emission::given(texture, job.part(0.0, 0.9))?, None),
+            Some(texture) => (emission::from_texture(texture, job.part(0.0, 0.9))?, None),
             None => {
                 let (emission, distance) = self.texture_from_photo(&surface, job.part(0.0, 0.9))?;
                 (emission, Some(distance))
@@ -161,10 +161,10 @@ impl Transfer {
 
         // Remove lamps where the surface has a hole, or where no lamp may be.
         let size = UVec2::new(emission.texture.width as u32, emission.texture.height as u32);
-        if let Some(ground) =
-            ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))?
+        if let Some(zones) =
+            texel_zones::find(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))?
         {
-            emission.restrict(&ground, job.part(0.93, 0.95))?;
+            emission.restrict(&zones, job.part(0.93, 0.95))?;
         }
 
         // Place the texture on the surface, with the luminance that the lamps have in the photo.

@@ -5,11 +5,14 @@ use crate::segment::{self, StrokeSet};
 use crate::warning::Warning;
 
 impl Results {
-    /// Returns the warnings about the existing results, in the order of the stages, each with its stage. `strokes` are
-    /// the strokes from which the masks were made.
-    pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Stage, Warning)> {
+    /// Returns the warnings about the scene, whose stage is `None`, and about the existing results, in the order of
+    /// the stages, each with its stage. `strokes` are the strokes from which the masks were made.
+    pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Option<Stage>, Warning)> {
         let mut all = Vec::new();
-        let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (stage, warning)));
+        if let Some(lit) = &self.unsolved {
+            all.extend(lit.scene.implausible_size().map(|warning| (None, warning)));
+        }
+        let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (Some(stage), warning)));
         if let Some(view) = &self.view {
             add(Stage::View, view.warnings());
         }
@@ -37,9 +40,6 @@ impl Results {
         if let Some(emission) = &self.emission {
             add(Stage::Emission, emission.warnings());
         }
-        if let Some(lit) = &self.unsolved {
-            add(Stage::Emission, lit.scene.implausible_size().into_iter().collect());
-        }
         if let Some(solution) = &self.solution {
             add(Stage::Relight, solution.warnings());
         }
@@ -51,13 +51,17 @@ impl Results {
 mod tests {
     use super::*;
     use crate::image::Image;
+    use crate::scene::surface::{self, Placed};
+    use crate::scene::{Mesh, Scene};
     use crate::segment::Segmentation;
+    use crate::transfer::LitScene;
     use crate::warning::Code;
+    use glam::Vec3;
     use std::sync::Arc;
 
     /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, that of
     /// the lights `0..lights`.
-    fn codes(plane: usize, lights: usize) -> Vec<(Stage, Code)> {
+    fn codes(plane: usize, lights: usize) -> Vec<(Option<Stage>, Code)> {
         let mask = |columns: usize| {
             let mask = Image::from_fn(10, 4, |x, _| [f32::from(x < columns)]).unwrap();
             Some(Arc::new(Segmentation::from_confidence(&mask).unwrap()))
@@ -70,7 +74,28 @@ mod tests {
     fn each_warning_has_its_stage_in_the_order_of_the_stages() {
         assert_eq!(Results::default().warnings(&StrokeSet::default()), []);
         assert_eq!(codes(8, 2), []);
-        assert_eq!(codes(8, 7), [(Stage::Lights, Code::AlmostAllLit)]);
-        assert_eq!(codes(0, 0), [(Stage::Plane, Code::EmptyMask), (Stage::Lights, Code::EmptyMask)]);
+        assert_eq!(codes(8, 7), [(Some(Stage::Lights), Code::AlmostAllLit)]);
+        assert_eq!(codes(0, 0), [(Some(Stage::Plane), Code::EmptyMask), (Some(Stage::Lights), Code::EmptyMask)]);
+    }
+
+    #[test]
+    fn the_size_of_the_scene_belongs_to_no_stage_and_comes_first() {
+        let results = |height: f32| {
+            let wall = Mesh::parallelogram(Vec3::ZERO, Vec3::X * height, Vec3::Y * height, 0);
+            let scene = Scene { meshes: vec![wall], ..Scene::default() };
+            let surface = surface::from_triangles(&scene, &[(0, 0), (0, 1)]).unwrap();
+            let placed = Placed { mesh: 0, material: 0 };
+            let mask = Image::new(10, 4, 1).unwrap();
+            Results {
+                unsolved: Some(Arc::new(LitScene { scene: Arc::new(scene), surface, placed, texel_size: 0.01 })),
+                plane: Some(Arc::new(Segmentation::from_confidence(&mask).unwrap())),
+                ..Results::default()
+            }
+        };
+        let codes = |height| -> Vec<_> {
+            results(height).warnings(&StrokeSet::default()).into_iter().map(|(stage, w)| (stage, w.code)).collect()
+        };
+        assert_eq!(codes(2.7), [(Some(Stage::Plane), Code::EmptyMask)]);
+        assert_eq!(codes(2700.0), [(None, Code::ImplausibleSize), (Some(Stage::Plane), Code::EmptyMask)]);
     }
 }

@@ -31,8 +31,8 @@ public:
         return make<Job>(luxfer_rectify_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_RECTIFY_ value.
-    Result<Image> image(luxfer_rectify_image which) const { return make<Image>(luxfer_rectify_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_RECTIFY_ value.
+    Result<Image> image(luxfer_rectify_image kind) const { return make<Image>(luxfer_rectify_get_image, kind); }
 
     /// Unwarps another image of the photo's size by the homography of the plane.
     Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
@@ -113,8 +113,8 @@ public:
         return make<Job>(luxfer_features_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_FEATURES_ value.
-    Result<Image> image(luxfer_features_image which) const { return make<Image>(luxfer_features_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_FEATURES_ value.
+    Result<Image> image(luxfer_features_image kind) const { return make<Image>(luxfer_features_get_image, kind); }
 
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
 
@@ -143,8 +143,8 @@ public:
         return make<Job>(luxfer_segment_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_SEGMENT_ value.
-    Result<Image> image(luxfer_segment_image which) const { return make<Image>(luxfer_segment_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_SEGMENT_ value.
+    Result<Image> image(luxfer_segment_image kind) const { return make<Image>(luxfer_segment_get_image, kind); }
 
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
 
@@ -197,8 +197,8 @@ public:
         return make<Job>(luxfer_emission_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_EMISSION_ value.
-    Result<Image> image(luxfer_emission_image which) const { return make<Image>(luxfer_emission_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_EMISSION_ value.
+    Result<Image> image(luxfer_emission_image kind) const { return make<Image>(luxfer_emission_get_image, kind); }
 
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }
 

@@ -67,9 +67,9 @@ public:
         return make<Job>(luxfer_render_start_merge, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_RENDER_ value.
-    Result<Image> image(luxfer_render_image which = LUXFER_RENDER_BEAUTY) const {
-        return make<Image>(luxfer_render_get_image, which);
+    /// Gets an image of the results; `kind` is a LUXFER_RENDER_ value.
+    Result<Image> image(luxfer_render_image kind = LUXFER_RENDER_BEAUTY) const {
+        return make<Image>(luxfer_render_get_image, kind);
     }
 
     Result<luxfer_render_report> report() const { return value<luxfer_render_report>(luxfer_render_get_report); }
@@ -111,9 +111,9 @@ public:
         return make<Job>(luxfer_illuminance_start_mesh, mesh, side, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_ILLUMINANCE_ value.
-    Result<Image> image(luxfer_illuminance_image which = LUXFER_ILLUMINANCE_LUX) const {
-        return make<Image>(luxfer_illuminance_get_image, which);
+    /// Gets an image of the results; `kind` is a LUXFER_ILLUMINANCE_ value.
+    Result<Image> image(luxfer_illuminance_image kind = LUXFER_ILLUMINANCE_LUX) const {
+        return make<Image>(luxfer_illuminance_get_image, kind);
     }
 
     Result<luxfer_illuminance_report> report() const {

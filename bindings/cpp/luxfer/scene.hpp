@@ -86,9 +86,9 @@ public:
     /// Lists objects and materials that may be the ceiling, with area, height and direction; the likeliest first.
     Result<Candidates> candidates() const { return make<Candidates>(luxfer_scene_get_candidates); }
 
-    /// Generates a demonstration scene; `which` is a LUXFER_DEMO_ value.
-    static Result<Scene> demo(const Context &context, luxfer_demo which) {
-        return make_in<Scene>(context, luxfer_demo_create_scene, which);
+    /// Generates a demonstration scene; `kind` is a LUXFER_DEMO_ value.
+    static Result<Scene> demo(const Context &context, luxfer_demo kind) {
+        return make_in<Scene>(context, luxfer_demo_create_scene, kind);
     }
 
     /// Saves a .glb file that contains all textures.

@@ -34,8 +34,8 @@ public:
         return make<Job>(luxfer_guides_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_GUIDES_ value.
-    Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_GUIDES_ value.
+    Result<Image> image(luxfer_guides_image kind) const { return make<Image>(luxfer_guides_get_image, kind); }
 
     /// Computes the motion of each pixel since the previous frame, whose guides are `before`.
     Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
@@ -94,9 +94,9 @@ public:
 
     // Results.
 
-    /// Gets an image of the results; `which` is a LUXFER_STYLIZE_IMAGE_ value.
-    Result<Image> image(luxfer_stylize_image which = LUXFER_STYLIZE_IMAGE_PICTURE) const {
-        return make<Image>(luxfer_stylize_get_image, which);
+    /// Gets an image of the results; `kind` is a LUXFER_STYLIZE_IMAGE_ value.
+    Result<Image> image(luxfer_stylize_image kind = LUXFER_STYLIZE_IMAGE_PICTURE) const {
+        return make<Image>(luxfer_stylize_get_image, kind);
     }
 
     Result<luxfer_stylize_report> report() const { return value<luxfer_stylize_report>(luxfer_stylize_get_report); }

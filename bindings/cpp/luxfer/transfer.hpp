@@ -77,12 +77,12 @@ public:
 
     // Results, available as soon as their stage has ended.
 
-    /// Gets an image of the results; `which` is a LUXFER_TRANSFER_ value.
-    Result<Image> image(luxfer_transfer_image which) const { return make<Image>(luxfer_transfer_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_TRANSFER_ value.
+    Result<Image> image(luxfer_transfer_image kind) const { return make<Image>(luxfer_transfer_get_image, kind); }
 
-    /// Gets a scene of the results; `which` is a LUXFER_SCENE_ value.
-    Result<Scene> scene(luxfer_transfer_scene which = LUXFER_SCENE_LIT) const {
-        return make<Scene>(luxfer_transfer_get_scene, which);
+    /// Gets a scene of the results; `kind` is a LUXFER_SCENE_ value.
+    Result<Scene> scene(luxfer_transfer_scene kind = LUXFER_SCENE_LIT) const {
+        return make<Scene>(luxfer_transfer_get_scene, kind);
     }
 
     Result<luxfer_transfer_report> report() const { return value<luxfer_transfer_report>(luxfer_transfer_get_report); }
@@ -114,8 +114,8 @@ public:
         return make<Job>(luxfer_demo_photo_start, &params);
     }
 
-    /// Gets an image of the results; `which` is a LUXFER_DEMO_PHOTO_ value.
-    Result<Image> image(luxfer_demo_photo_image which) const { return make<Image>(luxfer_demo_photo_get_image, which); }
+    /// Gets an image of the results; `kind` is a LUXFER_DEMO_PHOTO_ value.
+    Result<Image> image(luxfer_demo_photo_image kind) const { return make<Image>(luxfer_demo_photo_get_image, kind); }
 };
 
 } // namespace luxfer

@@ -69,9 +69,9 @@ struct Rgb {
 
 /// A versioned struct of the C header, filled with the library's defaults. It derives from the C struct: set the
 /// fields, which the C header documents. (If the initialisation fails, the size stays 0, and calls refuse the struct.)
-template <class C, luxfer_struct_type which>
+template <class C, luxfer_struct_type struct_type>
 struct Params : C {
-    Params() noexcept : C() { luxfer_init(which, static_cast<C *>(this), sizeof(C)); }
+    Params() noexcept : C() { luxfer_init(struct_type, static_cast<C *>(this), sizeof(C)); }
 };
 
 namespace detail {

@@ -1784,7 +1784,8 @@ class Warning:
     """Kind of the warning: WarningCode."""
     stage: Stage
     """The stage whose result is in doubt: Stage. For a luxfer_segment it is Stage.LIGHTS if
-    luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene it is Stage.SCENE."""
+    luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene, and for the size of the scene
+    of a luxfer_transfer, it is Stage.SCENE."""
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float

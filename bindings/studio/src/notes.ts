@@ -13,6 +13,7 @@ interface Warning {
 }
 
 const STAGES: Record<string, string> = {
+  scene: "Room",
   view: "Camera",
   features: "Room in the photo",
   plane: "Plane",

@@ -5,8 +5,8 @@ use glam::DVec2;
 
 /// Longest distance that is compared, and half width of the kernel, both as multiples of the mean distance between
 /// nearest neighbours.
-const REACH: f64 = 2.5;
-const KERNEL: f64 = 0.15;
+const MAX_DISTANCE: f64 = 2.5;
+const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the range of distances is divided.
 const STEPS: usize = 100;
 
@@ -37,7 +37,7 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
 
 /// Computes, for each step of distance, the density of pairs of points, up to a constant factor: `g(r) r`.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
-    let (reach, width) = (REACH * spacing, KERNEL * spacing);
+    let (reach, width) = (MAX_DISTANCE * spacing, KERNEL_HALF_WIDTH * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();
     order.sort_by(|p, q| p.x.total_cmp(&q.x));
     let mut sums = [0.0; STEPS];

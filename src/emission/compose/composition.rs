@@ -7,15 +7,15 @@
 use super::bands::Bands;
 use super::draw;
 use super::layer::Layer;
-use super::render::{self, Frame, Lights};
-use super::source::{self, Source};
+use super::render::{self, Blend, Lights};
+use super::source::{self, TexelSource};
 use super::tile::Tile;
 use super::weights::{Style, Weights};
+use crate::emission::analysis::{Analysis, Choice};
 use crate::emission::exemplar::components::Components;
 use crate::emission::lamps::{crumbs, instance, luminaires};
-use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::law::Law;
 use crate::emission::params::{Input, Params};
-use crate::emission::reading::{Choice, Reading};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::job::Job;
@@ -41,10 +41,10 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Reading`]), if one is given and was
-    /// made with the same settings.
+    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Analysis`]), if one is given and
+    /// was made with the same settings.
     pub(in crate::emission) fn of(
-        mut reading: Option<Reading>,
+        mut analysis: Option<Analysis>,
         input: &Input,
         styles: &[Style],
         params: &Params,
@@ -59,7 +59,7 @@ impl Composition {
             let params = Params { scale, ..params.clone() };
             params.check()?;
             let job = job.part(k as f64 / count, (k + 1) as f64 / count);
-            let mut layer = Layer::new(reading.take(), input, &params, job)?;
+            let mut layer = Layer::new(analysis.take(), input, &params, job)?;
             if params.even_lamps {
                 layer.even = Some(source::mean_colours(&layer, input, job)?);
             }
@@ -89,10 +89,10 @@ impl Composition {
     }
 
     /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period). Also
-    /// returns how well this continuation predicts the lamps, and the best alternative.
-    pub fn law(&self) -> (Continuation, Choice) {
-        let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
-        first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
+    /// returns how well this law predicts the lamps, and the best alternative.
+    pub fn law(&self) -> (Law, Choice) {
+        let first = self.layers.first().map(|layer| (layer.law, layer.choice));
+        first.unwrap_or((Law::Copy, Choice::only(Law::Copy)))
     }
 
     /// The number of lamps that the photos show completely, summed over all exemplars.
@@ -167,10 +167,10 @@ impl Composition {
         job: Job,
     ) -> Result<(Image, Image)> {
         let inputs = exemplars(input, 1.0, styles);
-        let sources: Vec<Source> =
-            self.layers.iter().zip(inputs).map(|(layer, (input, _))| Source { layer, input }).collect();
-        let frame = Frame { width: self.width, height: self.height, weights: &self.weights };
-        render::run(&frame, &sources, &self.bands, tile, lights, job)
+        let sources: Vec<TexelSource> =
+            self.layers.iter().zip(inputs).map(|(layer, (input, _))| TexelSource { layer, input }).collect();
+        let blend = Blend { width: self.width, height: self.height, weights: &self.weights };
+        render::run(&blend, &sources, &self.bands, tile, lights, job)
     }
 
     /// Checks that the number and the sizes of the exemplars are those for which the composition was planned.

@@ -27,10 +27,10 @@ use std::collections::HashMap;
 
 /// Where lamps are dense, all lamps in one square of the texture share a random number. This is the square's side, as
 /// a multiple of the longest lamp's length.
-const PATCH: f64 = 3.0;
+const SHARED_SQUARE: f64 = 3.0;
 /// Lamps are dense if more than this share of the lamps of all exemplars but the first each overlap several lamps of
 /// preceding exemplars.
-const DENSE: f64 = 0.1;
+const MIN_DENSE_SHARE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.
 struct Lamp {
@@ -64,21 +64,21 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let longest = lamps.iter().flatten().map(|l| (l.high - l.low).max_element()).fold(1.0, f64::max);
 
     // For each lamp, find the lamps of earlier layers that it overlaps, largest overlap first.
-    let mut seen = Near { cells: HashMap::new(), side: longest, size: params.repeats() };
+    let mut seen = LampGrid { cells: HashMap::new(), side: longest, size: params.repeats() };
     let mut below: Vec<Vec<Vec<(usize, usize)>>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
         below.push(layer.iter().map(|lamp| seen.overlapping(lamp, &lamps)).collect());
         layer.iter().enumerate().for_each(|(i, lamp)| seen.add(k, i, lamp));
     }
     let several = below.iter().flatten().filter(|b| b.len() > 1).count();
-    let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
+    let is_dense = several as f64 > MIN_DENSE_SHARE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
     // Give each lamp its random number. A lamp that overlaps lamps of earlier layers takes the number of the lamp that
     // it overlaps most. Any other lamp gets a number of its own or, where lamps are dense, the number of the square
     // that contains its centre.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
-            let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
+            let patch = (lamps[k][i].centre() / (SHARED_SQUARE * longest)).floor();
             lamps[k][i].draw = match others.first() {
                 Some(&(j, other)) => lamps[j][other].draw,
                 None if is_dense => {
@@ -122,14 +122,14 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
 
 /// A hash grid that finds lamps by the square that holds their centre. The squares are as long as the longest lamp, so
 /// that overlapping lamps lie in the same square or in adjacent ones.
-struct Near {
+struct LampGrid {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,
     /// Size of the texture in texels, if it is tileable.
     size: Option<DVec2>,
 }
 
-impl Near {
+impl LampGrid {
     fn cell(&self, at: DVec2) -> [i64; 2] {
         (at / self.side).floor().to_array().map(|c| c as i64)
     }

@@ -14,7 +14,7 @@ use super::{patch_lights, source};
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{kinds, luminaires};
-use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::law::Law;
 use crate::emission::params::Input;
 use crate::error::Result;
 use crate::geometry::polygon;
@@ -59,7 +59,7 @@ impl LampList {
         for (k, layer) in composition.layers.iter().enumerate() {
             job.check()?;
             // If the texture is a copied part of the exemplar, all components of the exemplar are moved by one shift.
-            let copied = layer.patch_map.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
+            let copied = layer.patch_map.shifts.first().filter(|_| layer.law == Law::Copy);
             let copies = copied.map(|shift| {
                 let instance = |component| Instance { component, shift: shift.exact };
                 (0..layer.exemplar.components.list.len()).map(instance).collect::<Vec<_>>()
@@ -97,7 +97,7 @@ impl LampList {
         let counts = counts.into_iter().flatten().chain(self.others.iter().map(|l| usize::from(l.is_within(size))));
         kinds::number(lamps.iter_mut().zip(counts));
         let listed = self.shapes.iter_mut().flatten().chain(&mut self.others);
-        listed.zip(lamps).for_each(|(lamp, told)| lamp.kind = told.kind);
+        listed.zip(lamps).for_each(|(lamp, numbered)| lamp.kind = numbered.kind);
     }
 
     /// The number of listed lights.
@@ -124,10 +124,8 @@ impl LampList {
         let whole = shape.moved(shift, 1.0 / layer.scale);
         // If the texture is a copied part of the exemplar, the exemplar's weight in the blend dims the lights.
         // Otherwise a lamp is shown at full brightness or not at all.
-        let whole = match layer.continuation {
-            Continuation::Copy => {
-                Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole }
-            }
+        let whole = match layer.law {
+            Law::Copy => Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole },
             _ => whole,
         };
         if whole.outline.iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {

@@ -1,6 +1,8 @@
 //! The layer of one exemplar: the positions of its lamps and patches over the whole texture.
 
 use super::window::{self, Window};
+use crate::emission::analysis::sites::Sites;
+use crate::emission::analysis::{Analysis, Choice};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lamps::design::Designs;
@@ -9,15 +11,13 @@ use crate::emission::lamps::instances::{self, Rules};
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::rim_colour::RimColours;
 use crate::emission::lamps::{lattice_fill, luminaires, sharpest, stretched};
-use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::law::Law;
 use crate::emission::lattice::{border_sites, centring, extent};
 use crate::emission::params::{Input, Params, working_side};
 use crate::emission::quilt;
 use crate::emission::quilt::guide::Guide;
 use crate::emission::quilt::metadata;
 use crate::emission::quilt::patch_map::PatchMap;
-use crate::emission::reading::sites::Sites;
-use crate::emission::reading::{Choice, Reading};
 use crate::error::{Error, Result};
 use crate::geometry::robust::weighted_median;
 use crate::image::Image;
@@ -26,7 +26,7 @@ use glam::{DVec2, Vec3};
 
 /// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
 /// edges by resampling. [judged on 5 photos]
-const CRUMB: f64 = 0.02;
+const MAX_CRUMB: f64 = 0.02;
 /// Minimum side of a patch, in working pixels (pixels of the exemplar at the reduced size of the synthesis).
 /// [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
@@ -37,7 +37,7 @@ const BLOCK_PERIODS: f64 = 1.5;
 /// how its lamps are drawn.
 pub struct Layer {
     pub exemplar: Exemplar,
-    pub continuation: Continuation,
+    pub law: Law,
     pub regularity: f64,
     pub choice: Choice,
     /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light.
@@ -59,12 +59,12 @@ pub struct Layer {
 }
 
 /// The settings by which an exemplar's pattern is placed on the texture.
-struct Setting<'a> {
+struct PatternPlacement<'a> {
     params: &'a Params,
-    /// The continuation found in the exemplar (`found`), and the continuation that the texture uses (`continuation`).
+    /// The law found in the exemplar (`found`), and the law that the texture uses (`law`).
     /// They differ if the texture is tileable, because its lattice is stretched.
-    found: Continuation,
-    continuation: Continuation,
+    found: Law,
+    law: Law,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
     offset: DVec2,
     /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
@@ -76,20 +76,20 @@ struct Setting<'a> {
 }
 
 impl Layer {
-    pub fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let (window, Source { exemplar, found, regularity, choice }) = source(reading, input, params, job)?;
+    pub fn new(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let (window, LayerExemplar { exemplar, found, regularity, choice }) = source(analysis, input, params, job)?;
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-        let setting = Setting::new(&exemplar, found, window, params)?;
+        let placement = PatternPlacement::new(&exemplar, found, window, params)?;
 
         // Compute the metadata of the exemplar, by which patches are compared: the confidence, and the signed x and y
         // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
-        let metadata = metadata::compute(&working.confidence, is_lit, width, height, setting.cap, job_part)?;
+        let metadata = metadata::compute(&working.confidence, is_lit, width, height, placement.cap, job_part)?;
         let patch_map = match inside {
-            Some(corner) => window::copy(corner, setting.canvas, working.pitch),
-            None => setting.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
+            Some(corner) => window::copy(corner, placement.canvas, working.pitch),
+            None => placement.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
         };
         let has_pieces = inside.is_none() && params.whole_lamps;
         let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
@@ -98,20 +98,20 @@ impl Layer {
             false => Designs::default(),
         };
         let instances = match has_pieces {
-            true => setting.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
+            true => placement.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
             false => Vec::new(),
         };
-        let patch_map = match setting.stretch().filter(|_| by_patches) {
+        let patch_map = match placement.stretch().filter(|_| by_patches) {
             Some(lattices) => {
-                quilt::stretched::stretch(&exemplar, &patch_map, lattices, setting.offset, params.size())?
+                quilt::stretched::stretch(&exemplar, &patch_map, lattices, placement.offset, params.size())?
             }
             None => patch_map,
         };
         let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
-        let (continuation, scale) = (setting.continuation, params.scale);
+        let (law, scale) = (placement.law, params.scale);
         Ok(Self {
             exemplar,
-            continuation,
+            law,
             regularity,
             choice,
             metadata,
@@ -131,18 +131,18 @@ impl Layer {
     }
 
     /// Whether a component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
-    pub fn is_by_pixel(&self, component: usize) -> bool {
+    pub fn is_copied_by_pixel(&self, component: usize) -> bool {
         !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
     /// Whether any component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
-    pub fn has_by_pixel(&self) -> bool {
+    pub fn any_copied_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }
 
     /// Whether some lights are copied patch by patch, and the texture is not just a copied part of the exemplar.
     pub fn follows_patches(&self) -> bool {
-        self.has_by_pixel() && self.continuation != Continuation::Copy
+        self.any_copied_by_pixel() && self.law != Law::Copy
     }
 
     /// If a texel is one unwarped pixel, rounds a shift to whole pixels, so that copies are exact.
@@ -154,35 +154,38 @@ impl Layer {
     /// if no lamps are copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
-        if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
+        if self.instances.is_empty() { 0.0 } else { MAX_CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
 /// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the
 /// exemplar. At a lower score, the texture is a copy of a part of the photo, ragged outlines included.
 /// [bench photos:tune]
-const SURE: f64 = 0.6;
+const MIN_CLEAN_SCORE: f64 = 0.6;
 
 /// Outlines count as ragged if a photo pixel is at least this many unwarped pixels long, because they then show the
 /// steps between photo pixels. [convention]
-const RAGGED: f64 = 2.0;
+const MIN_RAGGED_PIXEL: f64 = 2.0;
 
 /// The exemplar from which a texture is made, and how its pattern continues: on a lattice, in a row, by repetition or
 /// without a period.
-struct Source {
+struct LayerExemplar {
     exemplar: Exemplar,
-    /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
-    found: Continuation,
+    /// The law found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
+    found: Law,
     regularity: f64,
     choice: Choice,
 }
 
 /// Analyses the exemplar. If the texture fits into it, also finds the part of the exemplar that the texture copies.
-fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<(Option<Window>, Source)> {
-    let (exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
-        Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
-            (exemplar, Some((continuation, regularity, choice)))
-        }
+fn source(
+    analysis: Option<Analysis>,
+    input: &Input,
+    params: &Params,
+    job: Job,
+) -> Result<(Option<Window>, LayerExemplar)> {
+    let (exemplar, read) = match analysis.filter(|r| r.is_reusable_for(input, params)) {
+        Some(Analysis { exemplar, law, regularity, choice, .. }) => (exemplar, Some((law, regularity, choice))),
         None => {
             let side = working_side(input, params);
             (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
@@ -195,63 +198,63 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     // provided that a lattice gives their positions.
     let may_be_cleaned =
         is_inside && params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
-    let copied = || (Continuation::Copy, 0.0, Choice::only(Continuation::Copy));
+    let copied = || (Law::Copy, 0.0, Choice::only(Law::Copy));
     let (mut exemplar, (mut found, mut regularity, mut choice)) = match read {
         Some(read) => (exemplar, read),
         None if is_inside && !may_be_cleaned => (exemplar, copied()),
         None => {
-            let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
-            (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
+            let analysis = Analysis::of(exemplar, input, params, job.part(0.15, 0.25))?;
+            (analysis.exemplar, (analysis.law, analysis.regularity, analysis.choice))
         }
     };
     if let Some(window) = window.as_mut().filter(|w| w.is_shown) {
-        if may_be_cleaned && matches!(found, Continuation::Lattice(_)) && choice.score >= SURE {
+        if may_be_cleaned && matches!(found, Law::Lattice(_)) && choice.score >= MIN_CLEAN_SCORE {
             window.is_shown = false;
         } else {
             (found, regularity, choice) = copied();
         }
     }
-    if let Continuation::Lattice(basis) = found {
+    if let Law::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
-    Ok((window, Source { exemplar, found, regularity, choice }))
+    Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
 }
 
 /// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
-/// least [`RAGGED`] unwarped pixels.
+/// least [`MIN_RAGGED_PIXEL`] unwarped pixels.
 fn is_ragged(exemplar: &Exemplar) -> bool {
-    let lamps = exemplar.evidence(Role::is_whole);
+    let lamps = exemplar.measured_lamps(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
-        .is_some_and(|pixel| pixel >= RAGGED)
+        .is_some_and(|pixel| pixel >= MIN_RAGGED_PIXEL)
 }
 
-impl<'a> Setting<'a> {
-    fn new(exemplar: &Exemplar, found: Continuation, window: Option<Window>, params: &'a Params) -> Result<Self> {
+impl<'a> PatternPlacement<'a> {
+    fn new(exemplar: &Exemplar, found: Law, window: Option<Window>, params: &'a Params) -> Result<Self> {
         let working = &exemplar.working;
-        let continuation = if params.tileable { found.fitted(params.size())? } else { found };
-        let block = if params.block > 0 { params.block } else { default_block(exemplar, continuation) };
-        let reach = continuation
+        let law = if params.tileable { found.fitted(params.size())? } else { found };
+        let block = if params.block > 0 { params.block } else { default_block(exemplar, law) };
+        let reach = law
             .lattice()
             .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
         let cap = reach.min(block as f64).max(1.0);
         let canvas = (params.size() / working.pitch).ceil();
         let canvas = (canvas.x as usize, canvas.y as usize);
-        let centred = if params.centred { centring::shift(exemplar, continuation, params.size()) } else { None };
+        let centred = if params.centred { centring::shift(exemplar, law, params.size()) } else { None };
         let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
         let offset = window.map_or(offset, |w| -w.corner);
-        Ok(Self { params, found, continuation, offset, canvas, block, cap })
+        Ok(Self { params, found, law, offset, canvas, block, cap })
     }
 
     /// The two lattices of a tileable texture: as found in the exemplar, and stretched so that a whole number of
     /// periods fits into the texture. `None` for other textures.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
-        let lattices = self.found.lattice().zip(self.continuation.lattice());
+        let lattices = self.found.lattice().zip(self.law.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
     }
 
     /// Quilts the texture: finds the part of the exemplar that each part of the texture shows.
     fn place_patches(&self, exemplar: &Exemplar, metadata: &Image, job: Job) -> Result<PatchMap> {
-        let &Self { params, continuation, canvas, .. } = self;
+        let &Self { params, law, canvas, .. } = self;
         let Params { metadata_weight, candidates, .. } = *params;
         let working = &exemplar.working;
         let lamps = &exemplar.components.list;
@@ -261,8 +264,8 @@ impl<'a> Setting<'a> {
 
         // For a row of lamps, quilt one strip and repeat it side by side, because the exemplar shows nothing beyond
         // the strip.
-        let row = match continuation {
-            Continuation::Row([_, across]) => {
+        let row = match law {
+            Law::Row([_, across]) => {
                 let period = across.abs() / working.pitch;
                 let side = |period: f64, all: usize| if period > 0.0 { all.min(period.ceil() as usize) } else { all };
                 Some((across, (side(period.x, canvas.0), side(period.y, canvas.1))))
@@ -272,11 +275,11 @@ impl<'a> Setting<'a> {
         let size = row.map_or(canvas, |r| r.1);
         // If both ends of a row lie within the exemplar, the texture repeats the whole row, with its free ends, at a
         // constant period.
-        let laid = match continuation {
-            Continuation::Row([along, across]) if !params.tileable => {
-                Continuation::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
+        let laid = match law {
+            Law::Row([along, across]) if !params.tileable => {
+                Law::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
             }
-            _ => continuation,
+            _ => law,
         };
         let made = quilt::place(&guide, laid, self.offset, size, self.block, params.seed, job)?;
         Ok(match row {
@@ -288,18 +291,18 @@ impl<'a> Setting<'a> {
     /// Moves lamps to the exact sites of their lattice. `shown` holds the lamps that the copied patches contain; it is
     /// returned unchanged if there are no designs or no sites, and for a row that ends within the exemplar.
     fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
-        let &Self { params, continuation, offset, .. } = self;
-        let ends = match continuation {
-            Continuation::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
+        let &Self { params, law, offset, .. } = self;
+        let ends = match law {
+            Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
             _ => false,
         };
         if designs.kinds.is_empty() || ends {
             return shown;
         }
-        match Sites::new(exemplar, &exemplar.evidence(Role::is_whole), continuation) {
+        match Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), law) {
             Some(sites) => {
                 let area = (offset, params.size());
-                lattice_fill::place(exemplar, designs, &sites, continuation, shown, area, params.seed)
+                lattice_fill::place(exemplar, designs, &sites, law, shown, area, params.seed)
             }
             None => shown,
         }
@@ -314,20 +317,20 @@ impl<'a> Setting<'a> {
         by_patches: bool,
         job: Job,
     ) -> Result<Vec<Instance>> {
-        let &Self { params, continuation, offset, .. } = self;
-        let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
+        let &Self { params, law, offset, .. } = self;
+        let rules = Rules { is_lattice: law.lattice().is_some(), wraps: params.tileable };
         let stretched = self
             .stretch()
             .and_then(|lattices| stretched::place(exemplar, patch_map, lattices, offset, params.size(), params.seed));
-        let instances = match continuation {
-            Continuation::Lattice(_) | Continuation::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
-            Continuation::Tile(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
+        let instances = match law {
+            Law::Lattice(_) | Law::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
+            Law::Whole(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
             _ => self.at_sites(exemplar, designs, instances::resolve(exemplar, patch_map, rules, params.seed, job)?),
         };
         let mut instances = instances;
         sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
-        match continuation {
-            Continuation::Free => shifted(instances, by_patches, params),
+        match law {
+            Law::Free => shifted(instances, by_patches, params),
             _ => Ok(instances),
         }
     }
@@ -363,11 +366,11 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
 
 /// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours: on a lattice, one
 /// and a half times the longer period; without a lattice, a quarter of the exemplar's shorter side.
-fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
+fn default_block(exemplar: &Exemplar, law: Law) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;
-    let side = match continuation {
-        Continuation::Lattice([a, b]) => BLOCK_PERIODS * (a / working.pitch).length().max((b / working.pitch).length()),
+    let side = match law {
+        Law::Lattice([a, b]) => BLOCK_PERIODS * (a / working.pitch).length().max((b / working.pitch).length()),
         _ => quarter,
     };
     side.clamp(MIN_BLOCK, (2.0 * quarter).max(MIN_BLOCK)).round() as usize

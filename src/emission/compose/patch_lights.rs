@@ -20,9 +20,9 @@ use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
 /// Number of rows of texels in a band (`BAND`), and number of further rows that are rendered above and below the band
-/// (`BESIDE`). The further rows are needed to compute which part of each texel is light.
+/// (`MARGIN_ROWS`). The further rows are needed to compute which part of each texel is light.
 const BAND: usize = 64;
-const BESIDE: usize = 2;
+const MARGIN_ROWS: usize = 2;
 /// Value of a texel without light, in place of the index of its light.
 const NONE: u32 = u32::MAX;
 
@@ -32,12 +32,16 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());
     }
-    let mut lights = Joined::default();
+    let mut lights = ConnectedLights::default();
     let mut above = try_vec(composition.width, NONE)?;
     for y in (0..composition.height).step_by(BAND) {
-        let (top, rows) = (y.saturating_sub(BESIDE), BAND.min(composition.height - y));
-        let tile =
-            Tile { x: 0, y: top, width: composition.width, height: (y + rows + BESIDE).min(composition.height) - top };
+        let (top, rows) = (y.saturating_sub(MARGIN_ROWS), BAND.min(composition.height - y));
+        let tile = Tile {
+            x: 0,
+            y: top,
+            width: composition.width,
+            height: (y + rows + MARGIN_ROWS).min(composition.height) - top,
+        };
         let (texture, coverage) =
             composition.render_lights(input, styles, tile, Lights::OfPatches, job.part(0.0, 0.0))?;
         let found = components(&coverage)?;
@@ -74,13 +78,13 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
 
 /// The lights found so far. Lights that turn out to be connected are merged into one (union-find).
 #[derive(Default)]
-struct Joined {
+struct ConnectedLights {
     parts: Vec<Light>,
     /// For each light, the index of the light that it was joined to, or its own index.
     into: Vec<u32>,
 }
 
-impl Joined {
+impl ConnectedLights {
     /// Adds `count` empty lights and returns the index of the first one.
     fn add(&mut self, count: usize) -> u32 {
         let first = self.parts.len();

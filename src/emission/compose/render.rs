@@ -9,7 +9,7 @@
 //! of its area decides.
 
 use super::bands::Bands;
-use super::source::{Source, Texel};
+use super::source::{Texel, TexelSource};
 use super::tile::Tile;
 use super::weights::Weights;
 use crate::emission::lamps::instance::Instance;
@@ -31,7 +31,7 @@ pub enum Lights {
 }
 
 /// The texture that layers share: its size in texels, and the weight of each layer.
-pub struct Frame<'a> {
+pub struct Blend<'a> {
     pub width: usize,
     pub height: usize,
     pub weights: &'a Weights,
@@ -40,8 +40,8 @@ pub struct Frame<'a> {
 /// Renders a tile of the texture, and the coverage: the share of each texel that light covers. Coverage is at least
 /// 0.5 for texels of the mask, and less than 0.5 for other texels.
 pub fn run(
-    frame: &Frame,
-    sources: &[Source],
+    blend: &Blend,
+    sources: &[TexelSource],
     bands: &[Bands],
     tile: Tile,
     lights: Lights,
@@ -60,11 +60,11 @@ pub fn run(
                 row.add_lamps(source, bands);
             }
             let has_more = match lights {
-                Lights::All => source.layer.has_by_pixel(),
+                Lights::All => source.layer.any_copied_by_pixel(),
                 Lights::OfPatches => source.layer.follows_patches(),
             };
             if has_more {
-                row.add_patches(source, frame, k);
+                row.add_patches(source, blend, k);
             }
         }
         row.finish();
@@ -98,7 +98,7 @@ impl Row<'_> {
     }
 
     /// Adds the lamps that are copied as a whole to the row.
-    fn add_lamps(&mut self, source: &Source, bands: &Bands) {
+    fn add_lamps(&mut self, source: &TexelSource, bands: &Bands) {
         for &(i, range) in bands.of_row(self.y) {
             let [x0, y0, x1, y1] = range.map(|r| r as usize);
             if (y0..y1).contains(&self.y) {
@@ -114,13 +114,13 @@ impl Row<'_> {
     }
 
     /// Adds the lights that are copied patch by patch to the row.
-    fn add_patches(&mut self, source: &Source, frame: &Frame, k: usize) {
-        let size = DVec2::new(frame.width as f64, frame.height as f64);
+    fn add_patches(&mut self, source: &TexelSource, blend: &Blend, k: usize) {
+        let size = DVec2::new(blend.width as f64, blend.height as f64);
         for x in self.first..self.first + self.coverage.len() {
             let at = (DVec2::new(x as f64, self.y as f64) + 0.5) / size;
-            let weight = frame.weights.at(k, at);
+            let weight = blend.weights.at(k, at);
             if let Some(shift) = source.shift_at(x, self.y).filter(|_| weight > 0.0) {
-                let is_shown = |label: u32| label != 0 && source.layer.is_by_pixel(label as usize - 1);
+                let is_shown = |label: u32| label != 0 && source.layer.is_copied_by_pixel(label as usize - 1);
                 let shown = source.texel(x, self.y, shift, is_shown);
                 self.add(x, Texel { colour: shown.colour * weight, ..shown });
             }

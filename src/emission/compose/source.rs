@@ -15,7 +15,7 @@ const MAX_SAMPLES: f64 = 16.0;
 
 /// Computes the mean colour of every component of the exemplar.
 pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>> {
-    let source = Source { layer, input };
+    let source = TexelSource { layer, input };
     let exemplar = &layer.exemplar;
     let mut sums = vec![DVec3::ZERO; exemplar.components.list.len()];
     for y in 0..exemplar.height {
@@ -50,12 +50,12 @@ pub struct Texel {
 
 /// A layer, and the images from which its texels are taken.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct TexelSource<'a> {
     pub layer: &'a Layer,
     pub input: &'a Input<'a>,
 }
 
-impl Source<'_> {
+impl TexelSource<'_> {
     /// The shift (texture minus exemplar) of the patch at a texel's centre; `None` if there is no patch.
     pub fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
         let Layer { patch_map, exemplar, scale, .. } = self.layer;

@@ -14,23 +14,23 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
-const WIDEST: f64 = 0.05;
+const MAX_WIDTH: f64 = 0.05;
 /// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
 /// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
 /// [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
-/// Number of sections ([`Stretch`]) along a bar, each of which is tested separately. [convention]
-const STRETCHES: usize = 24;
-/// Maximum number of consecutive sections ([`Stretch`]) of a bar that a crossing bar may hide. It suffices for a
+/// Number of sections ([`Section`]) along a bar, each of which is tested separately. [convention]
+const SECTIONS: usize = 24;
+/// Maximum number of consecutive sections ([`Section`]) of a bar that a crossing bar may hide. It suffices for a
 /// crossing bar of the maximum width. [convention]
-const CROSSING: usize = 2;
-/// Where the photo is sharp, a section ([`Stretch`]) shows no bar if its depth is below this share of the whole bar's
+const MAX_HIDDEN_SECTIONS: usize = 2;
+/// Where the photo is sharp, a section ([`Section`]) shows no bar if its depth is below this share of the whole bar's
 /// depth. [bench photos:tune]
-const ABSENT: f32 = 0.25;
+const MIN_SECTION_DEPTH: f32 = 0.25;
 /// Bars have a period if the distances between them deviate from their mean by at most this share. [bench photos:tune]
-const SAME_PERIOD: f64 = 0.12;
+const MAX_SPACING_DEVIATION: f64 = 0.12;
 
 /// A plane with lights in the unwarped image, and the map into the photo.
 pub struct LitPlane<'a> {
@@ -83,7 +83,7 @@ impl<'a> Lines<'a> {
     pub fn new(plane: &'a LitPlane, luminances: &[f32], is_column: bool) -> Result<Self> {
         let (width, height) = (plane.unwarped.width, plane.unwarped.height);
         let (across, along) = if is_column { (width, height) } else { (height, width) };
-        let widest = ((width.max(height) as f64 * WIDEST) as usize).max(3);
+        let widest = ((width.max(height) as f64 * MAX_WIDTH) as usize).max(3);
         let depth = try_vec(width * height, f32::NAN)?;
         let mut lines = Self { plane, is_column, across, along, widest, depth };
         let (mut light, mut before, mut after) =
@@ -122,8 +122,8 @@ impl<'a> Lines<'a> {
     /// dark at a few of these pixels only.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
-        for start in along.clone().step_by(self.stretch()) {
-            let end = (start + self.stretch()).min(along.end);
+        for start in along.clone().step_by(self.section_length()) {
+            let end = (start + self.section_length()).min(along.end);
             let sharpness = self.sharpness(u, (start + end) / 2).min(1.0);
             let known = (start..end).map(|v| self.depth[self.index(u, v)]).filter(|depth| depth.is_finite());
             depths.extend(known.map(|depth| (f64::from(depth), sharpness)));
@@ -132,8 +132,8 @@ impl<'a> Lines<'a> {
         depth.map(|depth| depth as f32)
     }
 
-    fn stretch(&self) -> usize {
-        self.along.div_ceil(STRETCHES)
+    fn section_length(&self) -> usize {
+        self.along.div_ceil(SECTIONS)
     }
 
     /// Finds the bars that the photo shows.
@@ -172,7 +172,7 @@ impl<'a> Lines<'a> {
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
         let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
         let depth = bars.iter().map(|bar| bar.depth).fold(f32::INFINITY, f32::min);
-        if gaps.iter().any(|gap| (gap - mean).abs() > SAME_PERIOD * mean) || first < 4.0 {
+        if gaps.iter().any(|gap| (gap - mean).abs() > MAX_SPACING_DEVIATION * mean) || first < 4.0 {
             return Vec::new();
         }
         let shifted = |bar: Bar, shift: f64| {
@@ -187,35 +187,37 @@ impl<'a> Lines<'a> {
     }
 
     /// Divides a bar into sections along its length, and measures each.
-    pub fn stretches(&self, bar: &Bar) -> Vec<Stretch> {
+    pub fn sections(&self, bar: &Bar) -> Vec<Section> {
         let middle = (bar.first + bar.last) / 2;
-        let starts = (0..self.along).step_by(self.stretch());
-        let alongs = starts.map(|start| start..(start + self.stretch()).min(self.along));
+        let starts = (0..self.along).step_by(self.section_length());
+        let alongs = starts.map(|start| start..(start + self.section_length()).min(self.along));
         alongs
             .map(|along| {
                 let depths = (bar.first..=bar.last).filter_map(|u| self.median_depth(u, along.clone(), 1));
                 let depth = depths.fold(0.0, f32::max);
                 let sharpness = self.sharpness(middle, (along.start + along.end) / 2);
-                Stretch { along, depth, sharpness }
+                Section { along, depth, sharpness }
             })
             .collect()
     }
 
     /// Removes a bar from the light. Sections that show no bar stay light if the photo is sharp enough there: if its
     /// sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
-    pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
-        let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
-        let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
+    pub fn cut(&self, bar: &Bar, sections: &[Section], bluntest: f64, light: &mut Image) -> bool {
+        let is_absent = |s: &Section| s.sharpness >= bluntest && s.depth < MIN_SECTION_DEPTH * bar.depth;
+        let absent: Vec<bool> = sections.iter().map(is_absent).collect();
         // A section in which another bar crosses seems to have no bar, because both bars are equally dark. Remove it
         // nevertheless.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
-        let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
+        let crosses = |n: usize| {
+            is_shown(n.saturating_sub(MAX_HIDDEN_SECTIONS), n) && is_shown(n + 1, n + 1 + MAX_HIDDEN_SECTIONS)
+        };
         let mut is_changed = false;
-        for (n, stretch) in stretches.iter().enumerate() {
+        for (n, section) in sections.iter().enumerate() {
             if absent[n] && !crosses(n) {
                 continue;
             }
-            for v in stretch.along.clone() {
+            for v in section.along.clone() {
                 for u in bar.first..=bar.last {
                     let i = self.index(u, v);
                     is_changed |= light.data[i] >= super::LIT;
@@ -229,15 +231,15 @@ impl<'a> Lines<'a> {
 
 /// A section of a bar: its positions along the bar, the depth there, and the photo's sharpness in photo pixels per
 /// unwarped pixel.
-pub struct Stretch {
+pub struct Section {
     along: Range<usize>,
     depth: f32,
     sharpness: f64,
 }
 
 /// The lowest sharpness of the sections in which a bar is visible.
-pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
-    let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
+pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
+    let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 

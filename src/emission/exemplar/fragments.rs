@@ -9,39 +9,39 @@
 //! Fragments count as light in the pattern, but the texture does not show them.
 
 use super::components::{Component, Components};
-use super::evidence::Evidence;
 use super::foreshortening::LocalMap;
+use super::measured_lamp::MeasuredLamp;
 use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
 /// A group of similar pieces is a major kind of lamps if it has at least this share of the photo pixels of all lamps.
 /// [judged on 20 photos]
-const MIN_KIND: f64 = 0.15;
+const MIN_KIND_SHARE: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
 /// A fragment is close to another light if their distance is at most this multiple of a lamp's longer side.
 /// [judged on 20 photos]
-const CLOSE: f64 = 0.35;
+const MAX_GAP: f64 = 0.35;
 /// A group of at least this many similar small pieces counts as a kind of lamps; only the pieces close to other lights
 /// are then fragments. [judged on 20 photos]
-const MANY: usize = 3;
+const MIN_KIND_COUNT: usize = 3;
 
 /// Gives the fragments among the whole lamps the role [`Role::Cut`].
 pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], to_photo: Homography) {
-    let mut lamps: Vec<Evidence> = Vec::new();
+    let mut lamps: Vec<MeasuredLamp> = Vec::new();
     for (k, component) in components.list.iter().enumerate().filter(|(k, _)| roles[*k].is_whole()) {
-        lamps.push(Evidence::new(k, component, photo_area[k], Some(to_photo)));
+        lamps.push(MeasuredLamp::new(k, component, photo_area[k], Some(to_photo)));
     }
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
     // Find the major kinds, which have a large share of the lamps' photo pixels, and the major kind with the smallest
     // lamps.
-    let kinds = Evidence::kinds(&lamps);
-    let is_major = |kind: &&Vec<Evidence>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND * total;
+    let kinds = MeasuredLamp::kinds(&lamps);
+    let is_major = |kind: &&Vec<MeasuredLamp>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND_SHARE * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {
-        let area = |l: &Evidence| l.size.element_product();
+        let area = |l: &MeasuredLamp| l.size.element_product();
         area(a).total_cmp(&area(b))
     });
     let Some(lamp) = smallest else { return };
@@ -50,8 +50,8 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
         for piece in kind {
             let expected = lamp.size.element_product() * LocalMap::new(Some(to_photo), piece.centre).area();
             let is_small = piece.weight < MAX_FRAGMENT * expected;
-            let reach = CLOSE * lamp.size.max_element();
-            if is_small && (kind.len() < MANY || has_neighbour(components, piece.component, reach)) {
+            let reach = MAX_GAP * lamp.size.max_element();
+            if is_small && (kind.len() < MIN_KIND_COUNT || has_neighbour(components, piece.component, reach)) {
                 roles[piece.component] = Role::Cut;
             }
         }

@@ -3,9 +3,9 @@
 pub mod area_sums;
 pub mod bars;
 pub mod components;
-pub mod evidence;
 pub mod foreshortening;
 pub mod fragments;
+pub mod measured_lamp;
 pub mod panes;
 pub mod roles;
 pub mod working;
@@ -17,8 +17,8 @@ use crate::geometry::Homography;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
-use evidence::Evidence;
 use foreshortening::{LocalMap, MagnificationLimit};
+use measured_lamp::MeasuredLamp;
 use roles::Role;
 use working::{Sources, Working};
 
@@ -30,7 +30,7 @@ pub const LIT: f32 = 0.5;
 const MIN_LAMP: f64 = 9.0;
 
 /// The plane counts as a luminous ceiling if at least this share of it is lit. [bench photos:tune]
-pub const LUMINOUS: f64 = 0.3;
+pub const MIN_LUMINOUS_SHARE: f64 = 0.3;
 
 /// The usable part of the unwarped image with its lights.
 pub struct Exemplar {
@@ -117,7 +117,7 @@ impl Exemplar {
 
     /// Whether the plane is a luminous ceiling or a skylight: panes divided by bars, rather than lamps on a ceiling.
     pub fn is_luminous_ceiling(&self) -> bool {
-        self.lit_share >= LUMINOUS
+        self.lit_share >= MIN_LUMINOUS_SHARE
     }
 
     /// The bounding box of the lights: first column and row, last column and row, inclusive.
@@ -136,10 +136,10 @@ impl Exemplar {
 
     /// The components whose role fulfils `has_role`, as evidence for a lattice, in descending order of their photo
     /// pixels.
-    pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
+    pub fn measured_lamps(&self, has_role: impl Fn(Role) -> bool) -> Vec<MeasuredLamp> {
         let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
-        let mut all: Vec<Evidence> =
-            lamps.map(|(k, lamp)| Evidence::new(k, lamp, self.photo_area[k], self.to_photo)).collect();
+        let mut all: Vec<MeasuredLamp> =
+            lamps.map(|(k, lamp)| MeasuredLamp::new(k, lamp, self.photo_area[k], self.to_photo)).collect();
         all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         all
     }

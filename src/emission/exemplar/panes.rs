@@ -4,7 +4,7 @@
 //! panes to pieces along the lead strips inside them (their leading). The detected bars ([`super::bars`]) give the
 //! true borders of the panes.
 
-use super::LUMINOUS;
+use super::MIN_LUMINOUS_SHARE;
 use super::bars::{self, Bar, Lines, LitPlane};
 use crate::error::Result;
 use crate::image::colour::luminance;
@@ -14,13 +14,13 @@ use glam::Vec3;
 use std::ops::Range;
 
 /// A rectangle between bars counts as a pane if at least this share of it is lit. [bench photos:real]
-const PANE: f64 = 0.35;
+const MIN_LIT_SHARE: f64 = 0.35;
 /// A pixel outside the mask is added to its pane if it has at least this luminance, relative to the pane's median.
 /// [bench photos:real]
-const BRIGHT: f32 = 0.5;
+const MIN_RELATIVE_LUMINANCE: f32 = 0.5;
 /// A dark line inside a pane is a lead strip, and is filled, if its width is at most this share of the pane's side.
 /// [bench photos:real]
-const LEADING: f64 = 0.06;
+const MAX_LEADING_SHARE: f64 = 0.06;
 
 /// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
 /// or if the mask covers no bar.
@@ -28,7 +28,7 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let pixels = plane.light.data.len();
     let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();
     let lit = (0..pixels).filter(|&i| plane.is_lit(i)).count();
-    if lit == 0 || (lit as f64) < LUMINOUS * valid as f64 {
+    if lit == 0 || (lit as f64) < MIN_LUMINOUS_SHARE * valid as f64 {
         return Ok(None);
     }
     let colours = plane.unwarped.data.chunks_exact(plane.unwarped.channels);
@@ -56,16 +56,16 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut is_changed = false;
     let mut bluntest = f64::INFINITY;
     for bar in &bars {
-        let stretches = lines.stretches(bar);
-        let own = bars::bluntest(bar, &stretches);
+        let sections = lines.sections(bar);
+        let own = bars::bluntest(bar, &sections);
         bluntest = bluntest.min(own);
-        is_changed |= lines.cut(bar, &stretches, own, light);
+        is_changed |= lines.cut(bar, &sections, own, light);
     }
     // Remove the bars that the period predicts, too. A predicted bar stays light where the photo is sharp enough to
     // show a bar but shows none. Sharp enough means: as sharp as in the least sharp section of a visible bar.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
-        is_changed |= lines.cut(bar, &lines.stretches(bar), bluntest, light);
+        is_changed |= lines.cut(bar, &lines.sections(bar), bluntest, light);
     }
     bars.extend(beyond);
     bars.sort_by_key(|bar| bar.first);
@@ -99,7 +99,7 @@ impl Cell<'_> {
 /// parts that the mask left out.
 fn fill(cell: &Cell, light: &mut Image) {
     let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
-    if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {
+    if lit.is_empty() || (lit.len() as f64) < MIN_LIT_SHARE * cell.pixels().count() as f64 {
         return;
     }
 
@@ -117,7 +117,7 @@ fn fill(cell: &Cell, light: &mut Image) {
     let (left, top) = (range(|i, width| i % width), range(|i, width| i / width));
     let mut luminances: Vec<f32> = lit.iter().map(|&i| cell.luminances[i]).collect();
     let middle = luminances.len() / 2;
-    let min_luminance = BRIGHT * *luminances.select_nth_unstable_by(middle, f32::total_cmp).1;
+    let min_luminance = MIN_RELATIVE_LUMINANCE * *luminances.select_nth_unstable_by(middle, f32::total_cmp).1;
     let is_bright = |&i: &usize| cell.luminances[i] >= min_luminance;
     let is_inside = |&i: &usize| left.contains(&(i % width)) && top.contains(&(i / width));
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
@@ -126,7 +126,7 @@ fn fill(cell: &Cell, light: &mut Image) {
 /// Fills narrow gaps between lit pixels of a row or column. The line is given by its first pixel, the step to the next
 /// pixel, and the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
-    let widest = (count as f64 * LEADING) as usize;
+    let widest = (count as f64 * MAX_LEADING_SHARE) as usize;
     let mut last = None;
     for n in (0..count).filter(|n| light.data[start + n * step] >= super::LIT).collect::<Vec<_>>() {
         if let Some(last) = last.filter(|last| n - last <= widest + 1) {

@@ -4,15 +4,15 @@ use super::components::{Component, Components};
 
 /// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
 /// [judged on 5 photos]
-const CUT_LAMP_SLACK: f64 = 1.35;
+const MAX_CUT_RATIO: f64 = 1.35;
 /// A lamp at the border counts as whole if the number of its border pixels is at most this share of its width, because
 /// masks fray. The width is the lamp's area divided by the diagonal of its bounding box. A square lamp that the border
 /// cuts exceeds the limit. A disc does not exceed it as long as less than about a hundredth of its area is cut off.
 /// [judged on 5 photos]
-const WHOLE_CONTACT: f64 = 0.6;
+const MAX_WHOLE_CONTACT: f64 = 0.6;
 /// A light runs through the exemplar if it spans at least this share of the row or column through its centre, as far
 /// as the photo shows that row or column. [rounding]
-const RUNS_THROUGH: f64 = 0.97;
+const MIN_THROUGH_SPAN: f64 = 0.97;
 
 /// The role of a component of the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,13 +47,13 @@ pub fn classify(components: &Components, shown: &[bool], width: usize, height: u
     let contacts = contacts(components, shown, width, height);
     let is_whole = |(c, &n): (&Component, &usize)| {
         let [across, down] = c.size().map(|s| s as f64);
-        n as f64 <= WHOLE_CONTACT * c.area as f64 / across.hypot(down)
+        n as f64 <= MAX_WHOLE_CONTACT * c.area as f64 / across.hypot(down)
     };
     let whole: Vec<bool> = components.list.iter().zip(&contacts).map(is_whole).collect();
     let sizes: Vec<[usize; 2]> =
         components.list.iter().zip(&whole).filter(|(_, w)| **w).map(|(c, _)| c.size()).collect();
     let resembles_whole =
-        |c: &Component| sizes.iter().any(|size| (0..2).all(|k| c.size()[k] as f64 <= size[k] as f64 * CUT_LAMP_SLACK));
+        |c: &Component| sizes.iter().any(|size| (0..2).all(|k| c.size()[k] as f64 <= size[k] as f64 * MAX_CUT_RATIO));
     let role = |((c, &whole), &contacts): ((&Component, &bool), &usize)| match () {
         () if whole && contacts == 0 => Role::Whole,
         () if whole => Role::WholeAtBorder,
@@ -84,5 +84,5 @@ fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> b
     let row = (0..width).filter(|u| shown[y * width + u]).count();
     let column = (0..height).filter(|v| shown[v * width + x]).count();
     let [across, down] = c.size().map(|s| s as f64);
-    across >= RUNS_THROUGH * row as f64 || down >= RUNS_THROUGH * column as f64
+    across >= MIN_THROUGH_SPAN * row as f64 || down >= MIN_THROUGH_SPAN * column as f64
 }

@@ -15,8 +15,8 @@
 
 use super::luminaire::Luminaire;
 use crate::emission::exemplar::Exemplar;
-use crate::emission::exemplar::evidence::Evidence;
 use crate::emission::exemplar::foreshortening::LocalMap;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
 use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
@@ -24,39 +24,40 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width, because blur elongates discs, but
 /// longer shapes are tubes with round ends. It must also agree with the lamps better than a rectangle by at least
-/// `ROUNDER`, because blur rounds the corners of a rectangle. [judged on 20 photos]
+/// `MIN_ELLIPSE_GAIN`, because blur rounds the corners of a rectangle. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
-const ROUNDER: f64 = 0.03;
-/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area in photo pixels. `SMEAR`: the long axis must
-/// exceed the short axis by this factor, for the lamp and for its blur. `ALONG`: minimum cosine of the angle between
-/// the long axes of lamp and blur. [judged on 20 photos]
+const MIN_ELLIPSE_GAIN: f64 = 0.03;
+/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area in photo pixels. `MIN_SMEAR`: the long axis
+/// must exceed the short axis by this factor, for the lamp and for its blur. `MIN_COS_ALONG`: minimum cosine of the
+/// angle between the long axes of lamp and blur. [judged on 20 photos]
 const MAX_SMEARED: f64 = 160.0;
-const SMEAR: f64 = 1.25;
-const ALONG: f64 = 0.9;
+const MIN_SMEAR: f64 = 1.25;
+const MIN_COS_ALONG: f64 = 0.9;
 /// Lamps count as elongated in one common direction if the mean of unit vectors at twice the angles of their long axes
 /// is longer than this. Its length is 1 if all axes are parallel. If lamps are elongated along their own blur but not
 /// in a common direction, they are discs, whatever their size. [judged on 20 photos]
-const SAME_WAY: f64 = 0.93;
+const MIN_COMMON_DIRECTION: f64 = 0.93;
 /// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
 /// is the area of the intersection divided by the area of the union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
 /// The length of a rectangle is its mean over the middle part of the width, and the width is its mean over the middle
 /// part of the length, away from the rounded corners. The middle part has this share of the width or length.
 /// [judged on 20 photos]
-const MIDDLE: f64 = 0.6;
+const MIDDLE_SHARE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
-const ALIGNED: f64 = 0.07;
+const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// Standard deviation of a measured side (`SIDE_NOISE`), and prior standard deviation of the bloom at each edge
 /// (`BLOOM`), both in photo pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_JUDGES` of them, and bloom
-/// explains at least the share `EXPLAINED` of the variation of their sides. Lamps of several lengths, and partly
-/// hidden lamps, fail this test, because their sides do not grow with magnification. [bench photos:tune, photos:real]
+/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, and
+/// bloom explains at least the share `MIN_EXPLAINED` of the variation of their sides. Lamps of several lengths, and
+/// partly hidden lamps, fail this test, because their sides do not grow with magnification. [bench photos:tune,
+/// photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
-const EXPLAINED: f64 = 0.5;
-const MIN_JUDGES: usize = 4;
+const MIN_EXPLAINED: f64 = 0.5;
+const MIN_BLOOM_LAMPS: usize = 4;
 /// Number of corners of an ellipse's outline. [rounding]
 const ELLIPSE_CORNERS: usize = 64;
 
@@ -112,7 +113,7 @@ impl Designs {
     /// component.
     pub fn find(exemplar: &Exemplar, outlines: &[Luminaire]) -> Self {
         let mut designs = Self { kinds: Vec::new(), lamps: vec![None; outlines.len()] };
-        for kind in Evidence::kinds(&exemplar.evidence(Role::is_whole)) {
+        for kind in MeasuredLamp::kinds(&exemplar.measured_lamps(Role::is_whole)) {
             let members: Vec<Member> = kind.iter().filter_map(|lamp| Member::new(lamp, exemplar, outlines)).collect();
             if let Some((design, fitted)) = fit(&members, designs.kinds.len()) {
                 designs.kinds.push(design);
@@ -159,7 +160,7 @@ struct Member {
 }
 
 impl Member {
-    fn new(lamp: &Evidence, exemplar: &Exemplar, outlines: &[Luminaire]) -> Option<Self> {
+    fn new(lamp: &MeasuredLamp, exemplar: &Exemplar, outlines: &[Luminaire]) -> Option<Self> {
         let outline = &outlines[lamp.component].outline;
         let (area, centre, moments) = polygon_moments(outline)?;
         Some(Self {
@@ -181,7 +182,7 @@ impl Member {
         let [[short, x], [long, y]] = principal(self.moments);
         let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
         let along = DVec2::new(x, y).dot(DVec2::new(u, v)).abs();
-        long > SMEAR * short && most > SMEAR * least && along > ALONG
+        long > MIN_SMEAR * short && most > MIN_SMEAR * least && along > MIN_COS_ALONG
     }
 
     /// Standard deviations of the area along and across an axis.
@@ -198,7 +199,7 @@ impl Member {
             return sides;
         }
         let width = |across: DVec2, length: f64| {
-            let (at, half) = (across.dot(self.centre), MIDDLE * length / 2.0);
+            let (at, half) = (across.dot(self.centre), MIDDLE_SHARE * length / 2.0);
             let above = polygon::clip(&self.outline, across, at + half);
             polygon::area(&polygon::clip(&above, -across, half - at)).abs() / (2.0 * half).max(f64::MIN_POSITIVE)
         };
@@ -234,7 +235,7 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     });
     let [Some(rectangle), Some(ellipse)] = design else { return None };
     let aspect = ellipse.0.size.max_element() / ellipse.0.size.min_element();
-    let is_round = aspect <= MAX_ELLIPSE && ellipse.1 > rectangle.1 + ROUNDER;
+    let is_round = aspect <= MAX_ELLIPSE && ellipse.1 > rectangle.1 + MIN_ELLIPSE_GAIN;
     let (mut design, agreement) = if is_round { ellipse } else { rectangle };
     if agreement < MIN_AGREEMENT {
         return None;
@@ -262,7 +263,7 @@ fn smeared_disc(members: &[&Member]) -> Option<f64> {
         DVec2::from_angle(2.0 * y.atan2(x)) * m.weight
     };
     let common_turn = members.iter().map(|m| turn(m)).sum::<DVec2>().length() / total;
-    if smeared < 0.5 * total || (mean_area > MAX_SMEARED && common_turn > SAME_WAY) {
+    if smeared < 0.5 * total || (mean_area > MAX_SMEARED && common_turn > MIN_COMMON_DIRECTION) {
         return None;
     }
     common_side(members.iter().map(|m| {
@@ -287,7 +288,7 @@ fn principal(moments: DMat2) -> [[f64; 2]; 2] {
 fn common_axis(members: &[&Member]) -> DVec2 {
     let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
     let angle = sum.to_angle() / 4.0;
-    if angle.abs() <= ALIGNED { DVec2::X } else { DVec2::from_angle(angle) }
+    if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
 /// The common side of lamps, without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a
@@ -310,7 +311,7 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let shown = fit(SHOWN_BLOOM);
     // Sums of squared residuals of two models: with bloom (`left`), and with the mean side alone (`all`).
     let (left, all) = (square - 2.0 * shown.dot(sums) + shown.dot(gram * shown), square - mean * sums.x);
-    let is_shown = count >= MIN_JUDGES && left < (1.0 - EXPLAINED) * all;
+    let is_shown = count >= MIN_BLOOM_LAMPS && left < (1.0 - MIN_EXPLAINED) * all;
     let fitted = if is_shown { shown } else { fit(BLOOM) };
     let bloomless = if fitted.y > 0.0 && count > 1 { fitted.x } else { mean };
     Some(bloomless.max(0.5 * least)).filter(|s| s.is_finite() && *s > 0.0)

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
 /// through rounding.
-const LATTICE_SLACK: f64 = 0.2;
+const MAX_LATTICE_OVERLAP: f64 = 0.2;
 
 /// Rules for placing lamps.
 #[derive(Clone, Copy)]
@@ -33,7 +33,7 @@ pub struct Rules {
 /// Finds the lamps of which a patch map copies enough. Lamps with the largest copied share are placed first. A lamp
 /// with few photo pixels is replaced by a similar lamp with many.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
-    let canvas = Canvas { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
+    let canvas = PatchLamps { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
     let mut instances = canvas.settle(&claims, rules.is_lattice)?;
     sharpest::show_sharpest(exemplar, &mut instances, seed);
@@ -41,13 +41,13 @@ pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u6
 }
 
 /// A patch map, and the pixels that each lamp covers at the reduced size of the synthesis (working pixels).
-struct Canvas<'a> {
+struct PatchLamps<'a> {
     patch_map: &'a PatchMap,
     footprints: Vec<Vec<[i32; 2]>>,
     wraps: bool,
 }
 
-impl Canvas<'_> {
+impl PatchLamps<'_> {
     /// The pixel of the texture at a position; `None` outside a texture that is not tileable.
     fn texel(&self, x: i32, y: i32) -> Option<(usize, usize)> {
         let side = |at: i32, side: usize| match self.wraps {
@@ -93,10 +93,10 @@ impl Canvas<'_> {
 
     /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. A lamp is skipped if its place is
     /// taken. Without a lattice, one taken pixel in the lamp or beside it suffices; on a lattice, more than the share
-    /// [`LATTICE_SLACK`] of its pixels must be taken.
+    /// [`MAX_LATTICE_OVERLAP`] of its pixels must be taken.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
-        let mut taken = Bits::new(width * height)?;
+        let mut taken = BitSet::new(width * height)?;
         let mut instances = Vec::new();
         let margin = i32::from(!is_lattice);
         for &(_, k, label) in claims {
@@ -105,7 +105,7 @@ impl Canvas<'_> {
                 around(y).any(|v| around(x).filter_map(|u| self.texel(u, v)).any(|(u, v)| taken.get(v * width + u)))
             };
             let clashes = self.place(k, label).filter(|&(x, y)| near(x, y)).count();
-            let allowed = if is_lattice { LATTICE_SLACK * self.place(k, label).count() as f64 } else { 0.0 };
+            let allowed = if is_lattice { MAX_LATTICE_OVERLAP * self.place(k, label).count() as f64 } else { 0.0 };
             if clashes as f64 <= allowed {
                 self.place(k, label).for_each(|(x, y)| taken.set(y * width + x));
                 instances.push(Instance { component: k as usize, shift: shifts[label as usize].exact });
@@ -141,7 +141,7 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
 
 /// A run of pixels that a lamp covers in a row of the exemplar at working size, from `start` up to, but not including,
 /// `end`.
-struct Piece {
+struct PixelRun {
     start: i32,
     end: i32,
     lamp: u32,
@@ -149,7 +149,7 @@ struct Piece {
 
 /// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. A pixel that several
 /// lamps share, each smaller than the pixel, belongs to the last one.
-fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
+fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<PixelRun>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {
         for &[x, y] in pixels {
@@ -157,11 +157,11 @@ fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
         }
     }
     let pieces = |row: BTreeMap<i32, u32>| {
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut pieces: Vec<PixelRun> = Vec::new();
         for (x, lamp) in row {
             match pieces.last_mut().filter(|p| p.end == x && p.lamp == lamp) {
                 Some(piece) => piece.end += 1,
-                None => pieces.push(Piece { start: x, end: x + 1, lamp }),
+                None => pieces.push(PixelRun { start: x, end: x + 1, lamp }),
             }
         }
         pieces
@@ -170,9 +170,9 @@ fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
 }
 
 /// A set of pixels, stored with one bit per pixel.
-struct Bits(Vec<u64>);
+struct BitSet(Vec<u64>);
 
-impl Bits {
+impl BitSet {
     fn new(count: usize) -> Result<Self> {
         Ok(Self(try_vec(count.div_ceil(64), 0)?))
     }

@@ -12,26 +12,26 @@ use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
 /// Maximum relative difference in area, and in each side, between two lamps of one kind.
-const LIKE: f64 = 0.25;
+const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
 /// most this value.
-const FILL: f64 = 0.1;
+const MAX_FILL_DIFFERENCE: f64 = 0.1;
 /// Tolerance, in texels, for the sides of two equal lamps, which differ by rounding and by the simplification of their
 /// outlines.
 const ROUNDING: f64 = 2.0;
 /// Number of bins per factor of e, for binning lamps by the logarithms of their area and sides before they are
 /// compared.
-const STEPS: f64 = 20.0;
+const BINS_PER_E: f64 = 20.0;
 
 /// The measures by which lamps are compared; lengths are in texels.
 #[derive(Clone, Copy)]
-struct Shape {
+struct Measures {
     area: f64,
     /// Sides of the smallest enclosing rectangle, the long one first.
     sides: DVec2,
 }
 
-impl Shape {
+impl Measures {
     fn of(lamp: &Luminaire) -> Self {
         Self { area: lamp.area, sides: smallest_rectangle(&lamp.outline) }
     }
@@ -41,23 +41,23 @@ impl Shape {
     }
 
     fn is_like(self, other: Self) -> bool {
-        let close = |a: f64, b: f64, rounding: f64| (a - b).abs() <= (LIKE * a.max(b)).max(rounding);
+        let close = |a: f64, b: f64, rounding: f64| (a - b).abs() <= (MAX_DIFFERENCE * a.max(b)).max(rounding);
         let (long, short) = (self.sides.x.max(other.sides.x), self.sides.y.min(other.sides.y).max(1.0));
         close(self.area, other.area, 0.5 * ROUNDING * long)
             && close(self.sides.x, other.sides.x, ROUNDING)
             && close(self.sides.y, other.sides.y, ROUNDING)
-            && (self.fill() - other.fill()).abs() <= FILL + ROUNDING / short
+            && (self.fill() - other.fill()).abs() <= MAX_FILL_DIFFERENCE + ROUNDING / short
     }
 
     /// The bin of a shape. Lamps in one bin are treated as equal.
     fn step(self) -> [i64; 3] {
-        [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * STEPS).round() as i64)
+        [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * BINS_PER_E).round() as i64)
     }
 }
 
 /// A bin of lamps of nearly equal shape.
-struct Step<'a> {
-    shape: Shape,
+struct Bin<'a> {
+    shape: Measures,
     lamps: Vec<&'a mut Luminaire>,
     count: usize,
 }
@@ -66,23 +66,23 @@ struct Step<'a> {
 /// count, the number of lamps in the texture that it stands for. A lamp with count 0, such as one that the border
 /// cuts, gets number 0, which means no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
-    let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
+    let mut steps: BTreeMap<[i64; 3], Bin> = BTreeMap::new();
     for (lamp, count) in lamps {
         lamp.kind = 0;
-        let shape = Shape::of(lamp);
+        let shape = Measures::of(lamp);
         if count > 0 && shape.area > 0.0 {
-            let step = steps.entry(shape.step()).or_insert(Step { shape, lamps: Vec::new(), count: 0 });
+            let step = steps.entry(shape.step()).or_insert(Bin { shape, lamps: Vec::new(), count: 0 });
             step.lamps.push(lamp);
             step.count += count;
         }
     }
-    let mut left: Vec<Step> = steps.into_values().collect();
+    let mut left: Vec<Bin> = steps.into_values().collect();
 
     // The shape that resembles most lamps forms a kind with them. Repeat this for the remaining lamps.
-    let count = |steps: &[Step]| steps.iter().map(|s| s.count).sum::<usize>();
-    let mut kinds: Vec<Vec<Step>> = Vec::new();
+    let count = |steps: &[Bin]| steps.iter().map(|s| s.count).sum::<usize>();
+    let mut kinds: Vec<Vec<Bin>> = Vec::new();
     loop {
-        let like = |step: &Step| left.iter().filter(|s| s.shape.is_like(step.shape)).map(|s| s.count).sum::<usize>();
+        let like = |step: &Bin| left.iter().filter(|s| s.shape.is_like(step.shape)).map(|s| s.count).sum::<usize>();
         let Some(shape) = left.iter().rev().max_by_key(|step| like(step)).map(|step| step.shape) else { break };
         let (of_kind, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|s| s.shape.is_like(shape));
         kinds.push(of_kind);

@@ -8,24 +8,24 @@
 
 use super::design::Designs;
 use super::instance::Instance;
+use crate::emission::analysis::sites::{Site, Sites};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lattice::cells;
-use crate::emission::lattice::continuation::Continuation;
-use crate::emission::reading::sites::{Site, Sites};
+use crate::emission::lattice::law::Law;
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
 /// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine there in at least this share of
 /// the visible cells, weighted by photo pixels. [bench emission:perspective]
-const ALWAYS: f64 = 0.93;
-/// If at most `FEW_DARK` visible cells have no shining lamp at a site, the share `MOSTLY` suffices instead of
-/// `ALWAYS`, because something may hide the missing lamps. [judged on 20 photos]
-const MOSTLY: f64 = 0.5;
-const FEW_DARK: usize = 2;
+const MIN_OCCUPANCY: f64 = 0.93;
+/// If at most `MAX_FEW_DARK` visible cells have no shining lamp at a site, the share `MIN_OCCUPANCY_FEW_DARK` suffices
+/// instead of `MIN_OCCUPANCY`, because something may hide the missing lamps. [judged on 20 photos]
+const MIN_OCCUPANCY_FEW_DARK: f64 = 0.5;
+const MAX_FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
 /// [judged on 5 photos]
-const SHARP: f64 = 0.4;
+const MIN_SHARP_SHARE: f64 = 0.4;
 /// Two positions count as one site if their distance along each axis is at most this share of a lamp's side.
 /// [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
@@ -38,7 +38,7 @@ pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
     sites: &Sites,
-    law: Continuation,
+    law: Law,
     shown: Vec<Instance>,
     (offset, size): (DVec2, DVec2),
     seed: u64,
@@ -85,7 +85,7 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     if exemplar.is_luminous_ceiling() {
         return true;
     }
-    site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
+    site.occupancy() >= if site.dark <= MAX_FEW_DARK { MIN_OCCUPANCY_FEW_DARK } else { MIN_OCCUPANCY }
 }
 
 /// Returns the sites in descending order of the number of photo pixels of their lamps. Leaves out each site that
@@ -111,6 +111,6 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
 fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
     let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);
-    let sharp: Vec<usize> = clear().filter(|l| l.weight >= SHARP * most).map(|l| l.component).collect();
+    let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * most).map(|l| l.component).collect();
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }
 }

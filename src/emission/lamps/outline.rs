@@ -19,18 +19,18 @@ use glam::DVec2;
 const TOLERANCE: f64 = 0.1;
 /// Like `TOLERANCE`, but for an outline along the corners of texels, which is used if every texel is either fully lit
 /// or unlit. This distance turns a staircase into a line.
-const STAIRCASE: f64 = 1.0;
+const STAIRCASE_TOLERANCE: f64 = 1.0;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
 /// centres would enclose only half of a single texel.
-const NARROW: f64 = 2.0;
-/// Limits for restoring sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`:
-/// maximum length of the blunt part between two sides. `MAX_EXTENDED`: maximum length by which a side is extended.
-/// `CORNER`: cosine of 60°, the minimum angle by which the outline must turn from one side to the next. A disc turns
-/// by less from one side of length `SIDE` to the next, so it gets no corners.
-const SIDE: f64 = 2.0;
-const BLUNT: f64 = 2.0;
+const MAX_NARROW_WIDTH: f64 = 2.0;
+/// Limits for restoring sharp corners, in texels. `MIN_SIDE`: minimum length of a side whose direction is used.
+/// `MAX_BLUNT`: maximum length of the blunt part between two sides. `MAX_EXTENDED`: maximum length by which a side is
+/// extended. `COS_CORNER`: cosine of 60°, the minimum angle by which the outline must turn from one side to the next.
+/// A disc turns by less from one side of length `MIN_SIDE` to the next, so it gets no corners.
+const MIN_SIDE: f64 = 2.0;
+const MAX_BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
-const CORNER: f64 = 0.5;
+const COS_CORNER: f64 = 0.5;
 /// Tolerance, in texels, within which a restored corner may lie outside the texture because of rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -90,7 +90,7 @@ impl Ring {
     /// `axis`.
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
-        let mut outline = if is_soft && narrow > NARROW {
+        let mut outline = if is_soft && narrow > MAX_NARROW_WIDTH {
             // Begin at the point farthest from the centre, so that a rotated lamp begins at the corresponding point.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
@@ -109,7 +109,7 @@ impl Ring {
 
 /// Tolerance, in texels, for simplifying an outline along the corners of texels; the lamp is `narrow` texels wide.
 pub fn staircase(narrow: f64) -> f64 {
-    STAIRCASE.min(0.3 * narrow)
+    STAIRCASE_TOLERANCE.min(0.3 * narrow)
 }
 
 /// The texel diagonally ahead of the texel corner `at` for a walk in direction `heading`: on the right if `side` is 1,
@@ -175,7 +175,7 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];
-    let is_side = |i: usize| point(i).distance(point(i + 1)) >= SIDE;
+    let is_side = |i: usize| point(i).distance(point(i + 1)) >= MIN_SIDE;
     let Some(begin) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
     let is_within = |corner: &DVec2| corner.distance(corner.clamp(first, last)) < ROUNDING;
 
@@ -202,7 +202,7 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
 fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Option<DVec2> {
     let length: f64 = between.windows(2).map(|w| w[0].distance(w[1])).sum();
     let (u, v) = ((end - a).normalize(), (b - start).normalize());
-    if length == 0.0 || length > BLUNT || u.dot(v) > CORNER {
+    if length == 0.0 || length > MAX_BLUNT || u.dot(v) > COS_CORNER {
         return None;
     }
     // Solve end + s u = start - t v for s and t.

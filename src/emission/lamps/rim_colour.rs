@@ -14,9 +14,9 @@ use glam::{DVec3, Vec3};
 /// An image in which a lit pixel exceeds this value has a high dynamic range and is not clipped.
 const MAX_CLIPPED: f32 = 1.05;
 /// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
-const BRIGHT: f32 = 0.5;
+const MIN_BRIGHTNESS: f32 = 0.5;
 /// A pixel may belong to a lamp's rim if its distance from the lamp is at most this, in pixels.
-const REACH: usize = 2;
+const RIM_WIDTH: usize = 2;
 /// A colour is read from a rim only if the rim has at least this number of pixels.
 const MIN_RIM: f64 = 8.0;
 /// Minimum ratio of a channel to the strongest channel; a weaker channel is raised to this value.
@@ -45,7 +45,7 @@ impl RimColours {
         let mut sums = vec![(DVec3::ZERO, 0.0); components.list.len() + 1];
         for (i, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
             let value = colour(i);
-            let is_rim = value.max_element() < level && value.max_element() >= BRIGHT * level;
+            let is_rim = value.max_element() < level && value.max_element() >= MIN_BRIGHTNESS * level;
             if let Some(label) = is_rim.then(|| label_near(components, i, image.width, image.height)).flatten() {
                 for sum in [label as usize, 0] {
                     sums[sum].0 += value.max(Vec3::ZERO).as_dvec3();
@@ -78,11 +78,11 @@ impl RimColours {
     }
 }
 
-/// The label of a pixel or, if the pixel has no label, of a labelled pixel within [`REACH`].
+/// The label of a pixel or, if the pixel has no label, of a labelled pixel within [`RIM_WIDTH`].
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
-    let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
-    let columns = x.saturating_sub(REACH)..(x + REACH + 1).min(width);
+    let rows = y.saturating_sub(RIM_WIDTH)..(y + RIM_WIDTH + 1).min(height);
+    let columns = x.saturating_sub(RIM_WIDTH)..(x + RIM_WIDTH + 1).min(width);
     let own = components.labels[i];
     (own != 0).then_some(own).or_else(|| {
         rows.flat_map(|y| columns.clone().map(move |x| y * width + x))

@@ -8,23 +8,24 @@ use crate::rng::Rng;
 use std::collections::BTreeMap;
 
 /// Two lamps are similar if their areas, their sides and their aspect ratios each differ by at most this share.
-const LIKE: f64 = 0.25;
+const DIFFERENCE: f64 = 0.25;
 
-/// `BLUR`: number of photo pixels by which sides may differ in addition to `LIKE`, because blur and bloom lengthen a
-/// lamp with few photo pixels. `MIN_LIKE`: maximum of both tolerances together, as a relative difference.
-const BLUR: f64 = 2.0;
+/// `BLUR_PIXELS`: number of photo pixels by which sides may differ in addition to `DIFFERENCE`, because blur and bloom
+/// lengthen a lamp with few photo pixels. `MAX_DIFFERENCE`: maximum of both tolerances together, as a relative
+/// difference.
+const BLUR_PIXELS: f64 = 2.0;
 
-const MIN_LIKE: f64 = 0.5;
+const MAX_DIFFERENCE: f64 = 0.5;
 
 /// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
-const SHARP: f64 = 0.4;
+const MIN_SHARP_SHARE: f64 = 0.4;
 
 /// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several such lamps, one is
 /// chosen at random, so that the texture keeps their variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
-        let like = (LIKE + BLUR / exemplar.photo_area[k].max(1.0).sqrt()).min(MIN_LIKE);
+        let like = (DIFFERENCE + BLUR_PIXELS / exemplar.photo_area[k].max(1.0).sqrt()).min(MAX_DIFFERENCE);
         let is_like = |j: &usize| {
             let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= like * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
@@ -35,7 +36,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
         };
         let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
         let most = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);
-        like.into_iter().filter(|&j| exemplar.photo_area[j] >= SHARP * most).collect()
+        like.into_iter().filter(|&j| exemplar.photo_area[j] >= MIN_SHARP_SHARE * most).collect()
     };
     let mut choices: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (n, instance) in instances.iter_mut().enumerate() {
@@ -59,7 +60,7 @@ pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [In
     let sharp: Vec<Vec<usize>> = (0..designs.kinds.len())
         .map(|kind| {
             let most = clear(kind).map(area).fold(0.0, f64::max);
-            clear(kind).filter(|&k| area(k) >= SHARP * most).collect()
+            clear(kind).filter(|&k| area(k) >= MIN_SHARP_SHARE * most).collect()
         })
         .collect();
     for (n, instance) in instances.iter_mut().enumerate() {

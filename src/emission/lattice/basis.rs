@@ -1,6 +1,6 @@
 //! Fits the basis vectors of a lattice to the centres of its lamps.
 
-use super::continuation::MAX_SLANT;
+use super::law::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
@@ -10,6 +10,9 @@ const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
+/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the pattern does not
+/// change, and not for a period: the lattice search returns a shift of one pixel there. [rounding]
+pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
 /// Makes a period that is nearly parallel to an image axis exactly parallel, and keeps its length. In a row of few
 /// lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.

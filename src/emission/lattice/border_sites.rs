@@ -12,10 +12,10 @@ use glam::{DMat2, DVec2};
 
 /// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
 /// than this, in periods.
-const SAME: f64 = 0.2;
+const MAX_OFF_SITE: f64 = 0.2;
 /// A position in the lattice cell counts as a site of lamps if a lamp lies there in at least this share of the cells
 /// in which the position is fully visible.
-const MADE_FOR: f64 = 0.5;
+const MIN_OCCUPANCY: f64 = 0.5;
 
 /// Marks parts of the exemplar as unusable for patches: the lattice sites that have no lamp and that the border cuts.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
@@ -49,7 +49,7 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
                 _ => cut.push([x0, y0, x1, y1]),
             }
         }
-        if f64::from(filled) >= MADE_FOR * f64::from(whole) {
+        if f64::from(filled) >= MIN_OCCUPANCY * f64::from(whole) {
             dark.extend(cut);
         }
     }
@@ -65,7 +65,7 @@ fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     for lamp in exemplar.lamps() {
         let is_there = |other: &&Component| {
             let steps = inverse * (lamp.centre - other.centre);
-            (steps - steps.round()).length() < SAME
+            (steps - steps.round()).length() < MAX_OFF_SITE
         };
         if !first.iter().any(|other| is_there(other)) {
             first.push(lamp);

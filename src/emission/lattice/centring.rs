@@ -1,6 +1,6 @@
 //! Centres a lattice in the texture, so that the border cuts as few lamps as possible.
 
-use super::continuation::Continuation;
+use super::law::Law;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
@@ -35,9 +35,9 @@ impl Bounds {
 /// lamp, or a midpoint between two or four lamps, to the texture's centre. The shift with the fewest lamps cut by the
 /// border is chosen; among equals, the one that keeps the other lamps farthest from the border. `None` without a
 /// lattice.
-pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
-    let [a, b] = continuation.lattice()?;
-    let motif = motif(exemplar, continuation);
+pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
+    let [a, b] = law.lattice()?;
+    let motif = motif(exemplar, law);
     let anchor = motif.first()?.centre();
     let middles = [DVec2::ZERO, a / 2.0, b / 2.0, (a + b) / 2.0];
     let shifts = middles.map(|from_lamp| size / 2.0 + from_lamp - anchor);
@@ -56,7 +56,7 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
 /// The bounding boxes of the lamps of one cell, which the lattice repeats; the box nearest to the exemplar's centre
 /// comes first. If the period along an axis is the exemplar's extent, all lamps along that axis are merged into one
 /// box.
-fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
+fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
         lamps = exemplar.components.list.iter().map(Bounds::of).collect();
@@ -65,16 +65,16 @@ fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     lamps.sort_by(|p, q| p.centre().distance_squared(middle).total_cmp(&q.centre().distance_squared(middle)));
     let Some(&first) = lamps.first() else { return lamps };
     let all = lamps.iter().fold(first, |all, lamp| all.with(*lamp));
-    match continuation {
-        Continuation::Lattice([a, b]) => {
+    match law {
+        Law::Lattice([a, b]) => {
             let inverse = DMat2::from_cols(a, b).inverse();
             lamps.retain(|lamp| (inverse * (lamp.centre() - first.centre())).round() == DVec2::ZERO);
             lamps
         }
-        Continuation::Row([_, across]) if across.x == 0.0 => {
+        Law::Row([_, across]) if across.x == 0.0 => {
             vec![Bounds { low: DVec2::new(first.low.x, all.low.y), high: DVec2::new(first.high.x, all.high.y) }]
         }
-        Continuation::Row(_) => {
+        Law::Row(_) => {
             vec![Bounds { low: DVec2::new(all.low.x, first.low.y), high: DVec2::new(all.high.x, first.high.y) }]
         }
         _ => vec![all],

@@ -1,6 +1,6 @@
 //! The extent of the exemplar as a period, for lights that have no period of their own.
 
-use super::continuation::Continuation;
+use super::law::Law;
 use crate::emission::agreement::statistics;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
@@ -23,10 +23,10 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The continuation by which the exemplar repeats as a whole.
-pub fn as_period(exemplar: &Exemplar) -> Continuation {
+/// The law by which the exemplar repeats as a whole.
+pub fn as_period(exemplar: &Exemplar) -> Law {
     let cell = whole_exemplar(exemplar, of(exemplar));
-    Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
+    Law::Whole([DVec2::X * cell, DVec2::Y * cell])
 }
 
 /// Whether there are too few lamps to find a period, or all lamps form one isolated group.

@@ -5,7 +5,7 @@ use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
 /// Two lamps are of one kind if each side differs by at most this share. [judged on 5 photos]
-const KIND: f64 = 0.33;
+const MAX_SIDE_DIFFERENCE: f64 = 0.33;
 /// A shift is not a period if, among the lamps that it moves onto lamps, more than this share land on a lamp of
 /// another kind. [judged on 5 photos]
 const MAX_UNLIKE: f64 = 0.4;
@@ -26,7 +26,7 @@ pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
         };
         if let Some(other) = all.iter().find(is_hit) {
             let (a, b) = (size(lamp), size(other));
-            let is_like = (a.max(b) - a.min(b)).cmple((KIND * a.max(b)).max(DVec2::splat(2.0))).all();
+            let is_like = (a.max(b) - a.min(b)).cmple((MAX_SIDE_DIFFERENCE * a.max(b)).max(DVec2::splat(2.0))).all();
             if is_like { like += 1 } else { unlike += 1 }
         }
     }

@@ -11,10 +11,10 @@ pub mod basis;
 pub mod border_sites;
 pub mod cells;
 pub mod centring;
-pub mod continuation;
 pub mod correlation;
 pub mod extent;
 pub mod kind_check;
+pub mod law;
 pub mod neighbours;
 pub mod repeats;
 
@@ -22,49 +22,49 @@ use super::exemplar::Exemplar;
 use crate::error::Result;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
-use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
+use law::Law;
 
 /// Minimum correlation of a period, relative to the highest correlation. A shift with a lower correlation probably
 /// moves lamps onto lamps of another kind. [bench emission:patterns]
-const RELATIVE_CORRELATION: f32 = 0.9;
+const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
-const SIDE: usize = 160;
+const MAX_SIDE: usize = 160;
 /// Two shifts count as parallel if the sine of the angle between them is below this: about 17°.
 /// [bench emission:patterns]
-const PARALLEL: f64 = 0.3;
+const MAX_PARALLEL_SINE: f64 = 0.3;
 
 /// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
 /// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
 /// a period if its correlation is at least `min_regularity`; at 1 there are no periods.
-pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
+pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Law, f64) {
     if min_regularity >= 1.0 {
-        return (Continuation::Free, 0.0);
+        return (Law::Free, 0.0);
     }
     let periods = periods(exemplar, correlated, min_regularity);
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let extent = extent::of(exemplar);
     match periods[..] {
-        [(a, _), (b, _)] => (Continuation::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
+        [(a, _), (b, _)] => (Law::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
         [(a, _)] => (row(exemplar, a, extent), goodness),
-        _ => (lawless(exemplar, extent), 0.0),
+        _ => (without_period(exemplar, extent), 0.0),
     }
 }
 
 /// A row with the given period; the extent of the exemplar serves as its second period.
-pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
+pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Law {
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
-    Continuation::Row([basis::straight(period), across])
+    Law::Row([basis::straight(period), across])
 }
 
 /// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
-pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
+pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
     if !extent::has_few_lamps(exemplar, extent) {
-        return Continuation::Free;
+        return Law::Free;
     }
     extent::as_period(exemplar)
 }
@@ -85,7 +85,7 @@ impl Correlated {
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);
-        let reduce = |n: usize| (n * SIDE.min(longest)).div_ceil(longest).max(1);
+        let reduce = |n: usize| (n * MAX_SIDE.min(longest)).div_ceil(longest).max(1);
         let (width, height) = (reduce(working.width), reduce(working.height));
         let mut mask = Image::new(working.width, working.height, 2)?;
         for (i, pixel) in mask.data.chunks_exact_mut(2).enumerate().filter(|(i, _)| working.shown[*i] && is_within(*i))
@@ -105,7 +105,7 @@ impl Correlated {
 /// next that is not parallel to it.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
-    for (shift, value) in shifts(exemplar, correlated, min_regularity, RELATIVE_CORRELATION, usize::MAX) {
+    for (shift, value) in shifts(exemplar, correlated, min_regularity, MIN_RELATIVE_CORRELATION, usize::MAX) {
         if periods.len() < 2 && !periods.iter().any(|p| is_parallel(p.0, shift)) {
             periods.push((shift, value));
         }
@@ -115,7 +115,7 @@ fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) ->
 
 /// Whether two shifts are nearly parallel.
 pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
-    a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
+    a.normalize().perp_dot(b.normalize()).abs() < MAX_PARALLEL_SINE
 }
 
 /// The shortest shifts that map the lights onto themselves, with their correlations. A shift must move lamps onto

@@ -4,7 +4,7 @@
 //! lamps in rows and columns even if the distant lamps are blurred. If wide and narrow gaps between lamps alternate,
 //! these distances alternate too, and the distance to the second neighbour gives the period.
 
-use crate::emission::exemplar::evidence::Evidence;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
@@ -12,13 +12,13 @@ use glam::DVec2;
 const ORDERS: usize = 2;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.
-pub fn lattices(lamps: &[Evidence]) -> Vec<[DVec2; 2]> {
+pub fn lattices(lamps: &[MeasuredLamp]) -> Vec<[DVec2; 2]> {
     let [across, down] = periods(lamps);
     across.iter().flat_map(|x| down.iter().map(|y| [DVec2::X * *x, DVec2::Y * *y])).collect()
 }
 
 /// Periods along x and along y, at most [`ORDERS`] each, in unwarped pixels.
-fn periods(lamps: &[Evidence]) -> [Vec<f64>; 2] {
+fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| {
         let found = (1..=ORDERS).filter_map(|order| {
             let distances = lamps.iter().filter_map(|lamp| Some((distance(lamps, lamp, axis, order)?, lamp.weight)));
@@ -30,9 +30,9 @@ fn periods(lamps: &[Evidence]) -> [Vec<f64>; 2] {
 
 /// Distance along an axis from a lamp to its `order`-th neighbour in the positive direction, within the lamp's row or
 /// column. `None` if there are fewer neighbours.
-fn distance(lamps: &[Evidence], lamp: &Evidence, axis: usize, order: usize) -> Option<f64> {
-    let offset = |other: &Evidence| other.centre - lamp.centre;
-    let is_beside = |other: &&Evidence| {
+fn distance(lamps: &[MeasuredLamp], lamp: &MeasuredLamp, axis: usize, order: usize) -> Option<f64> {
+    let offset = |other: &MeasuredLamp| other.centre - lamp.centre;
+    let is_beside = |other: &&MeasuredLamp| {
         let reach = 0.25 * (lamp.size + other.size);
         offset(other)[1 - axis].abs() < reach[1 - axis] && offset(other)[axis] > reach[axis]
     };

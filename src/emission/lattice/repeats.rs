@@ -5,14 +5,14 @@ use glam::DVec2;
 
 /// Number of standard errors that are subtracted from each correlation before the highest one is sought. Without this,
 /// shifts that compare few lamps would often have the highest correlation by chance.
-const CHANCE: f32 = 2.0;
+const STANDARD_ERRORS: f32 = 2.0;
 
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
-const UNCHANGING: f32 = 0.95;
+const MIN_UNCHANGING: f32 = 0.95;
 
-/// A peak counts only if the correlation falls by `FLAT.1` within `FLAT.0` pixels on both sides of it, along x or y,
-/// whichever is closer to the shift. Otherwise the lights do not repeat but run on in that direction.
-const FLAT: (isize, f32) = (8, 0.02);
+/// A peak counts only if the correlation falls by `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of it, along x
+/// or y, whichever is closer to the shift. Otherwise the lights do not repeat but run on in that direction.
+const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.
 pub struct Repeat {
@@ -23,10 +23,10 @@ pub struct Repeat {
 }
 
 impl Repeat {
-    /// The correlation minus [`CHANCE`] standard errors, because it may be too high by chance. `lights` is the number
-    /// of lights that are compared.
+    /// The correlation minus [`STANDARD_ERRORS`] standard errors, because it may be too high by chance. `lights` is
+    /// the number of lights that are compared.
     pub fn lower_bound(&self, lights: f32) -> f32 {
-        self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
+        self.value - STANDARD_ERRORS * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 
@@ -35,7 +35,7 @@ impl Repeat {
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
-    !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
+    !values.is_empty() && values.iter().all(|&v| v >= MIN_UNCHANGING)
 }
 
 /// Finds the local maxima of the correlation at sub-pixel precision, in one half-plane of shifts. `unchanging` is a
@@ -68,8 +68,8 @@ pub fn peaks(
             });
             let (ux, uy) = if x.abs() > y { (1, 0) } else { (0, 1) };
             let is_flat = [-1, 1].into_iter().any(|side| {
-                (1..=FLAT.0).all(|k| {
-                    correlation.at(x + side * k * ux, y + side * k * uy, 1.0).is_some_and(|v| v > value - FLAT.1)
+                (1..=MIN_FALL.0).all(|k| {
+                    correlation.at(x + side * k * ux, y + side * k * uy, 1.0).is_some_and(|v| v > value - MIN_FALL.1)
                 })
             });
             if is_peak && !is_flat {

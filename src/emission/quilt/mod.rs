@@ -20,7 +20,7 @@ pub mod seam;
 pub mod stretched;
 
 use super::exemplar::area_sums::AreaSums;
-use super::lattice::continuation::Continuation;
+use super::lattice::law::Law;
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
@@ -49,7 +49,7 @@ struct Quilt<'a> {
     open: Vec<u32>,
     /// For each shift used so far, its label: its index in the patch map's list of shifts.
     labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
-    continuation: Continuation,
+    law: Law,
     /// Position of the lattice's origin, in unwarped pixels.
     offset: DVec2,
     /// `bounds`: bounding box of the usable pixels. `admissible`, only without a lattice: the top left corner of every
@@ -64,7 +64,7 @@ struct Quilt<'a> {
 /// lattice's origin in unwarped pixels.
 pub fn place(
     guide: &Guide,
-    continuation: Continuation,
+    law: Law,
     offset: DVec2,
     (width, height): (usize, usize),
     block: usize,
@@ -75,7 +75,7 @@ pub fn place(
     let bounds = working.usable_box();
     let largest = [block.min(bounds[2] - bounds[0]).min(width), block.min(bounds[3] - bounds[1]).min(height)];
     let usable = AreaSums::new(|i| working.usable[i], working.width, working.height)?;
-    let is_lattice = continuation.lattice().is_some();
+    let is_lattice = law.lattice().is_some();
     let ([w, h], admissible) = match is_lattice {
         true => (largest, Vec::new()),
         false => admissible_corners(&usable, working.width, bounds, largest),
@@ -88,7 +88,7 @@ pub fn place(
         // Allocate a row of blocks, and the row of pixels above it.
         open: try_vec(width * (h + 1), NONE)?,
         labels: BTreeMap::new(),
-        continuation,
+        law,
         offset,
         bounds,
         admissible,
@@ -213,7 +213,7 @@ impl Quilt<'_> {
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;
-        match self.continuation.lattice() {
+        match self.law.lattice() {
             Some(basis) => shifts.extend(self.lattice_shifts(rect, basis)),
             None => {
                 let mut rng = Rng::new(self.seed, &[rect.x as u64, rect.y as u64]);
@@ -264,13 +264,13 @@ impl Quilt<'_> {
     /// each later block keeps the shift of a neighbour if that shift is equally good.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
-        if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {
+        if matches!(self.law, Law::Row(_)) && self.patch_map.shifts.is_empty() {
             let length = |s: &&Scored| (s.shift.exact - self.offset).length();
             return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
         }
         let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
         let equal: Vec<_> = scored.iter().filter(|s| s.error <= self.comparison.equally_good(least)).collect();
-        if matches!(self.continuation, Continuation::Row(_)) {
+        if matches!(self.law, Law::Row(_)) {
             let around = self.neighbours(rect);
             if let Some(same) = equal.iter().find(|s| around.contains(&s.shift)) {
                 return Some(**same);

@@ -3,6 +3,7 @@
 use super::patch_map::{NONE, PatchMap, Shift, Shifts};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
+use crate::emission::lattice::basis::MAX_UNCHANGING_LENGTH;
 use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
@@ -18,7 +19,7 @@ pub fn stretch(
     offset: DVec2,
     size: DVec2,
 ) -> Result<PatchMap> {
-    let has_cells = DVec2::from(own.map(|period| f64::from(u8::from(period.length() > UNCHANGING))));
+    let has_cells = DVec2::from(own.map(|period| f64::from(u8::from(period.length() > MAX_UNCHANGING_LENGTH))));
     let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
     let to_cells = stretched.inverse();
     let working = &exemplar.working;
@@ -62,7 +63,3 @@ pub fn stretch(
     out.shifts = shifts.list;
     Ok(out)
 }
-
-/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the lights do not
-/// change, and not for a period.
-const UNCHANGING: f64 = 1.5;

@@ -21,7 +21,7 @@ fn one_lamp_that_touches_every_border_goes_on_as_it_meets_itself() {
     let cross = Design::new(64, 64, |x, y| from_middle(x, y).min_element() < 5.0);
     for (name, exemplar) in [("diamond", diamond), ("frame", frame), ("cross", cross)] {
         let result = exemplar.run(&Params { width: 200, height: 180, ..Params::default() }).unwrap();
-        assert!(repeats(&exemplar, &result), "{name}: {:?}", result.continuation);
+        assert!(repeats(&exemplar, &result), "{name}: {:?}", result.law);
     }
 }
 
@@ -58,7 +58,7 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
 fn a_period_longer_than_the_exemplar_is_its_extent() {
     let exemplar = Design::new(100, 80, grid(140.0, 110.0, 30.0, 20.0));
     let result = exemplar.run(&Params { width: 400, height: 300, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Tile(_)), "{:?}", result.continuation);
+    assert!(matches!(result.law, Law::Whole(_)), "{:?}", result.law);
     assert_eq!(result.luminaires.len(), 16);
     assert!(result.luminaires.iter().all(|l| (l.area / 600.0 - 1.0).abs() < 0.01));
     assert!(repeats(&exemplar, &result));

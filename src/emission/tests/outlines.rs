@@ -93,7 +93,7 @@ fn outlines_lie_within_a_quarter_of_a_texel() {
             ];
             let params = Params { width: 112, height: 112, scale, ..Params::default() };
             let result = design(side, side, &shapes).run(&params).unwrap();
-            assert_eq!((result.continuation, result.luminaires.len()), (Continuation::Copy, 4));
+            assert_eq!((result.law, result.luminaires.len()), (Law::Copy, 4));
             for (n, shape) in shapes.iter().enumerate() {
                 let truth: Vec<DVec2> = shape.iter().map(|p| *p / scale).collect();
                 let apart = |l: &&Luminaire| l.centre.distance(centre(n) / scale);

@@ -73,17 +73,17 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
 fn lamps_without_a_place_are_left_out() {
     let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
-    let restricted = |ground: &dyn Fn(usize, usize) -> Placement| {
-        let ground: Vec<Placement> = (0..400 * 400).map(|i| ground(i % 400, i / 400)).collect();
+    let restricted = |zones: &dyn Fn(usize, usize) -> TexelZone| {
+        let zones: Vec<TexelZone> = (0..400 * 400).map(|i| zones(i % 400, i / 400)).collect();
         let mut emission = result.clone();
-        emission.restrict(&ground, Monitor::default().job()).map(|()| emission)
+        emission.restrict(&zones, Monitor::default().job()).map(|()| emission)
     };
     // A keep-out zone that touches one lamp must remove all of that lamp, and no other lamp.
     let lamp = &result.luminaires[result.luminaires.len() / 2];
     let corner = lamp.outline[0];
     let touched = restricted(&|x, y| {
         let near = (x as f64 + 0.5 - corner.x).abs() < 1.0 && (y as f64 + 0.5 - corner.y).abs() < 1.0;
-        if near { Placement::KeepOut } else { Placement::Open }
+        if near { TexelZone::KeepOut } else { TexelZone::Open }
     })
     .unwrap();
     assert_eq!(touched.luminaires.len(), result.luminaires.len() - 1);
@@ -97,9 +97,9 @@ fn lamps_without_a_place_are_left_out() {
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
     let mut without = coarse.clone();
-    let ground: Vec<Placement> =
-        (0..150 * 150).map(|i| if i == at { Placement::KeepOut } else { Placement::Open }).collect();
-    without.restrict(&ground, Monitor::default().job()).unwrap();
+    let zones: Vec<TexelZone> =
+        (0..150 * 150).map(|i| if i == at { TexelZone::KeepOut } else { TexelZone::Open }).collect();
+    without.restrict(&zones, Monitor::default().job()).unwrap();
     let near = |i: usize| DVec2::new((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5).distance(lamp_out.centre) < 7.0;
     assert!((0..150 * 150).filter(|&i| near(i)).all(|i| without.texture.data[3 * i..3 * i + 3] == [0.0; 3]));
     assert!(
@@ -109,12 +109,12 @@ fn lamps_without_a_place_are_left_out() {
     );
     // Hidden parts of a lamp are cut off.
     let half =
-        restricted(&|x, _| if x < lamp.centre.x as usize { Placement::Hidden } else { Placement::Open }).unwrap();
+        restricted(&|x, _| if x < lamp.centre.x as usize { TexelZone::Hidden } else { TexelZone::Open }).unwrap();
     assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
     assert!(
         half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3])
     );
-    assert_eq!(restricted(&|_, _| Placement::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
+    assert_eq!(restricted(&|_, _| TexelZone::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn tileable_textures_repeat_without_a_seam() {
     {
         let params = Params { width, height, scale, tileable: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
-        assert_eq!(matches!(result.continuation, Continuation::Free), name == "free");
+        assert_eq!(matches!(result.law, Law::Free), name == "free");
         // Repeat the texture twice along each axis. In the central part of one period, each lamp must appear exactly
         // once, and complete.
         let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
@@ -148,7 +148,7 @@ fn tileable_textures_repeat_without_a_seam() {
             "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
             _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
         }
-        if let Some([a, b]) = result.continuation.lattice() {
+        if let Some([a, b]) = result.law.lattice() {
             // All lamps must lie on the stretched lattice, one in each cell, and not at the distances of the exemplar.
             let lamps = inner(&result.luminaires, width, height);
             let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
@@ -178,7 +178,7 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
         (30.0..70.0).contains(&x) && (0.0..7.0).contains(&pane) && along < if short { 20.0 } else { 36.0 }
     });
     let result = exemplar.run(&Params { width: 250, height: 960, ..Params::default() }).unwrap();
-    let Continuation::Row([period, across]) = result.continuation else { panic!("{:?}", result.continuation) };
+    let Law::Row([period, across]) = result.law else { panic!("{:?}", result.law) };
     assert!((period - DVec2::Y * 50.0).length() < 0.5 && across == DVec2::X * 100.0, "{period} {across}");
     for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
         assert_eq!(m, result.mask.data[i - 100]);

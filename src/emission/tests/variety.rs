@@ -25,7 +25,7 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     let level = |[i, j]: [i64; 2]| 0.3 + 0.5 * Rng::new(5, &[i as u64, j as u64]).next_f32();
     let exemplar = of_levels(400, level);
     let result = exemplar.run(&Params { width: 1200, height: 1200, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Lattice(_)));
+    assert!(matches!(result.law, Law::Lattice(_)));
     let lamps = inner(&result.luminaires, 1200, 1200);
     let known: Vec<f64> = (0..100).map(|k| f64::from(level([k % 10, k / 10]))).collect();
     let source = |lamp: &Luminaire| {
@@ -66,7 +66,7 @@ fn lamps_off_their_places_stay_as_far_off_and_no_farther() {
         (DVec2::new(x, y) - centre).abs().max_element() < 8.0
     });
     let result = exemplar.run(&Params { width: 1200, height: 1000, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
     let basis = [DVec2::X * period, DVec2::Y * period];
     let phase = |result: &Emission, width: usize, height: usize| {
         let centres: Vec<DVec2> = inner(&result.luminaires, width, height).iter().map(|l| l.centre).collect();
@@ -97,7 +97,7 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
         square(p) < 8.0 || discs.iter().any(|d| d.distance(p) < 4.0)
     });
     let result = exemplar.run(&Params { width: 1152, height: 1056, ..Params::default() }).unwrap();
-    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
     let lamps = inner(&result.luminaires, 1152, 1056);
     let (squares, round): (Vec<&Luminaire>, Vec<&Luminaire>) = lamps.into_iter().partition(|l| l.area > 150.0);
     assert!(squares.iter().all(|l| (l.area - 256.0).abs() < 30.0), "a square lamp is cut or has met another");
@@ -125,7 +125,7 @@ fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
             grid(40.0, 36.0, 16.0, 12.0)(x, y) && Rng::new(draw, &cell).next_f64() < 0.9
         });
         let measured = measure(&exemplar.input(), &Params::default(), Monitor::default().job()).unwrap();
-        let [a, b] = measured.reading.continuation.lattice().unwrap();
+        let [a, b] = measured.analysis.law.lattice().unwrap();
         let per_cell = a.perp_dot(b).abs() / (40.0 * 36.0);
         if (per_cell - 1.0).abs() > 0.01 {
             wrong.push((draw, per_cell));
@@ -149,7 +149,7 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
     let mut sum = 0.0;
     for seed in seeds.clone() {
         let result = exemplar.run(&Params { width: 800, height: 800, seed, ..Params::default() }).unwrap();
-        assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+        assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
         // Divide the light by the area of a lamp and by the number of cells, 20 × 20.
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }

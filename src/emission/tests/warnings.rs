@@ -1,7 +1,7 @@
 //! Tests that each warning about textures is raised for a bad texture, and that a good texture raises none.
 
 use super::*;
-use crate::emission::{given, statistics::Statistics};
+use crate::emission::{from_texture, statistics::Statistics};
 use crate::image::Image;
 use crate::job::Monitor;
 use glam::DVec2;
@@ -9,11 +9,11 @@ use glam::DVec2;
 /// A texture of four lamps, with the fields of a texture that was made from a photo.
 fn made() -> Emission {
     let lamps = Image::from_fn(32, 32, |x, y| [f32::from(x % 16 < 6 && y % 16 < 6); 3]).unwrap();
-    let own = given(&lamps, Monitor::default().job()).unwrap();
+    let own = from_texture(&lamps, Monitor::default().job()).unwrap();
     assert_eq!(own.warnings(), [], "a texture of the caller's");
     Emission {
         exemplar_metadata: Image::new(4, 4, 3).unwrap(),
-        continuation: Continuation::Lattice([DVec2::new(16.0, 0.0), DVec2::new(0.0, 16.0)]),
+        law: Law::Lattice([DVec2::new(16.0, 0.0), DVec2::new(0.0, 16.0)]),
         regularity: 0.9,
         statistics: [Statistics::default(); 2],
         error: 0.02,
@@ -55,12 +55,12 @@ fn a_single_lamp_is_no_pattern_but_may_be_copied() {
     let single = Emission { exemplar_lamps: 1, ..made() };
     assert_eq!(codes(&single), [Code::FewLamps]);
     assert_eq!((single.warnings()[0].severity, single.warnings()[0].limit), (1.0, 2.0));
-    assert_eq!(codes(&Emission { continuation: Continuation::Copy, ..single }), []);
+    assert_eq!(codes(&Emission { law: Law::Copy, ..single }), []);
 }
 
 #[test]
 fn free_patches_raise_a_warning_where_they_differ() {
-    let free = |error| Emission { continuation: Continuation::Free, regularity: 0.0, error, ..made() };
+    let free = |error| Emission { law: Law::Free, regularity: 0.0, error, ..made() };
     assert_eq!(codes(&free(0.05)), []);
     assert_eq!(codes(&free(0.2)), [Code::NoLattice]);
     assert_eq!(codes(&free(0.9)), [Code::PatternUncertain, Code::NoLattice]);

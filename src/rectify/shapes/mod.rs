@@ -22,7 +22,7 @@ use crate::geometry::FocalSource;
 use crate::image::Image;
 use crate::job::Job;
 use likeness::Shape;
-use tilt::{Found, Tilt};
+use tilt::{Tilt, TiltEstimate};
 
 /// Minimum number of shapes for an estimate: two shapes of one kind give six measurements (the size and the two
 /// components of the stretch of each) for the five unknowns. [convention]
@@ -48,7 +48,7 @@ impl View {
         }
         let found = tilt::find(&shapes, (by_lines, error), self.expected_focal, job)?;
         let better = found.filter(|found| is_better(&shapes, &found.tilt, &by_lines));
-        Ok(better.map(|found: Found| self.retilted(&found, &shapes, [plane.width, plane.height])))
+        Ok(better.map(|found: TiltEstimate| self.retilted(&found, &shapes, [plane.width, plane.height])))
     }
 
     /// Returns the tilt of the plane according to the lines, and the standard deviation of the plane's normal in

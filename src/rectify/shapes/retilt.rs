@@ -1,7 +1,7 @@
 //! Corrects a view so that its plane has the tilt that was found from the lamps.
 
 use super::likeness::{self, Shape};
-use super::tilt::{Found, Tilt};
+use super::tilt::{Tilt, TiltEstimate};
 use crate::geometry::{FocalSource, Perspective, Segment};
 use crate::rectify::sphere::{Frame, WeightedLine, deviation, project, refine, round_covariance};
 use crate::rectify::{VanishingPoint, View, camera, manhattan};
@@ -22,7 +22,7 @@ const MIN_SUPPORT: usize = 3;
 impl View {
     /// Returns the view whose plane has the tilt in `found`. The axes are rotated about the plane's normal so that
     /// most lines run along them.
-    pub(super) fn retilted(&self, found: &Found, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
+    pub(super) fn retilted(&self, found: &TiltEstimate, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
         let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();
         let indexed = frame.weighted_lines(&segments);

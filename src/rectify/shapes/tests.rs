@@ -1,7 +1,7 @@
 use super::*;
 use crate::geometry::Perspective;
 use crate::job::Monitor;
-use crate::rectify::focal::Expected;
+use crate::rectify::focal::FocalPrior;
 use crate::rectify::sphere::round_covariance;
 use crate::rectify::{Params, VanishingPoint};
 use glam::{DMat3, DVec2, DVec3};
@@ -37,7 +37,7 @@ fn view(normal: DVec3, error: f64) -> View {
         perspective,
         squareness: [None; 3],
         distortion: None,
-        expected_focal: Expected::new(&Params::default(), SIZE[0]),
+        expected_focal: FocalPrior::new(&Params::default(), SIZE[0]),
     }
 }
 

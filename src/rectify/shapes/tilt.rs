@@ -6,7 +6,7 @@ use crate::exec;
 use crate::geometry::linear;
 use crate::job::Job;
 use crate::rectify::camera::FREE_ERROR;
-use crate::rectify::focal::Expected;
+use crate::rectify::focal::FocalPrior;
 use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
 use glam::{DMat3, DVec3};
 
@@ -48,7 +48,7 @@ pub struct Tilt {
 
 /// A tilt and its uncertainty.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
+pub struct TiltEstimate {
     pub tilt: Tilt,
     /// Covariance of the normal in radians squared, and standard deviation of the logarithm of the focal length
     /// (`focal_spread`).
@@ -58,18 +58,18 @@ pub struct Found {
 
 /// The total cost of a tilt: the differences between the shapes, plus the deviations from the lines, from the expected
 /// focal length and from an upright camera.
-struct Total<'a> {
+struct TotalCost<'a> {
     shapes: &'a [Shape],
     /// The normal that the lines imply, and its standard deviation in radians.
     lines: DVec3,
     lines_error: f64,
-    expected: Expected,
+    expected: FocalPrior,
 }
 
 /// A function that computes the cost of the shapes from the normal of their plane and the focal length.
 type Cost = fn(&[Shape], DVec3, f64) -> f64;
 
-impl Total<'_> {
+impl TotalCost<'_> {
     fn of(&self, tilt: &Tilt) -> f64 {
         self.by(likeness::cost, tilt)
     }
@@ -92,8 +92,13 @@ impl Total<'_> {
 
 /// Finds the tilt with the least cost, given the normal and focal length that the lines imply. `None` if the cost of
 /// every tilt tried is infinite.
-pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected, job: Job) -> Result<Option<Found>> {
-    let total = Total { shapes, lines: by_lines.normal, lines_error: error, expected };
+pub fn find(
+    shapes: &[Shape],
+    (by_lines, error): (Tilt, f64),
+    expected: FocalPrior,
+    job: Job,
+) -> Result<Option<TiltEstimate>> {
+    let total = TotalCost { shapes, lines: by_lines.normal, lines_error: error, expected };
     let is_known = expected.spread < KNOWN_FOCAL;
     let steps = if is_known { 0 } else { FOCALS };
     let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
@@ -112,7 +117,7 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let refined = exec::map(starts.len(), job.part(0.8, 1.0), |k| refine(&total, starts[k].1, is_known))?;
     let Some((_, tilt)) = refined.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(None) };
     let (covariance, focal_spread) = covariance(&total, &tilt, is_known);
-    Ok(Some(Found { tilt, covariance, focal_spread }))
+    Ok(Some(TiltEstimate { tilt, covariance, focal_spread }))
 }
 
 /// Returns the k-th of [`DIRECTIONS`] directions spread evenly over the sphere (a Fibonacci lattice).
@@ -132,7 +137,7 @@ fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
 
 /// Refines a tilt by a pattern search: takes the best step along an axis or a diagonal, and halves the step if no step
 /// decreases the cost. Returns the final cost and tilt.
-fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
+fn refine(total: &TotalCost, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     let mut least = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
     let around = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.0]];
@@ -150,7 +155,7 @@ fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
 
 /// Computes the covariance of the normal, and the standard deviation of the logarithm of the focal length, from the
 /// curvature of the cost: twice the inverse of its Hessian.
-fn covariance(total: &Total, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
+fn covariance(total: &TotalCost, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
     let at = |by: [f64; 3]| total.of(&moved(tilt, by));
     let unit = |k: usize, size: f64| std::array::from_fn(|i| if i == k { size } else { 0.0 });
     let middle = at([0.0; 3]);

@@ -74,7 +74,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
         let triangles = [(0, 0), (0, 1)];
         let goal = Goal {
-            place: Place::Surface(&triangles),
+            geometry: TargetGeometry::Surface(&triangles),
             quantity: Quantity::Incident,
             target: Vec3::ONE,
             aspect: Aspect::Colour,
@@ -82,7 +82,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
             weight: 1.0,
         };
         let grid = Goal {
-            place: Place::Grid {
+            geometry: TargetGeometry::Grid {
                 origin: Vec3::splat(0.2 * size),
                 across: Vec3::X * 0.5 * size,
                 down: Vec3::Z * 0.5 * size,
@@ -154,7 +154,7 @@ fn a_lamp_seen_edge_on_is_dark() {
     let error = Pool::new(1).unwrap().run(|| run(&input, &params, Monitor::default().job())).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Unreachable);
     let goal = Goal {
-        place: Place::Surface(input.target_triangles),
+        geometry: TargetGeometry::Surface(input.target_triangles),
         quantity: Quantity::Incident,
         target: Vec3::ONE,
         aspect: Aspect::Colour,

@@ -23,14 +23,14 @@ fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
 
 const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
 
-fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
-    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, constraint: EXACTLY, weight: 1.0 }
+fn goal(geometry: TargetGeometry<'_>, target: Vec3) -> Goal<'_> {
+    Goal { geometry, quantity: Quantity::Incident, target, aspect: Aspect::Colour, constraint: EXACTLY, weight: 1.0 }
 }
 
 /// A horizontal square with sides of 1 m, at desk height, centred under the point (x, z) of the ceiling.
-fn desk(x: f32, z: f32) -> Place<'static> {
+fn desk(x: f32, z: f32) -> TargetGeometry<'static> {
     let origin = Vec3::new(x - 0.5, 0.8, z - 0.5);
-    Place::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }
+    TargetGeometry::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }
 }
 
 fn respond(world: &World, lamps: &Lamps, goals: &[Goal]) -> Responses {
@@ -42,7 +42,7 @@ fn respond(world: &World, lamps: &Lamps, goals: &[Goal]) -> Responses {
 #[test]
 fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0; 4]);
-    let responses = respond(&world, &lamps, &[goal(Place::Surface(FLOOR), Vec3::ONE)]);
+    let responses = respond(&world, &lamps, &[goal(TargetGeometry::Surface(FLOOR), Vec3::ONE)]);
     let params = Params { paths: 1 << 15, target_error: 0.0, quantity: Quantity::Incident, ..Params::default() };
     let input = Input { world: &world, emitter: 1, target_triangles: FLOOR, target: Vec3::ONE };
     let whole = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap());
@@ -68,7 +68,7 @@ fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
 fn one_group_is_the_closed_form_and_bounds_hold() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let target = Vec3::splat(20.0);
-    let goals = [goal(Place::Surface(FLOOR), target)];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), target)];
     let responses = respond(&world, &lamps, &goals).grouped(&[0, 0], 1).unwrap();
     let free = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let expected = 20.0 / responses.all(0).mean.x;
@@ -89,7 +89,7 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
 #[test]
 fn groups_of_equal_or_very_different_strength_and_dark_goals() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0, 1.0, 1.0, 1e-12]);
-    let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0))];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), Vec3::splat(20.0))];
     let responses = respond(&world, &lamps, &goals);
     let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let x: Vec<f64> = solution.scale.iter().map(|x| x.x).collect();
@@ -108,7 +108,7 @@ fn groups_of_equal_or_very_different_strength_and_dark_goals() {
         assert!(finite && met == solution.unreachable.is_none(), "{solution:?}");
     }
     // A goal of darkness switches the lamps off.
-    let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
+    let dark = [goal(TargetGeometry::Surface(FLOOR), Vec3::ZERO)];
     let off = powers(&responses, &dark, &GroupParams::default()).unwrap();
     assert!(off.scale.iter().all(|x| *x == DVec3::ZERO) && off.unreachable.is_none(), "{off:?}");
     // There are two desks, each below a lamp; the first is to be brighter.
@@ -140,7 +140,7 @@ fn other_light_that_is_too_bright_is_named() {
     let mut scene = (**world.scene()).clone();
     scene.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
     let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
-    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), Vec3::ONE)];
     let responses = respond(&world, &lamps, &goals);
     let params = GroupParams { colour: Colour::PerChannel, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
@@ -166,7 +166,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
         powers(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
     };
     let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::PerChannel, ..GroupParams::default() });
-    let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(Place::Surface(FLOOR), target) };
+    let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(TargetGeometry::Surface(FLOOR), target) };
     // A floor that absorbs red reflects none of it.
     let mut redless = (**world.scene()).clone();
     redless.materials[0].base_color.x = 0.0;
@@ -232,7 +232,7 @@ fn limits_count_on_one_side() {
     let traced = [at(0.9, 0.9, 1.0, Constraint::Exactly), at(3.1, 3.1, 1.0, Constraint::Exactly)];
     let responses = respond(&world, &lamps, &traced);
     let solve = |first, second| {
-        let goals = [Goal { place: traced[0].place, ..first }, Goal { place: traced[1].place, ..second }];
+        let goals = [Goal { geometry: traced[0].geometry, ..first }, Goal { geometry: traced[1].geometry, ..second }];
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, constraint| at(0.0, 0.0, least, constraint);
@@ -271,7 +271,7 @@ fn limits_count_on_one_side() {
 fn powers_in_steps() {
     let places: Vec<[usize; 2]> = (0..16).map(|i| [1 + 4 * (i % 4), 1 + 4 * (i / 4)]).collect();
     let (world, lamps) = lamp_room(&places, &[1.0; 16]);
-    let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0)), goal(desk(1.0, 1.0), Vec3::splat(25.0))];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), Vec3::splat(20.0)), goal(desk(1.0, 1.0), Vec3::splat(25.0))];
     let responses = respond(&world, &lamps, &goals);
     let solve = |levels: &[f64]| {
         let params = GroupParams { levels: levels.to_vec(), tolerance: 0.02, ..GroupParams::default() };
@@ -316,7 +316,7 @@ fn luminaires_are_lamps() {
         .iter()
         .zip([500.0, 300.0])
         .map(|(desk, lux)| {
-            let place = Place::Grid { origin: *desk - (across + down) / 2.0, across, down, normal: Vec3::Y };
+            let place = TargetGeometry::Grid { origin: *desk - (across + down) / 2.0, across, down, normal: Vec3::Y };
             goal(place, Vec3::splat(lux / std::f32::consts::PI))
         })
         .collect();
@@ -350,7 +350,7 @@ fn luminaires_are_lamps() {
 fn free_colours_meet_a_coloured_goal() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let target = Vec3::new(30.0, 20.0, 10.0);
-    let goals = [goal(Place::Surface(FLOOR), target)];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), target)];
     let responses = respond(&world, &lamps, &goals);
     let params = GroupParams { colour: Colour::PerChannel, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
@@ -367,7 +367,7 @@ fn free_colours_meet_a_coloured_goal() {
 fn intervals_of_single_lamps_cover() {
     let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();
     let (world, lamps) = lamp_room(&places, &[1.0; 64]);
-    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), Vec3::ONE)];
     let trace = |paths, seed| {
         let params = Params { paths, target_error: 0.0, seed, ..Params::default() };
         let monitor = Monitor::default();
@@ -389,7 +389,7 @@ fn intervals_of_single_lamps_cover() {
 #[test]
 fn responses_have_the_same_bits_for_any_number_of_threads() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
-    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE), goal(desk(1.0, 1.0), Vec3::ONE)];
+    let goals = [goal(TargetGeometry::Surface(FLOOR), Vec3::ONE), goal(desk(1.0, 1.0), Vec3::ONE)];
     let params = Params { paths: 1 << 12, ..Params::default() };
     let with = |threads| {
         let responses = Pool::new(threads)

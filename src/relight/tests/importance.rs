@@ -15,7 +15,7 @@ fn coloured_room() -> Scene {
 
 fn floor(quantity: Quantity) -> Goal<'static> {
     Goal {
-        place: Place::Surface(FLOOR),
+        geometry: TargetGeometry::Surface(FLOOR),
         quantity,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
@@ -26,7 +26,7 @@ fn floor(quantity: Quantity) -> Goal<'static> {
 
 fn map(scene: &Scene, cells: usize, error: f32) -> Importance {
     let tracing = Params { target_error: error, ..Params::default() };
-    let params = MapParams { width: cells, height: cells, tracing };
+    let params = ImportanceParams { width: cells, height: cells, tracing };
     let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
     let goal = floor(Quantity::Outgoing);
     Pool::new(2).unwrap().run(|| Importance::trace(&scene, 1, &goal, &params, monitor.job()).unwrap())
@@ -122,8 +122,11 @@ fn cells_limit_the_band() {
 #[test]
 fn a_map_needs_texture_coordinates_and_has_the_same_bits() {
     let mut scene = coloured_room();
-    let params =
-        MapParams { width: 8, height: 8, tracing: Params { paths: 1 << 12, target_error: 0.0, ..Params::default() } };
+    let params = ImportanceParams {
+        width: 8,
+        height: 8,
+        tracing: Params { paths: 1 << 12, target_error: 0.0, ..Params::default() },
+    };
     let goal = floor(Quantity::Incident);
     let trace = |scene: &Scene, threads| {
         let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());

@@ -52,7 +52,7 @@ fn gradients_are_central_differences() {
     }
 }
 
-fn place(texture: &Image, params: &PlaceParams) -> Placement {
+fn place(texture: &Image, params: &PlacementParams) -> Placement {
     let monitor = Monitor::default();
     Pool::new(2).unwrap().run(|| map().place(texture, params, monitor.job()).unwrap())
 }
@@ -64,12 +64,12 @@ fn a_lamp_moves_to_the_largest_or_smallest_importance() {
     for (x, y) in [(10, 40), (50, 3)] {
         let at = DVec2::new(x as f64 + 4.0, y as f64 + 4.0) / 64.0;
         for (aim, where_to) in [(Aim::Brightest, DVec2::splat(0.5)), (Aim::Darkest, DVec2::ZERO)] {
-            let found = place(&lamp(x, y), &PlaceParams { aim, ..PlaceParams::default() });
+            let found = place(&lamp(x, y), &PlacementParams { aim, ..PlacementParams::default() });
             // The texture's point `at` appears where `uv + offset = at`.
             let off = at - found.pose.offset - where_to;
             let off = off - off.round();
             assert!(off.abs().max_element() < 0.01, "{aim:?}: {:?}", found.pose);
-            let pose = PlaceParams::default();
+            let pose = PlacementParams::default();
             assert!(found.pose.offset.cmpge(pose.min.offset).all() && found.pose.offset.cmple(pose.max.offset).all());
         }
     }
@@ -79,11 +79,12 @@ fn a_lamp_moves_to_the_largest_or_smallest_importance() {
 #[test]
 fn a_target_is_met_by_moving_the_lamp() {
     let texture = lamp(10, 40);
-    let best = place(&texture, &PlaceParams::default()).response.light.mean;
-    let worst = place(&texture, &PlaceParams { aim: Aim::Darkest, ..PlaceParams::default() }).response.light.mean;
+    let best = place(&texture, &PlacementParams::default()).response.light.mean;
+    let worst =
+        place(&texture, &PlacementParams { aim: Aim::Darkest, ..PlacementParams::default() }).response.light.mean;
     let target = (best * 0.4 + worst * 0.6 + 0.5).as_vec3();
-    let params = PlaceParams { aim: Aim::Radiance(target), ..PlaceParams::default() };
-    let free = PlaceParams {
+    let params = PlacementParams { aim: Aim::Radiance(target), ..PlacementParams::default() };
+    let free = PlacementParams {
         min: Pose { offset: DVec2::splat(-0.5), scale: DVec2::splat(0.5), rotation: -PI },
         max: Pose { offset: DVec2::splat(0.5), scale: DVec2::splat(2.0), rotation: PI },
         ..params.clone()
@@ -98,7 +99,7 @@ fn a_target_is_met_by_moving_the_lamp() {
         assert_eq!(again.light, found.response.light);
     }
     // Bounds hold: the lamp must not move.
-    let held = PlaceParams { min: Pose::IDENTITY, max: Pose::IDENTITY, ..PlaceParams::default() };
+    let held = PlacementParams { min: Pose::IDENTITY, max: Pose::IDENTITY, ..PlacementParams::default() };
     assert_eq!(place(&texture, &held).pose, Pose::IDENTITY);
 }
 
@@ -110,7 +111,7 @@ fn many_starts_find_the_best_of_a_periodic_pattern() {
         [if lit { 500.0 + 500.0 * Rng::new(9, &[x as u64, y as u64]).next_f32() } else { 0.0 }]
     });
     let texture = texture.unwrap();
-    let found = place(&texture, &PlaceParams::default());
+    let found = place(&texture, &PlacementParams::default());
     let (map, placed, monitor) = (map(), Texture::new("pattern", texture), Monitor::default());
     let brute = (0..144)
         .map(|i| {
@@ -129,15 +130,17 @@ fn placements_have_the_same_bits_and_settings_name_themselves() {
     let texture = lamp(10, 40);
     let with = |threads| {
         let monitor = Monitor::default();
-        Pool::new(threads).unwrap().run(|| map().place(&texture, &PlaceParams::default(), monitor.job()).unwrap().pose)
+        Pool::new(threads)
+            .unwrap()
+            .run(|| map().place(&texture, &PlacementParams::default(), monitor.job()).unwrap().pose)
     };
     assert_eq!(with(1), with(3));
     let monitor = Monitor::default();
-    let refused = |params: PlaceParams| map().place(&texture, &params, monitor.job()).unwrap_err().message;
-    let d = PlaceParams::default;
-    assert!(refused(PlaceParams { starts: 0, ..d() }).starts_with("starts"));
-    assert!(refused(PlaceParams { min: Pose { scale: DVec2::ZERO, ..d().min }, ..d() }).starts_with("scale"));
-    assert!(refused(PlaceParams { max: Pose { rotation: f64::NAN, ..d().max }, ..d() }).starts_with("rotation"));
-    assert!(refused(PlaceParams { min: d().max, max: d().min, ..d() }).starts_with("offset"));
-    assert!(refused(PlaceParams { aim: Aim::Radiance(-Vec3::ONE), ..d() }).starts_with("target"));
+    let refused = |params: PlacementParams| map().place(&texture, &params, monitor.job()).unwrap_err().message;
+    let d = PlacementParams::default;
+    assert!(refused(PlacementParams { starts: 0, ..d() }).starts_with("starts"));
+    assert!(refused(PlacementParams { min: Pose { scale: DVec2::ZERO, ..d().min }, ..d() }).starts_with("scale"));
+    assert!(refused(PlacementParams { max: Pose { rotation: f64::NAN, ..d().max }, ..d() }).starts_with("rotation"));
+    assert!(refused(PlacementParams { min: d().max, max: d().min, ..d() }).starts_with("offset"));
+    assert!(refused(PlacementParams { aim: Aim::Radiance(-Vec3::ONE), ..d() }).starts_with("target"));
 }

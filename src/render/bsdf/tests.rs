@@ -6,13 +6,13 @@ use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
-/// Substances of three roughnesses, each as a dielectric, a blend and a metal; the last substance is purely diffuse.
-fn substances() -> Vec<Substance> {
+/// Parameters of three roughnesses, each as a dielectric, a blend and a metal; the last ones are purely diffuse.
+fn all_bsdf_params() -> Vec<BsdfParams> {
     let colour = Vec3::new(0.9, 0.5, 0.2);
     let mut all = Vec::new();
     for roughness in [0.3, 0.6, 1.0] {
         for metallic in [0.0f32, 0.4, 1.0] {
-            all.push(Substance {
+            all.push(BsdfParams {
                 diffuse: colour * (1.0 - metallic),
                 f0: Vec3::splat(0.04).lerp(colour, metallic),
                 f90: 1.0,
@@ -26,8 +26,8 @@ fn substances() -> Vec<Substance> {
     all
 }
 
-fn matt(colour: Vec3) -> Substance {
-    Substance {
+fn matt(colour: Vec3) -> BsdfParams {
+    BsdfParams {
         diffuse: colour,
         f0: Vec3::ZERO,
         f90: 0.0,
@@ -37,9 +37,9 @@ fn matt(colour: Vec3) -> Substance {
     }
 }
 
-/// The BSDF of a substance seen from `wo`; the normal is the z axis.
-fn seen<'a>(substance: &Substance, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a> {
-    Bsdf::new(substance, substance.f90 > 0.0, [Vec3::Z; 2], wo, Some(table))
+/// The BSDF seen from `wo`; the normal is the z axis.
+fn seen<'a>(bsdf_params: &BsdfParams, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a> {
+    Bsdf::new(bsdf_params, bsdf_params.f90 > 0.0, [Vec3::Z; 2], wo, Some(table))
 }
 
 fn direction(cosine: f32, angle: f32) -> Vec3 {
@@ -54,11 +54,11 @@ fn sampled_directions_follow_the_stated_pdf() {
     const VIEWS: [f32; 3] = [0.95, 0.6, 0.15];
     let table = AlbedoTable::new();
     let n = 20_000;
-    let substances = substances();
-    let tests = substances.len() * VIEWS.len();
-    for (number, substance) in substances.iter().enumerate() {
+    let all_bsdf_params = all_bsdf_params();
+    let tests = all_bsdf_params.len() * VIEWS.len();
+    for (number, bsdf_params) in all_bsdf_params.iter().enumerate() {
         for view in VIEWS {
-            let bsdf = seen(substance, direction(view, 0.3), &table);
+            let bsdf = seen(bsdf_params, direction(view, 0.3), &table);
             // Compute the expected counts in bins of cosine and azimuth that have equal solid angles. The last entry
             // counts absorbed samples.
             let mut expected = vec![0.0; ROWS * COLUMNS + 1];
@@ -92,7 +92,7 @@ fn sampled_directions_follow_the_stated_pdf() {
                 });
                 observed[bin] += 1.0;
             }
-            assert_follows(&expected, &observed, tests, &format!("substance {number}, view {view}"));
+            assert_follows(&expected, &observed, tests, &format!("bsdf_params {number}, view {view}"));
         }
     }
 }
@@ -101,11 +101,11 @@ fn sampled_directions_follow_the_stated_pdf() {
 fn the_bsdf_is_reciprocal() {
     let table = AlbedoTable::new();
     let mut rng = Rng::new(12, &[]);
-    for substance in substances() {
+    for bsdf_params in all_bsdf_params() {
         for _ in 0..200 {
             let a = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
             let b = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
-            let value = |o, i: Vec3| seen(&substance, o, &table).eval(i).0.sum() / i.z;
+            let value = |o, i: Vec3| seen(&bsdf_params, o, &table).eval(i).0.sum() / i.z;
             let (there, back) = (value(a, b), value(b, a));
             assert!((there - back).abs().max_element() <= 1e-3 * there.max_element(), "{there} and {back}");
         }
@@ -113,8 +113,8 @@ fn the_bsdf_is_reciprocal() {
 }
 
 /// Returns the directional albedo, estimated as the mean of the sample weights, and its standard error.
-fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
-    let bsdf = seen(substance, direction(view, 0.7), table);
+fn albedo(bsdf_params: &BsdfParams, view: f32, table: &AlbedoTable) -> (f64, f64) {
+    let bsdf = seen(bsdf_params, direction(view, 0.7), table);
     let n = 40_000;
     let mut rng = Rng::new(13, &[]);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -133,9 +133,9 @@ fn a_white_dielectric_loses_energy_only_between_its_facets() {
     let table = AlbedoTable::new();
     for roughness in [0.0, 0.0005, 0.05, 0.2, 0.6, 1.0] {
         for view in [1.0, 0.5, 0.1] {
-            let substance =
-                Substance { f0: Vec3::splat(0.04), f90: 1.0, roughness, dielectric_f0: 0.04, ..matt(Vec3::ONE) };
-            let albedo = albedo(&substance, view, &table).0;
+            let bsdf_params =
+                BsdfParams { f0: Vec3::splat(0.04), f90: 1.0, roughness, dielectric_f0: 0.04, ..matt(Vec3::ONE) };
+            let albedo = albedo(&bsdf_params, view, &table).0;
             assert!((albedo - 1.0).abs() < 0.01, "roughness {roughness}, view {view}: {albedo}");
         }
     }
@@ -150,7 +150,7 @@ fn a_white_metal_makes_no_light_at_any_roughness() {
     for step in 0..=10 {
         let roughness = step as f32 / 10.0;
         for view in [1.0, 0.7, 0.3, 0.05] {
-            let white = Substance { f0: Vec3::ONE, f90: 1.0, roughness, ..matt(Vec3::ZERO) };
+            let white = BsdfParams { f0: Vec3::ONE, f90: 1.0, roughness, ..matt(Vec3::ZERO) };
             let (mean, error) = albedo(&white, view, &table);
             let what = format!("roughness {roughness}, view {view}: {mean} ± {error}");
             assert!(mean <= 1.0 + 4.0 * error + 1e-5, "{what}");

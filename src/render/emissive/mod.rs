@@ -33,8 +33,8 @@ pub struct Emitters {
     tilings: Vec<Tiling>,
     /// For each tile of each tiling, the index of the tile's piece; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// All pieces. Piece indices count the undivided triangles (`even`) first, then the emissive tiles.
-    even: Vec<Even>,
+    /// All pieces. Piece indices count the undivided triangles (`uniform`) first, then the emissive tiles.
+    uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
     /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
@@ -43,13 +43,13 @@ pub struct Emitters {
 #[derive(Clone, Copy)]
 enum Division {
     /// A single piece, by its index; `NONE` for a dark triangle.
-    Even(u32),
+    Uniform(u32),
     /// A tiling, by its index; its tiles are listed in `piece_of_tile` from index `first` on.
     Tiled { tiling: u32, first: usize },
 }
 
 /// A triangle that is not divided, but sampled uniformly as one piece.
-struct Even {
+struct UniformTriangle {
     emitter: u32,
     /// Emission × area, mean of the channels: the luminous intensity along the normal, in cd.
     intensity: f32,
@@ -62,24 +62,24 @@ impl Emitters {
         let numbered = facets.iter().zip(0..);
         let emitters = try_collect(numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)))?;
         let mut this = Self {
-            divisions: try_vec(emitters.len(), Division::Even(NONE))?,
+            divisions: try_vec(emitters.len(), Division::Uniform(NONE))?,
             emitters,
             tilings: Vec::new(),
             piece_of_tile: Vec::new(),
-            even: Vec::new(),
+            uniform: Vec::new(),
             tiles: Vec::new(),
             power: 0.0,
         };
         let mut bounds = Vec::new();
-        this.add_even(scene, &mut bounds);
+        this.add_uniform(scene, &mut bounds);
         this.add_tiled(scene, &mut bounds)?;
-        let intensities = this.even.iter().map(|e| e.intensity).chain(this.tiles.iter().map(|t| t.intensity));
+        let intensities = this.uniform.iter().map(|e| e.intensity).chain(this.tiles.iter().map(|t| t.intensity));
         this.power = std::f64::consts::PI * intensities.map(f64::from).sum::<f64>();
         Ok((this, bounds))
     }
 
     /// Adds one piece for each emitter that is not divided into tiles, and stores the tilings of the other emitters.
-    fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
+    fn add_uniform(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
         for (index, emitter) in self.emitters.iter().enumerate() {
             let texture = emitter.texture.map(|t| &scene.textures[t]);
             if let Some(tiling) = texture.and_then(|t| Tiling::new(emitter, t)) {
@@ -90,8 +90,8 @@ impl Emitters {
             let mean = texture.map_or(f64::from(mean_channel(emitter.factor)), |t| Tiling::mean_around(emitter, t));
             let intensity = (mean * f64::from(emitter.area)) as f32;
             if intensity > 0.0 && intensity.is_finite() {
-                self.divisions[index] = Division::Even(self.even.len() as u32);
-                self.even.push(Even { emitter: index as u32, intensity });
+                self.divisions[index] = Division::Uniform(self.uniform.len() as u32);
+                self.uniform.push(UniformTriangle { emitter: index as u32, intensity });
                 bounds.push(Bounds::of_surface(emitter.corners, emitter.normal, emitter.double_sided, intensity));
             }
         }
@@ -131,7 +131,7 @@ impl Emitters {
         // Drop tiles whose emissive texels all lie outside their triangle.
         tiles.retain(|tile| tile.intensity > 0.0);
         light.retain(|bounds| bounds.intensity > 0.0);
-        for (tile, piece) in tiles.iter().zip(self.even.len() as u32..) {
+        for (tile, piece) in tiles.iter().zip(self.uniform.len() as u32..) {
             if let Division::Tiled { tiling, first } = self.divisions[tile.emitter as usize] {
                 let columns = self.tilings[tiling as usize].columns;
                 self.piece_of_tile[first + tile.row as usize * columns + tile.column as usize] = piece;
@@ -148,8 +148,8 @@ impl Emitters {
     /// index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
-        let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
-            return Some((self.even[piece].emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v))));
+        let Some(tile) = piece.checked_sub(self.uniform.len()).map(|t| &self.tiles[t]) else {
+            return Some((self.uniform[piece].emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v))));
         };
         let emitter = tile.emitter as usize;
         let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
@@ -158,9 +158,9 @@ impl Emitters {
 
     /// Returns the index of the emitter that a piece belongs to.
     pub fn emitter_of(&self, piece: usize) -> usize {
-        match piece.checked_sub(self.even.len()) {
+        match piece.checked_sub(self.uniform.len()) {
             Some(tile) => self.tiles[tile].emitter as usize,
-            None => self.even[piece].emitter as usize,
+            None => self.uniform[piece].emitter as usize,
         }
     }
 
@@ -168,7 +168,7 @@ impl Emitters {
     /// dark.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
-            Division::Even(piece) => piece,
+            Division::Uniform(piece) => piece,
             Division::Tiled { tiling, first } => self.piece_of_tile[first + self.tilings[tiling as usize].tile_at(uv)],
         };
         (piece != NONE).then_some(piece as usize)
@@ -177,9 +177,9 @@ impl Emitters {
     /// Returns the area pdf (per m²) with which [`Emitters::sample`] draws a point of the given piece. It does not
     /// include the probability of choosing the piece. `brightness` is the emission at the point, mean of the channels.
     pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
-        match piece.checked_sub(self.even.len()) {
+        match piece.checked_sub(self.uniform.len()) {
             Some(tile) => brightness / self.tiles[tile].intensity,
-            None => 1.0 / self.emitters[self.even[piece].emitter as usize].area,
+            None => 1.0 / self.emitters[self.uniform[piece].emitter as usize].area,
         }
     }
 }

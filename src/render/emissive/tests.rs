@@ -50,8 +50,8 @@ fn coordinates() -> Vec<[Vec2; 3]> {
 
 /// The index of the emitter and the intensity of every piece.
 fn pieces(emitters: &Emitters) -> Vec<(u32, f32)> {
-    let even = emitters.even.iter().map(|e| (e.emitter, e.intensity));
-    even.chain(emitters.tiles.iter().map(|t| (t.emitter, t.intensity))).collect()
+    let uniform = emitters.uniform.iter().map(|e| (e.emitter, e.intensity));
+    uniform.chain(emitters.tiles.iter().map(|t| (t.emitter, t.intensity))).collect()
 }
 
 fn brightness(emitters: &Emitters, scene: &Scene, emitter: usize, b: Vec2) -> f32 {

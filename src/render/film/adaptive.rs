@@ -15,7 +15,7 @@
 //! tiles into account (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
 //! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
 
-use super::canvas::Canvas;
+use super::accumulator::Accumulator;
 use super::clock::Clock;
 use super::grid::coarse_stride;
 use super::pass::Pass;
@@ -52,7 +52,7 @@ impl<'p> AdaptiveSampler<'p> {
     }
 
     /// Returns the next pass; `None` if all targets are met, or the paths or the time are used up.
-    pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+    pub fn next(&mut self, accumulator: &Accumulator, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
         if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
@@ -61,11 +61,11 @@ impl<'p> AdaptiveSampler<'p> {
         if self.stride > 1 {
             self.stride /= 2;
             self.uniform_paths = 1;
-            return self.uniform(canvas, 1);
+            return self.uniform(accumulator, 1);
         }
         let has_target = target_error > 0.0 || relative_error > 0.0 || pixel_error > 0.0;
         if has_target && self.uniform_paths >= MIN_UNIFORM_PATHS.min(samples) {
-            return self.adaptive_pass(canvas, clock, job);
+            return self.adaptive_pass(accumulator, clock, job);
         }
         if self.uniform_paths >= samples {
             return Ok(None);
@@ -78,18 +78,18 @@ impl<'p> AdaptiveSampler<'p> {
             self.uniform_paths.saturating_add(more.max(FIRST_PASS_PATHS))
         });
         self.uniform_paths = doubled.min(affordable.max(FIRST_PASS_PATHS)).min(samples);
-        self.uniform(canvas, self.uniform_paths)
+        self.uniform(accumulator, self.uniform_paths)
     }
 
-    fn uniform(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
-        Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
+    fn uniform(&self, accumulator: &Accumulator, count: u32) -> Result<Option<Pass>> {
+        Ok(Some(Pass { stride: self.stride, ..Pass::uniform(accumulator.grid.tiles(), count)? }))
     }
 
     /// Returns a pass that doubles the paths of some tiles, or `None` if no tile needs more paths. The tiles with the
     /// largest need come first. The need of a tile is its required number of paths divided by its present number.
-    fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
-        let statistics = canvas.statistics(|_, _| 1.0, job)?;
-        let target_paths = self.target_paths(canvas, &statistics, job)?;
+    fn adaptive_pass(&self, accumulator: &Accumulator, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let statistics = accumulator.statistics(|_, _| 1.0, job)?;
+        let target_paths = self.target_paths(accumulator, &statistics, job)?;
         let whole = whole(&statistics);
 
         // Sum up how many paths the tiles still need, within the limits set by `samples` and the time budget.
@@ -127,18 +127,23 @@ impl<'p> AdaptiveSampler<'p> {
     }
 
     /// Returns the number of paths per pixel that each tile needs to meet all targets.
-    fn target_paths(&self, canvas: &Canvas, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
+    fn target_paths(&self, accumulator: &Accumulator, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
         let Params { target_error, relative_error, pixel_error, .. } = *self.params;
         let mean = whole(statistics).mean_radiance();
         let mut target_paths = try_vec(statistics.len(), 0.0)?;
         if target_error > 0.0 {
-            self.add_allocation(canvas, statistics, target_error, &mut target_paths)?;
+            self.add_allocation(accumulator, statistics, target_error, &mut target_paths)?;
         }
         if relative_error > 0.0 {
-            self.add_allocation(canvas, &canvas.relative_statistics(mean, job)?, relative_error, &mut target_paths)?;
+            self.add_allocation(
+                accumulator,
+                &accumulator.relative_statistics(mean, job)?,
+                relative_error,
+                &mut target_paths,
+            )?;
         }
         if pixel_error > 0.0 {
-            let relative_intervals = canvas.relative_intervals(MIN_RELATIVE_LUMINANCE * mean, job)?;
+            let relative_intervals = accumulator.relative_intervals(MIN_RELATIVE_LUMINANCE * mean, job)?;
             for ((paths, squared_interval), tile) in target_paths.iter_mut().zip(relative_intervals).zip(statistics) {
                 *paths = paths.max(f64::from(tile.max_paths) * squared_interval / f64::from(pixel_error).powi(2));
             }
@@ -149,7 +154,7 @@ impl<'p> AdaptiveSampler<'p> {
     /// Raises `target_paths` to the smallest allocation that meets a target for the error of the whole image.
     fn add_allocation(
         &self,
-        canvas: &Canvas,
+        accumulator: &Accumulator,
         statistics: &[Statistics],
         target: f32,
         target_paths: &mut [f64],
@@ -160,7 +165,7 @@ impl<'p> AdaptiveSampler<'p> {
         }
         let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
-            canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
+            accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // With n = k d paths per pixel, where d is the standard deviation of the tile and k a constant of the image,
         // the mean square error is mean(s / (k d)), where s is the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {

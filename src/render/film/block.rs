@@ -4,7 +4,7 @@
 //! in every second replication. The alternation keeps the correlated errors of its pixels from showing as blocks. The
 //! division into blocks depends only on the replication and the position in the image.
 
-use super::eye::Eye;
+use super::camera_rays::CameraRays;
 use super::grid::{AREA, TILE};
 use crate::render::layers::{Layers, Recorder};
 use crate::render::path::PathLength;
@@ -82,7 +82,7 @@ impl<'a> BlockTracer<'a> {
     pub fn paths(
         &mut self,
         world: &World,
-        eye: &Eye,
+        camera_rays: &CameraRays,
         members: &[BlockPixel],
         indices: Range<u32>,
         mut discarded: impl FnMut(usize),
@@ -90,7 +90,8 @@ impl<'a> BlockTracer<'a> {
         let mut sums = [DVec3::ZERO; MAX_SHARED];
         for index in indices {
             self.starts.clear();
-            self.starts.extend(members.iter().map(|m| eye.start(world, m.at, m.length, Sampler::new(m.seed, index))));
+            self.starts
+                .extend(members.iter().map(|m| camera_rays.start(world, m.at, m.length, Sampler::new(m.seed, index))));
             let radiances = match &mut self.recorders {
                 None => {
                     let mut observers = [Sum(Vec3::ZERO); MAX_SHARED];

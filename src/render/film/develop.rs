@@ -1,12 +1,12 @@
-//! Assembles the film (images, errors and counts) from the sums of a canvas.
+//! Assembles the film (images, errors and counts) from the sums of an accumulator.
 
-use super::canvas::Canvas;
+use super::accumulator::Accumulator;
 use crate::error::Result;
 use crate::job::Job;
 use crate::render::output::Film;
 use std::sync::atomic::Ordering;
 
-impl Canvas<'_> {
+impl Accumulator<'_> {
     /// Returns the film computed from all paths so far.
     pub fn film(&self, job: Job) -> Result<Film> {
         let beauty = self.image(3, job, |x, y, out| {

@@ -1,7 +1,7 @@
 //! The film: the sums of the paths of each pixel, and the images, means and errors computed from them.
 //!
-//! - `eye` generates and traces the camera paths. `tile` traces the paths of a tile of the `canvas`, `block` the paths
-//!   of pixels that share secondary vertices. `pixel` holds the sums of a pixel.
+//! - `camera_rays` generates and traces the camera paths. `tile` traces the paths of a tile of the `accumulator`,
+//!   `block` the paths of pixels that share secondary vertices. `pixel` holds the sums of a pixel.
 //! - Between passes, `statistics` computes the errors, `adaptive` chooses the next `pass`, and `roulette` computes the
 //!   survival weights of Russian roulette.
 //! - `develop` assembles the images of a film; `interval` and `pooling` compute confidence intervals.
@@ -14,12 +14,12 @@
 //! Russian roulette then come from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of
 //! an image from a few of its tiles, which it selects by their `tile_moments`.
 
+mod accumulator;
 mod adaptive;
 mod block;
-mod canvas;
+mod camera_rays;
 mod clock;
 mod develop;
-mod eye;
 mod grid;
 mod interval;
 mod pass;
@@ -33,8 +33,8 @@ mod sums;
 mod tile;
 mod tile_moments;
 
+pub use accumulator::Accumulator;
 pub use adaptive::AdaptiveSampler;
-pub use canvas::Canvas;
 pub use clock::Clock;
 pub use grid::TILE;
 pub use pooling::pooled;

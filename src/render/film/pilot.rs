@@ -18,7 +18,7 @@
 //! the tiles, selected in proportion to their share of the variance at the second number.
 
 pub use super::adaptive::MIN_UNIFORM_PATHS;
-use super::eye::Eye;
+use super::camera_rays::CameraRays;
 use super::grid::{AREA, Grid};
 use super::pass::Pass;
 pub use super::pixel::REPLICATIONS;
@@ -115,10 +115,10 @@ pub fn run(
     params.check()?;
     params::check_camera(camera)?;
     let grid = Grid { width: params.width, height: params.height };
-    let eye = Eye::new(camera, params);
+    let camera_rays = CameraRays::new(camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
     let learning = world.learning()?;
-    let prepass = Prepass::new(&learning, &eye, params, job.part(0.0, 0.05))?;
+    let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.05))?;
     let world = &learning.settled()?;
     let prepass = prepass.in_world(world);
     let expected = tile_moments(&prepass, grid, job.part(0.05, 0.1))?;
@@ -128,7 +128,7 @@ pub fn run(
     let discarded = AtomicU64::new(0);
     let context = TileContext {
         world,
-        eye: &eye,
+        camera_rays: &camera_rays,
         seed: params.seed,
         grid,
         median_radiance: prepass.median_radiance(),

@@ -7,7 +7,7 @@
 //! estimate. From them, the part also learns which lights reach the surfaces in view.
 
 use super::block::seed_of;
-use super::eye::{Eye, paths};
+use super::camera_rays::{CameraRays, paths};
 use super::grid::{TILE, coarse_stride};
 use super::pixel::Pixel;
 use super::roulette::{RouletteWeights, median};
@@ -31,14 +31,14 @@ const SALT: u64 = 0x7375_7276_6579_6564;
 
 pub struct Prepass<'a> {
     world: &'a World,
-    eye: &'a Eye,
+    camera_rays: &'a CameraRays,
     params: &'a Params,
     median_radiance: Option<DVec3>,
 }
 
 impl<'a> Prepass<'a> {
-    pub fn new(world: &'a World, eye: &'a Eye, params: &'a Params, job: Job) -> Result<Self> {
-        let mut prepass = Self { world, eye, params, median_radiance: None };
+    pub fn new(world: &'a World, camera_rays: &'a CameraRays, params: &'a Params, job: Job) -> Result<Self> {
+        let mut prepass = Self { world, camera_rays, params, median_radiance: None };
         let stride = coarse_stride(params.width, params.height);
         let across = params.width.div_ceil(stride);
         let means = exec::map(across * params.height.div_ceil(stride), job, |i| {
@@ -77,7 +77,7 @@ impl<'a> Prepass<'a> {
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {
             let seed = seed_of(self.params.seed ^ SALT, at, replication);
-            paths(self.world, self.eye, at, length, (seed, indices), None, &discarded)
+            paths(self.world, self.camera_rays, at, length, (seed, indices), None, &discarded)
         });
         pixel
     }

@@ -1,6 +1,6 @@
 //! Error statistics of a tile or of the whole image, computed from the variances of the pixels.
 
-use super::canvas::Canvas;
+use super::accumulator::Accumulator;
 use super::grid::AREA;
 use super::interval::NORMAL_95;
 use super::pixel::Pixel;
@@ -55,7 +55,7 @@ impl Statistics {
     }
 }
 
-impl Canvas<'_> {
+impl Accumulator<'_> {
     /// Returns the statistics of the whole image.
     pub fn total(&self, job: Job) -> Result<Statistics> {
         Ok(whole(&self.statistics(|_, _| 1.0, job)?))

@@ -6,7 +6,7 @@
 //! paths are divided into parts or in which order the sums are added.
 
 use super::block::{BlockPixel, BlockTracer, blocks};
-use super::eye::Eye;
+use super::camera_rays::CameraRays;
 use super::grid::{AREA, Grid, TILE};
 use super::pixel::{REPLICATIONS, paths_of_replication};
 use super::prepass::Prepass;
@@ -56,9 +56,9 @@ impl Sums {
     pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
-        let eye = Eye::new(camera, params);
+        let camera_rays = CameraRays::new(camera, params);
         let learning = world.learning()?;
-        let prepass = Prepass::new(&learning, &eye, params, job.part(0.0, 0.01))?;
+        let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.01))?;
         let world = &learning.settled()?;
         let prepass = prepass.in_world(world);
         let discarded = AtomicU64::new(0);
@@ -94,7 +94,7 @@ impl Sums {
                                 discarded.fetch_add(1, Ordering::Relaxed);
                             }
                         };
-                        let sums = tracer.paths(world, &eye, &members, index..index + 1, discard);
+                        let sums = tracer.paths(world, &camera_rays, &members, index..index + 1, discard);
                         for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                             let numbers = &mut numbers[member.pixel * *width..][..*width];
                             let (light, others) = numbers.split_at_mut(LIGHT);

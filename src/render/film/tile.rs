@@ -1,7 +1,7 @@
 //! One tile of the image in a pass: traces the paths of its pixels, alone or in blocks.
 
 use super::block::{BlockPixel, BlockTracer, blocks, seed_of};
-use super::eye::{Eye, paths};
+use super::camera_rays::{CameraRays, paths};
 use super::grid::{AREA, Grid};
 use super::pass::Pass;
 use super::pixel::{Pixel, REPLICATIONS, paths_of_replication};
@@ -21,7 +21,7 @@ const BLOCK_SLICE: u32 = 16;
 #[derive(Clone, Copy)]
 pub struct TileContext<'a> {
     pub world: &'a World,
-    pub eye: &'a Eye,
+    pub camera_rays: &'a CameraRays,
     pub seed: u64,
     pub grid: Grid,
     /// Median, over the tiles of the image, of the mean radiance of a tile, per channel; `None` before the first path.
@@ -90,11 +90,11 @@ impl<'a> Tile<'a> {
     /// Traces paths of a single pixel until it has `count` paths.
     fn extend_pixel(&mut self, pixel: usize, at: [usize; 2], count: u32) {
         let length = self.length(pixel);
-        let TileContext { world, eye, seed, discarded, .. } = self.context;
+        let TileContext { world, camera_rays, seed, discarded, .. } = self.context;
         let mut recorder = self.tracer.recorders().map(|recorders| &mut recorders[0]);
         self.pixels[pixel].extend(count, |replication, indices| {
             let seed = seed_of(seed, at, replication);
-            paths(world, eye, at, length, (seed, indices), recorder.as_deref_mut(), discarded)
+            paths(world, camera_rays, at, length, (seed, indices), recorder.as_deref_mut(), discarded)
         });
         if let (Some(recorder), Some(totals)) = (recorder, &mut self.totals) {
             recorder.add_to_totals(totals, pixel);
@@ -103,7 +103,7 @@ impl<'a> Tile<'a> {
 
     /// Traces paths in blocks until every pixel has `count` paths. All pixels must have equal numbers of paths before.
     fn extend_blocks(&mut self, count: u32) {
-        let TileContext { world, eye, seed, grid, discarded, .. } = self.context;
+        let TileContext { world, camera_rays, seed, grid, discarded, .. } = self.context;
         let places: [_; AREA] = std::array::from_fn(|i| grid.place(self.number, i));
         let lengths: [PathLength; AREA] = std::array::from_fn(|i| self.length(i));
         let before = self.pixels[0].count();
@@ -116,7 +116,7 @@ impl<'a> Tile<'a> {
                 let there = block.iter().filter_map(|&i| Some((i, places[i]?)));
                 let member = |(i, (x, y))| BlockPixel::new(i, [x, y], lengths[i], seed, replication);
                 let members: Vec<BlockPixel> = there.map(member).collect();
-                let sums = self.tracer.paths(world, eye, &members, indices.clone(), discard);
+                let sums = self.tracer.paths(world, camera_rays, &members, indices.clone(), discard);
                 for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                     self.pixels[member.pixel].add(replication, sum);
                     if let (Some(recorders), Some(totals)) = (self.tracer.recorders(), &mut self.totals) {

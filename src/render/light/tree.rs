@@ -42,7 +42,7 @@ struct Node {
     /// Children: the index of a node, or the index of a light with the bit `LIGHT` set; `NONE` for unused lanes.
     children: [u32; LANES],
     /// Slot of this node: 8 × the index of its parent node, plus its lane there; `NONE` for the root.
-    parent: u32,
+    parent_slot: u32,
 }
 
 /// A light, with the data needed while the tree is built.
@@ -117,7 +117,7 @@ impl LightTree {
         }
         let index = self.nodes.len();
         let mut children = [NONE; LANES];
-        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: slot });
+        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent_slot: slot });
         let mut bounds = Vec::with_capacity(LANES);
         for (lane, part) in parts.into_iter().enumerate() {
             let (child, of_child) = self.add(items, clusters, part, (index * LANES + lane) as u32, scale);
@@ -199,7 +199,7 @@ impl LightTree {
                 return 0.0;
             }
             pmf *= share / sum;
-            slot = node.parent;
+            slot = node.parent_slot;
         }
         pmf
     }

@@ -33,16 +33,16 @@
 //! opacity is below 1, there is no event.
 //!
 //! `parse` turns the text into a tree. `alphabet` numbers the events of the scene, and `automaton` compiles all
-//! expressions of a render over them. `trail` tracks the states of a path in the automaton.
+//! expressions of a render over them. `path_tracker` tracks the states of a path in the automaton.
 
 mod alphabet;
 mod automaton;
 mod parse;
+mod path_tracker;
 mod sparse_sums;
-mod trail;
 
 pub(super) use automaton::Automaton;
-pub(super) use trail::{PathOutcome, Trail};
+pub(super) use path_tracker::{PathOutcome, PathTracker};
 
 use crate::error::Result;
 

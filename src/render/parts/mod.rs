@@ -24,7 +24,7 @@ mod part;
 pub use file::File;
 pub use part::Part;
 
-use super::film::{Canvas, Sums};
+use super::film::{Accumulator, Sums};
 use super::output::Film;
 use super::params::{Params, check_camera};
 use super::preview;
@@ -94,9 +94,9 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
 /// Computes the film of a part from its sums.
 fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) -> Result<Film> {
     let guided = preview::guided(params);
-    let canvas = Canvas::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
-    let mut film = canvas.film(job.part(0.2, 0.6))?;
-    preview::add_preview(&mut film, &canvas, params, job.part(0.6, 1.0))?;
+    let accumulator = Accumulator::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
+    let mut film = accumulator.film(job.part(0.2, 0.6))?;
+    preview::add_preview(&mut film, &accumulator, params, job.part(0.6, 1.0))?;
     job.report(1.0);
     Ok(film)
 }

@@ -118,12 +118,12 @@ fn twenty_rooms_agree_with_independent_geometry() {
 /// indirect part.
 #[test]
 fn the_background_is_the_indirect_illuminance() {
-    use crate::render::illuminance::{self, Place};
+    use crate::render::illuminance::{self, CalculationPoints};
     let at = Vec3::new(3.0, 2.7, 4.5);
     let rating = rated(room(panel(), &[at]), EYE, 1 << 15);
     let world = world(room(panel(), &[at]));
     let (across, down) = (Vec3::X * 1e-4, Vec3::Y * 1e-4);
-    let place = Place::Grid { origin: EYE.position, across, down, normal: EYE.direction };
+    let place = CalculationPoints::Grid { origin: EYE.position, across, down, normal: EYE.direction };
     let params = illuminance::Params { columns: 1, rows: 1, samples: 1 << 15, seed: 9 };
     let total = illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap();
     // The intensity is 3000 / π × cos γ. The cosine of γ is 1.5 / r, and the cosine of incidence is 3 / r.

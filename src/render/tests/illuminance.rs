@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::exec::Pool;
-use crate::render::illuminance::{Output, Params, Place, run};
+use crate::render::illuminance::{CalculationPoints, Output, Params, run};
 
-fn measure(world: &World, place: &Place, params: &Params) -> Output {
+fn measure(world: &World, place: &CalculationPoints, params: &Params) -> Output {
     run(world, place, params, Monitor::default().job()).unwrap()
 }
 
@@ -38,7 +38,8 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
     let params = Params { columns: 5, rows: 3, samples: 4096, seed: 3 };
     for height in [0.0f32, 0.75] {
         let origin = Vec3::new(-1.0, height, -1.0);
-        let place = Place::Grid { origin, across: Vec3::X * 2.0, down: Vec3::Z * 2.0, normal: Vec3::Y * 7.0 };
+        let place =
+            CalculationPoints::Grid { origin, across: Vec3::X * 2.0, down: Vec3::Z * 2.0, normal: Vec3::Y * 7.0 };
         let output = measure(&world, &place, &params);
         assert_eq!(output.points, 15);
         let mut sum = 0.0;
@@ -57,7 +58,11 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
         assert!(output.min < output.mean && output.mean < output.max);
     }
     // On the floor's texture, u runs along z, and v along x.
-    let map = measure(&world, &Place::Mesh { mesh: 0, front: true }, &Params { columns: 3, rows: 5, ..params.clone() });
+    let map = measure(
+        &world,
+        &CalculationPoints::Mesh { mesh: 0, front: true },
+        &Params { columns: 3, rows: 5, ..params.clone() },
+    );
     for y in 0..5 {
         for x in 0..3 {
             let truth = expected(-0.8 + 0.4 * y as f64, (x as f64 - 1.0) * 2.0 / 3.0, 1.5);
@@ -66,7 +71,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
         }
     }
     // No light reaches the underside of the floor.
-    assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).max, 0.0);
+    assert_eq!(measure(&world, &CalculationPoints::Mesh { mesh: 0, front: false }, &params).max, 0.0);
 }
 
 #[test]
@@ -74,7 +79,7 @@ fn texels_without_surface_have_no_value_and_threads_do_not_show() {
     let mut scene = lit_floor();
     scene.meshes[0].uvs[0].iter_mut().for_each(|uv| *uv *= 0.5);
     let params = Params { columns: 8, rows: 8, samples: 64, seed: 1 };
-    let place = Place::Mesh { mesh: 0, front: true };
+    let place = CalculationPoints::Mesh { mesh: 0, front: true };
     let output = |threads| Pool::new(threads).unwrap().run(|| measure(&world(scene.clone()), &place, &params));
     let (one, three) = (output(1), output(3));
     assert_eq!(one.points, 16);
@@ -86,12 +91,13 @@ fn texels_without_surface_have_no_value_and_threads_do_not_show() {
 #[test]
 fn grids_that_cannot_be_are_refused_by_name() {
     let world = world(lit_floor());
-    let grid = |normal: Vec3| Place::Grid { origin: Vec3::ZERO, across: Vec3::X, down: Vec3::Z, normal };
+    let grid = |normal: Vec3| CalculationPoints::Grid { origin: Vec3::ZERO, across: Vec3::X, down: Vec3::Z, normal };
     let none = Params::default();
-    let refused = |place: &Place, params: &Params| run(&world, place, params, Monitor::default().job()).unwrap_err();
+    let refused =
+        |place: &CalculationPoints, params: &Params| run(&world, place, params, Monitor::default().job()).unwrap_err();
     assert!(refused(&grid(Vec3::ZERO), &none).message.contains("normal"));
     assert!(refused(&grid(Vec3::NAN), &none).message.contains("normal"));
-    assert!(refused(&Place::Mesh { mesh: 9, front: true }, &none).message.contains("mesh is 9"));
+    assert!(refused(&CalculationPoints::Mesh { mesh: 9, front: true }, &none).message.contains("mesh is 9"));
     assert!(refused(&grid(Vec3::Y), &Params { samples: 3, ..none.clone() }).message.contains("samples is 3"));
     assert!(refused(&grid(Vec3::Y), &Params { columns: 0, ..none.clone() }).message.contains("columns is 0"));
     let monitor = Monitor::default();

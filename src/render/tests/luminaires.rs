@@ -3,7 +3,7 @@
 use super::*;
 use crate::exec::Pool;
 use crate::photometry::{Luminaire, ies, ldt};
-use crate::render::illuminance::{self, Place};
+use crate::render::illuminance::{self, CalculationPoints};
 use std::f64::consts::PI;
 
 const POSITION: Vec3 = Vec3::new(0.3, 2.5, -0.4);
@@ -20,7 +20,7 @@ fn hung(luminaire: Luminaire, axis: Vec3, c0: Vec3) -> Scene {
 
 /// Returns the illuminance over a parallelogram, on the side of `normal`.
 fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) -> illuminance::Output {
-    let place = Place::Grid { origin, across, down, normal };
+    let place = CalculationPoints::Grid { origin, across, down, normal };
     let params = illuminance::Params { columns: cells, rows: cells, samples: 16, seed: 1 };
     let world = world(scene);
     Pool::new(2).unwrap().run(|| illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap())

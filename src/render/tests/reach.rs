@@ -189,7 +189,7 @@ fn requirements_name_the_lamps_that_cannot_be_reached() {
 #[test]
 fn lux_in_a_building_is_that_of_all_lights() {
     let [learns, alike] = worlds(building());
-    let place = lux::Place::Grid {
+    let place = lux::CalculationPoints::Grid {
         origin: Vec3::new(0.5, 0.8, 0.5),
         across: Vec3::X * 2.0,
         down: Vec3::Z * 2.0,

@@ -9,7 +9,7 @@ fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
     let params = Params { width: 48, height: 32, samples, ..Params::default() };
     let mut world = world(scene);
     let analysed = render(&world, camera, &params).beauty;
-    world.generalise();
+    world.discard_analysis();
     let general = render(&world, camera, &params).beauty;
     let mean = general.data.iter().sum::<f32>() / general.data.len() as f32;
     assert!(mean > 0.0);

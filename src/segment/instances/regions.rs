@@ -90,7 +90,7 @@ impl Brightness {
 
 /// Sums over the pixels of each node of the component tree. Each pixel is weighted by the area of the room's face that
 /// it shows.
-pub struct OnSurface {
+pub struct OnFace {
     pub area: Vec<f64>,
     /// For each node, the number of its pixels that show the face itself, not its extension beyond the edges.
     pub on_face: Vec<f64>,
@@ -103,7 +103,7 @@ pub struct OnSurface {
     squares: Vec<f64>,
 }
 
-impl OnSurface {
+impl OnFace {
     fn new(tree: &Tree, footprint: &Footprint) -> Result<Self> {
         let blank = || try_vec(tree.len(), 0f64);
         let mut sums = Self {
@@ -176,7 +176,7 @@ pub struct Regions {
     /// Area of each node in pixels.
     pub area: Vec<f64>,
     /// Sums measured on a face of the room instead of in pixels; `None` if the room has no box layout.
-    pub surface: Option<OnSurface>,
+    pub surface: Option<OnFace>,
     x: Vec<f64>,
     y: Vec<f64>,
     xx: Vec<f64>,
@@ -192,7 +192,7 @@ impl Regions {
         let blank = || try_vec(tree.len(), 0f64);
         let mut sums = Self {
             area: blank()?,
-            surface: footprint.map(|footprint| OnSurface::new(tree, footprint)).transpose()?,
+            surface: footprint.map(|footprint| OnFace::new(tree, footprint)).transpose()?,
             x: blank()?,
             y: blank()?,
             xx: blank()?,

@@ -27,13 +27,13 @@ const RING: f64 = 0.5;
 const SOLIDITY: f64 = 0.85;
 /// Minimum ratio of a lamp's area in pixels to the area of the smallest lamp under a stroke. At three times the
 /// distance, a lamp in a ceiling is a third as wide and, foreshortened, a ninth as high. [convention]
-const SMALLER: f64 = 1.0 / 27.0;
+const MIN_AREA_RATIO: f64 = 1.0 / 27.0;
 /// Maximum ratio of a lamp's area in pixels to the area of the largest lamp under a stroke. It applies only if the
 /// room has no box layout. [judged on 28 photos]
-const LARGER: f64 = 1.6;
+const MAX_AREA_RATIO: f64 = 1.6;
 /// Maximum factor by which the area of a lamp on the plane may be below the smallest, or above the largest, area of
 /// the lamps under the strokes. Bloom and blur enlarge distant lamps. [judged on 44 photos]
-const SURFACE: f64 = 4.0;
+const MAX_FACE_AREA_RATIO: f64 = 4.0;
 /// The aspect (length over width) of a lamp on the plane must lie between the least aspect of the lamps under the
 /// strokes divided by `ROUNDER`, and their largest aspect times `LONGER`. Blur widens thin lamps, and lengthens
 /// distant lamps along the line of sight. [bench photos:tune]
@@ -41,13 +41,13 @@ const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
 /// area and aspect on the plane do not depend on it. [judged on 44 photos]
-const SHOWN: f64 = 0.01;
+const MIN_MEASURED_SHARE: f64 = 0.01;
 /// Maximum ratio of a lamp's breadth in pixels to the breadth of the broadest lamp under a stroke. It applies only if
 /// the room has no box layout. [judged on 28 photos]
-const BROADER: f64 = 1.5;
+const MAX_BREADTH_RATIO: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
-const CUT: f64 = 0.06;
+const MIN_CUT_AREA: f64 = 0.06;
 /// At least this share of the ring of pixels around a lamp must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
@@ -116,7 +116,7 @@ struct Model {
     min_area: f64,
     max_area: f64,
     /// Limits on the area and the aspect, measured on a face of the room; `None` if the room has no box layout.
-    surface: Option<OnSurface>,
+    surface: Option<FaceLimits>,
     max_breadth: f64,
     min_lightness: f64,
     min_solidity: f64,
@@ -139,7 +139,7 @@ impl Model {
 }
 
 /// Ranges `[min, max]` of the area and the aspect of lamps, measured on a face of the room.
-struct OnSurface {
+struct FaceLimits {
     area: [f64; 2],
     aspect: [f64; 2],
 }
@@ -283,10 +283,10 @@ impl Search<'_> {
         let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
         let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         Ok(Some(Model {
-            min_area: (least(of(&|n| regions.area[n])) * SMALLER).max(MIN_AREA),
-            max_area: most(of(&|n| regions.area[n])) * LARGER,
+            min_area: (least(of(&|n| regions.area[n])) * MIN_AREA_RATIO).max(MIN_AREA),
+            max_area: most(of(&|n| regions.area[n])) * MAX_AREA_RATIO,
             surface: regions.surface.as_ref().map(|surface| {
-                let min_shown = SHOWN * most(of(&|n| regions.area[n]));
+                let min_shown = MIN_MEASURED_SHARE * most(of(&|n| regions.area[n]));
                 let shown: Vec<usize> =
                     painted.iter().map(|&n| n as usize).filter(|&n| regions.area[n] >= min_shown).collect();
                 let range = |f: &dyn Fn(usize) -> f64| {
@@ -294,9 +294,12 @@ impl Search<'_> {
                     values.fold([f64::INFINITY, 0.0f64], |[low, high], v| [low.min(v), high.max(v)])
                 };
                 let ([min, max], [round, long]) = (range(&|n| surface.area[n]), range(&|n| surface.aspect(n)));
-                OnSurface { area: [min / SURFACE, max * SURFACE], aspect: [round / ROUNDER, long * LONGER] }
+                FaceLimits {
+                    area: [min / MAX_FACE_AREA_RATIO, max * MAX_FACE_AREA_RATIO],
+                    aspect: [round / ROUNDER, long * LONGER],
+                }
             }),
-            max_breadth: most(of(&|n| regions.axes(n)[1])) * BROADER,
+            max_breadth: most(of(&|n| regions.axes(n)[1])) * MAX_BREADTH_RATIO,
             min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
             min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
             colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
@@ -320,7 +323,7 @@ impl Search<'_> {
         }
         let is_whole = surface.area[node] >= on_surface.area[0]
             && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
-        area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
+        area >= model.min_area && (is_whole || surface.area[node] >= MIN_CUT_AREA * on_surface.area[0] && is_cut())
     }
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if

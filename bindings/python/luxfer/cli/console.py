@@ -140,6 +140,11 @@ def percent(share: float) -> str:
     return f"{100 * share:.2g} %" if math.isfinite(share) else "unknown"
 
 
+def described_stages(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
+    """The warnings of a transfer's stages, without those of its scene, which the scene itself lists."""
+    return described(w for w in warnings if w.stage.name != "SCENE")
+
+
 def described(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
     """Warnings of the library as JSON has them."""
     return [

@@ -95,11 +95,11 @@ def of_transfer(
     """Plans of a transfer, whose stages up to the texture are run."""
     from .. import Plan
     from . import files, picture, transfer
-    from .console import described
+    from .console import described_stages
 
     context = files.context_of(args)
     stages, start = transfer.prepare(context, args)
     stages.run(last="emission", progress=console.step("making the texture"), **start.settings)
     settings = {**start.settings, "render": picture.base_settings(args)}
     plans = [Plan(context).run_transfer(stages, console.step("planning"), settings=settings, **goal) for goal in goals]
-    return plans, start.warnings + described(stages.warnings)
+    return plans, start.warnings + described_stages(stages.warnings)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import options, values
-from .console import Console, as_json, described, percent
+from .console import Console, as_json, described_stages, percent
 from .exits import Exit, usage
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         masks_found.draw().save(preview)
         console.wrote(preview)
         result = {"command": "transfer", "surface": start.surface, **masks_found.facts()}
-        return console.finish(result, masks_found.words(), start.warnings + described(transfer.warnings))
+        return console.finish(result, masks_found.words(), start.warnings + described_stages(transfer.warnings))
     assert out is not None
     out.mkdir(parents=True, exist_ok=True)
     masks_found.draw().save(out / "masks.png")
@@ -168,7 +168,7 @@ def light(
     lit.save_lamps(out / "luminaires.csv")
     console.wrote(out / "luminaires.csv")
 
-    warnings = start.warnings + described(transfer.warnings)
+    warnings = start.warnings + described_stages(transfer.warnings)
     result = facts(transfer, start, lit, masks)
     if goal.is_budget:  # what is left of the time, after --lux too
         left = goal.seconds - (time.monotonic() - console.began)

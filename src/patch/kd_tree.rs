@@ -50,13 +50,13 @@ impl Means {
 
 /// The patches of one image in the order of the tree's leaves. In this order, similar patches are mostly close to each
 /// other.
-pub struct Table {
+pub struct KdTree {
     order: Vec<u32>,
     /// Channel and value of each split; the children of node `i` are `2i + 1` and `2i + 2`.
     splits: Vec<(u8, i16)>,
 }
 
-impl Table {
+impl KdTree {
     /// Builds the tree over the members of `domain`.
     pub fn new(means: &Means, domain: &Domain, job: Job) -> Result<Self> {
         let mut order = domain.members().to_vec();
@@ -117,13 +117,13 @@ impl Search<'_> {
     pub fn look_up(
         &self,
         field: &mut Field,
-        table: &Table,
+        tree: &KdTree,
         query_means: &Means,
         tries: usize,
         job: Job,
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
-        let (width, count) = (field.width, table.order.len());
+        let (width, count) = (field.width, tree.order.len());
         let before = &*field;
         let rows = exec::map(field.height, job, |y| {
             let mut row = Vec::with_capacity(width);
@@ -131,12 +131,12 @@ impl Search<'_> {
                 let i = y * width + x;
                 let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
-                    let middle = table.leaf_of(query_means.of(pack(x, y))).min(count - 1);
+                    let middle = tree.leaf_of(query_means.of(pack(x, y))).min(count - 1);
                     // Walk outwards on both sides for a bounded number of steps. Skip patches that are not allowed.
                     let mut left = tries;
                     for step in 0..16 * tries {
                         let at = if step % 2 == 0 { middle + step / 2 } else { middle.wrapping_sub(step / 2 + 1) };
-                        let Some(&position) = table.order.get(at) else { continue };
+                        let Some(&position) = tree.order.get(at) else { continue };
                         let (px, py) = unpack(position);
                         if self.allowed.contains(px, py) {
                             best.try_at(self, px as isize, py as isize);
@@ -183,7 +183,7 @@ mod tests {
             query.data[to..to + row.len()].copy_from_slice(&row);
         }
         let allowed = Domain::new(60, 50, 5, None, false).unwrap();
-        let table = Table::new(&Means::new(&base, 5, job.job()).unwrap(), &allowed, job.job()).unwrap();
+        let tree = KdTree::new(&Means::new(&base, 5, job.job()).unwrap(), &allowed, job.job()).unwrap();
         let means = Means::new(&query, 5, job.job()).unwrap();
         let search = Search {
             query: &query,
@@ -195,7 +195,7 @@ mod tests {
             seed: 1,
         };
         let mut field = Field::new(26, 16).unwrap();
-        search.look_up(&mut field, &table, &means, 2 * LEAF, job.job(), |_| true).unwrap();
+        search.look_up(&mut field, &tree, &means, 2 * LEAF, job.job(), |_| true).unwrap();
         // A patch whose mean equals the value of a split may lie on the other side of the split: these few patches are
         // missed.
         let found = |(i, &at): (usize, &u32)| at == pack(i % 26 + 7, i / 26 + 11);

@@ -1,4 +1,5 @@
-//! Lamps as evidence for a lattice: their position and size, weighted by the number of photo pixels that show them.
+//! Position and size of the lamps of an exemplar, as evidence for a lattice and for kinds of lamps, weighted by the
+//! number of photo pixels that show them.
 
 use super::components::Component;
 use super::foreshortening::LocalMap;
@@ -7,20 +8,20 @@ use glam::DVec2;
 
 /// Two lamps are of one kind if each side differs by at most this share, plus an allowance for measurement error and
 /// bloom. [judged on 20 photos]
-const LIKE: f64 = 0.2;
+const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 /// Allowances when sides are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`: lengthening of
 /// a side by bloom, which differs between lamps if unwarping magnifies them differently. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
 /// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
-/// `MAYBE_LIKE`: maximum difference of a side as a share. `MAYBE_BLUR`: measurement error of each lamp, in photo
-/// pixels. [judged on 20 photos]
-const MAYBE_LIKE: f64 = 0.33;
-const MAYBE_BLUR: f64 = 2.5;
+/// `MAX_SITE_DIFFERENCE`: maximum difference of a side as a share. `SITE_NOISE`: measurement error of each lamp, in
+/// photo pixels. [judged on 20 photos]
+const MAX_SITE_DIFFERENCE: f64 = 0.33;
+const SITE_NOISE: f64 = 2.5;
 
 /// A lamp of the exemplar, as evidence for kinds of lamps and for a lattice. Position and size are in unwarped pixels.
 #[derive(Clone, Copy, Debug)]
-pub struct Evidence {
+pub struct MeasuredLamp {
     pub component: usize,
     pub centre: DVec2,
     pub size: DVec2,
@@ -31,7 +32,7 @@ pub struct Evidence {
     pub blur: DVec2,
 }
 
-impl Evidence {
+impl MeasuredLamp {
     pub fn new(component: usize, lamp: &Component, weight: f64, to_photo: Option<Homography>) -> Self {
         let size = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);
         let blur = LocalMap::new(to_photo, lamp.centre).photo_pixel();
@@ -61,13 +62,13 @@ impl Evidence {
     /// Whether two lamps may have equal sizes, given their blur.
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
-        let slack = self.size.max(other.size) * LIKE + blur;
+        let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + blur;
         (self.size - other.size).abs().cmple(slack).all()
     }
 
     /// Whether two lamps may have equal sizes, with the wider tolerance for lamps at one site of a lattice.
     pub fn may_be_like(&self, other: &Self) -> bool {
-        let slack = self.size.max(other.size) * MAYBE_LIKE + (self.blur + other.blur) * MAYBE_BLUR;
+        let slack = self.size.max(other.size) * MAX_SITE_DIFFERENCE + (self.blur + other.blur) * SITE_NOISE;
         (self.size - other.size).abs().cmple(slack).all()
     }
 }

@@ -22,8 +22,8 @@ use glam::{Vec3, Vec3A};
 /// A state of the automaton with its share of the path's light.
 #[derive(Clone, Copy)]
 struct Component {
-    /// Index, in `Trail::sums`, of the first sum that belongs to the component's initial state. Each initial state has
-    /// one sum per list of expressions.
+    /// Index, in `PathTracker::sums`, of the first sum that belongs to the component's initial state. Each initial
+    /// state has one sum per list of expressions.
     offset: u32,
     state: u16,
     share: Vec3A,
@@ -36,7 +36,7 @@ pub struct PathOutcome {
     light: Vec3A,
 }
 
-pub struct Trail<'a> {
+pub struct PathTracker<'a> {
     automaton: &'a Automaton,
     components: Vec<Component>,
     /// Whether all components are in absorbing states.
@@ -54,7 +54,7 @@ pub struct Trail<'a> {
     rest_light: usize,
 }
 
-impl<'a> Trail<'a> {
+impl<'a> PathTracker<'a> {
     pub fn new(automaton: &'a Automaton) -> Self {
         let [components, before, ends] = [const { Vec::new() }; 3];
         let (panes, sums) = (Vec::new(), SparseSums::default());
@@ -72,18 +72,18 @@ impl<'a> Trail<'a> {
     pub fn start_from(&mut self, origins: &[u16]) {
         self.sums.begin(origins.len() * self.automaton.lists().len());
         self.rest = Vec3A::ZERO;
-        self.set_out(origins);
+        self.reset_components(origins);
     }
 
     /// Goes back to the camera to begin another path of the same pixel. The sums are kept.
     #[inline]
     pub fn restart(&mut self) {
         self.flush_rest();
-        self.set_out(&[self.automaton.start()]);
+        self.reset_components(&[self.automaton.start()]);
     }
 
     #[inline(always)]
-    fn set_out(&mut self, origins: &[u16]) {
+    fn reset_components(&mut self, origins: &[u16]) {
         let lists = self.automaton.lists().len() as u32;
         let component = |(i, &state): (usize, &u16)| Component { offset: i as u32 * lists, state, share: Vec3A::ONE };
         self.components.clear();
@@ -93,7 +93,7 @@ impl<'a> Trail<'a> {
 
     /// Continues along a recorded subpath: for each component (a state of the automaton with its share of the light),
     /// adds the subpath's light, multiplied by `importance` and the share.
-    pub fn follow(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
+    pub fn replay(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
         for component in &self.components {
             replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);
         }
@@ -101,7 +101,7 @@ impl<'a> Trail<'a> {
 
     /// Starts at the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
     #[inline]
-    pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
+    pub fn replay_from_camera(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
         let [diffuse, glossy, ..] = *self.automaton.next(self.automaton.start(), self.automaton.class(mesh));
         match only_layer(lobes) {
             Some(Scatter::Diffuse) => replay_outcome(&mut self.sums, diffuse, importance, outcome),

@@ -6,7 +6,7 @@ use super::level::{Level, Problem, encode, encoded};
 use super::multires;
 use super::output::{Output, Publish};
 use super::params::{Input, Params};
-use super::picture::{Provenance, decode_into, paint};
+use super::picture::{DecodeInput, decode_into, paint};
 use super::report::sources;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
@@ -19,7 +19,7 @@ const ROUNDS: usize = 2;
 const SEARCH_RADIUS: usize = 16;
 
 /// A stylised target that follows changes of its artwork.
-pub struct Study {
+pub struct Updater {
     problem: Problem,
     params: Params,
     /// The whole artwork, in linear colour (`artwork`) and encoded for display (`encoded`).
@@ -37,7 +37,7 @@ pub struct Study {
     old: Vec<bool>,
 }
 
-impl Study {
+impl Updater {
     /// Stylises the target once, like [`super::run`].
     pub fn new(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<(Self, Output)> {
         params.check()?;
@@ -47,7 +47,7 @@ impl Study {
         encode(&mut display, job)?;
         let mut picture = output.image.try_clone()?;
         encode(&mut picture, job)?;
-        let study = Self {
+        let updater = Self {
             problem,
             params: params.clone(),
             artwork: input.artwork.try_clone()?,
@@ -60,7 +60,7 @@ impl Study {
             pending: try_vec(input.artwork.width * input.artwork.height, false)?,
         };
         job.report(1.0);
-        Ok((study, output))
+        Ok((updater, output))
     }
 
     /// Copies the pixels of `artwork` where the one-channel image `changed` is above 0.5, updates the result, and
@@ -98,14 +98,14 @@ impl Study {
         };
         let target = Target { field: &mut self.field, picture: &mut self.picture, old: &mut self.old };
         rematch(&self.problem, target, changed, &self.params, job.part(0.1, 0.9))?;
-        let provenance = Provenance {
+        let decode_input = DecodeInput {
             field: &self.field,
             problem: &self.problem,
             artwork: &self.artwork,
             known: self.known.as_ref(),
         };
         let old = |i: usize| self.old[i];
-        decode_into(&mut self.image, &self.picture, provenance, job.part(0.9, 1.0), old)?;
+        decode_into(&mut self.image, &self.picture, decode_input, job.part(0.9, 1.0), old)?;
         let image = self.image.try_clone()?;
         self.pending.fill(false);
         self.old.fill(false);
@@ -154,8 +154,8 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
         let sweep = Sweep { index: round as u64, radius: SEARCH_RADIUS, initial_samples: 4 };
         search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
-        let how = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
-        paint(picture, field, problem, how, part(0.8, 1.0), |i| old[i])?;
+        let vote_mode = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
+        paint(picture, field, problem, vote_mode, part(0.8, 1.0), |i| old[i])?;
     }
     Ok(())
 }

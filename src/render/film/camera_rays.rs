@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// the inlined path tracer is compiled once.
 pub fn paths(
     world: &World,
-    eye: &Eye,
+    camera_rays: &CameraRays,
     at: [usize; 2],
     length: PathLength,
     (seed, indices): (u64, Range<u32>),
@@ -25,7 +25,7 @@ pub fn paths(
 ) -> DVec3 {
     let mut sum = DVec3::ZERO;
     for index in indices {
-        let radiance = radiance(world, eye, at, length, Sampler::new(seed, index), recorder.as_deref_mut());
+        let radiance = radiance(world, camera_rays, at, length, Sampler::new(seed, index), recorder.as_deref_mut());
         if radiance.is_finite() {
             sum += radiance.as_dvec3();
         } else {
@@ -38,13 +38,13 @@ pub fn paths(
 /// Traces one path and returns its radiance.
 fn radiance(
     world: &World,
-    eye: &Eye,
+    camera_rays: &CameraRays,
     at: [usize; 2],
     length: PathLength,
     sampler: Sampler,
     recorder: Option<&mut Recorder>,
 ) -> Vec3 {
-    let Start { ray, light_u, length, mut sampler } = eye.start(world, at, length, sampler);
+    let Start { ray, light_u, length, mut sampler } = camera_rays.start(world, at, length, sampler);
     match recorder {
         None => {
             let mut sum = Sum::default();
@@ -60,14 +60,14 @@ fn radiance(
 }
 
 /// A camera prepared for path tracing. The unnormalised direction through a pixel is linear in the pixel coordinates.
-pub struct Eye {
+pub struct CameraRays {
     position: Vec3,
     corner: Vec3,
     right: Vec3,
     down: Vec3,
 }
 
-impl Eye {
+impl CameraRays {
     pub fn new(camera: &Camera, params: &Params) -> Self {
         let aspect = params.width as f32 / params.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);

@@ -7,25 +7,23 @@
 //! part of a photo has little weight. A lattice that predicts no lamp from another scores 0.
 
 use crate::emission::exemplar::Exemplar;
-use crate::emission::exemplar::evidence::Evidence;
 use crate::emission::exemplar::foreshortening::LocalMap;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
+use crate::emission::lattice::basis::MAX_UNCHANGING_LENGTH;
 use crate::emission::lattice::cells;
-use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::law::Law;
 use glam::{DMat2, DVec2};
 
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
 /// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
-const OFF_SITE: f64 = 0.12;
+const MAX_OFF_SITE: f64 = 0.12;
 /// A position without a lamp in the light mask counts as shining if its contrast with the surroundings is at least the
-/// share `SHINES` of the highest contrast of the site's lamps, of which at most `MAX_COMPARED` are measured.
+/// share `MIN_SHINING` of the highest contrast of the site's lamps, of which at most `MAX_COMPARED` are measured.
 /// [judged on 20 photos]
-const SHINES: f64 = 0.2;
+const MIN_SHINING: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the pattern does not
-/// change: the lattice search returns a shift of one pixel there. [rounding]
-const UNCHANGING: f64 = 1.5;
 
 /// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
@@ -33,7 +31,7 @@ pub struct Site {
     /// Position of the site in the cell of its first lamp, in unwarped pixels.
     pub at: DVec2,
     /// The lamps at this site; lamps with most photo pixels come first.
-    pub lamps: Vec<Evidence>,
+    pub lamps: Vec<MeasuredLamp>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
     /// Area in photo pixels of predicted lamps that the light mask lacks although their position is in full view.
@@ -62,24 +60,24 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` if the continuation has no period, or if one of its
+    /// Groups the lamps into sites of a lattice or a row. `None` if the law has no period, or if one of its
     /// basis vectors is not a period because the pattern does not change along it.
-    pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
+    pub fn new(exemplar: &Exemplar, lamps: &[MeasuredLamp], law: Law) -> Option<Self> {
         let (basis, is_row) = match law {
-            Continuation::Lattice(basis) => (basis, false),
-            Continuation::Row(basis) => (basis, true),
+            Law::Lattice(basis) => (basis, false),
+            Law::Row(basis) => (basis, true),
             _ => return None,
         };
         let to_cells = DMat2::from_cols(basis[0], basis[1]).inverse();
         let shortest = if is_row { basis[0].length() } else { basis[0].length().min(basis[1].length()) };
-        if !to_cells.is_finite() || shortest <= UNCHANGING {
+        if !to_cells.is_finite() || shortest <= MAX_UNCHANGING_LENGTH {
             return None;
         }
         let mut sites = Self { list: Vec::new(), to_cells, basis, is_row };
-        for lamp in evidence {
+        for lamp in lamps {
             let is_here = |site: &Site| {
                 let first = &site.lamps[0];
-                let slack = OFF_SITE * shortest + (lamp.blur + first.blur);
+                let slack = MAX_OFF_SITE * shortest + (lamp.blur + first.blur);
                 let off = sites.residual(lamp.centre - first.centre);
                 lamp.may_be_like(first) && off.abs().cmple(slack).all()
             };
@@ -130,7 +128,7 @@ impl Sites {
     /// Tests the positions in full view where the lattice predicts a lamp but the light mask shows none. Returns the
     /// photo pixels of positions that shine like the site's lamps, the photo pixels of dark positions, and the number
     /// of dark positions.
-    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
+    fn missing(&self, at: DVec2, lamps: &[MeasuredLamp], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
         let is_shown = |p: DVec2| {
@@ -143,7 +141,7 @@ impl Sites {
             is_lit(p)
                 || lamps.iter().any(|l| {
                     let off = self.residual(l.centre - at);
-                    (l.centre - off - p).abs().max_element() < 1.0 + OFF_SITE * half.max_element()
+                    (l.centre - off - p).abs().max_element() < 1.0 + MAX_OFF_SITE * half.max_element()
                 })
         };
         let steps = cells::between(self.to_cells, DVec2::ZERO - at, size - at);
@@ -157,7 +155,7 @@ impl Sites {
         let (mut unmarked, mut missing, mut dark) = (0.0, 0.0, 0);
         for p in empty {
             let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
-            let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= SHINES * brightest);
+            let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= MIN_SHINING * brightest);
             if shines {
                 unmarked += pixels;
             } else {
@@ -173,13 +171,13 @@ impl Sites {
     /// - the number of lamps that are not the first of their site, among all lamps.
     ///
     /// `parts` holds the visible parts of cut lamps, which count as predicted if a site leads to them.
-    pub fn score(&self, parts: &[Evidence]) -> f64 {
+    pub fn score(&self, parts: &[MeasuredLamp]) -> f64 {
         let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),
             false => (predicted, all + site.shown),
         });
-        let is_predicted = |part: &&Evidence| {
+        let is_predicted = |part: &&MeasuredLamp| {
             self.list.iter().any(|site| {
                 let half = site.lamps[0].size / 2.0 + part.blur;
                 self.residual(part.centre - site.at).abs().cmple(half).all()

@@ -1,6 +1,6 @@
 //! Finds the parts of the surface's bounding rectangle where lamps may lie.
 
-use crate::emission::Placement;
+use crate::emission::TexelZone;
 use crate::error::Result;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
@@ -17,14 +17,14 @@ const FULL: f32 = 0.9999;
 /// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has
 /// `size` texels and covers the bounding rectangle of `surface`, whose axes are those of the rotated pattern. The
 /// zones are given along the axes of `untouched`, the surface before the rotation.
-pub(super) fn of(
+pub(super) fn find(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),
     margin: f64,
     zones: &[DVec4],
     size: UVec2,
     job: Job,
-) -> Result<Option<Vec<Placement>>> {
+) -> Result<Option<Vec<TexelZone>>> {
     let is_full = surface.area >= FULL * surface.size.element_product();
     let keeps_margin = margin >= 0.0;
     if is_full && !keeps_margin && zones.is_empty() {
@@ -54,15 +54,15 @@ pub(super) fn of(
         keeps_margin && edge < radius.max(1.0)
     };
 
-    let mut ground = try_vec(width * height, Placement::Open)?;
-    for (i, out) in ground.iter_mut().enumerate() {
+    let mut texel_zones = try_vec(width * height, TexelZone::Open)?;
+    for (i, out) in texel_zones.iter_mut().enumerate() {
         *out = match () {
-            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => Placement::KeepOut,
-            _ if !covered[i] => Placement::Hidden,
-            _ => Placement::Open,
+            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => TexelZone::KeepOut,
+            _ if !covered[i] => TexelZone::Hidden,
+            _ => TexelZone::Open,
         };
     }
-    Ok(Some(ground))
+    Ok(Some(texel_zones))
 }
 
 /// Converts a point on one surface, in metres from its corner, to coordinates of another surface in the same plane.
@@ -132,8 +132,8 @@ mod tests {
         (scene, surface)
     }
 
-    fn share(ground: &[Placement], of: Placement) -> f64 {
-        ground.iter().filter(|g| **g == of).count() as f64 / ground.len() as f64
+    fn share(texel_zones: &[TexelZone], of: TexelZone) -> f64 {
+        texel_zones.iter().filter(|g| **g == of).count() as f64 / texel_zones.len() as f64
     }
 
     #[test]
@@ -141,24 +141,24 @@ mod tests {
         let (scene, surface) = l_shaped();
         let size = UVec2::new(600, 400);
         let of = |margin: f64, zones: &[DVec4]| {
-            of(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
+            find(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
         };
         // 4 of 24 m² are hidden. The hidden part is smaller by a strip of one texel along the two inner edges.
         let cut = of(-1.0, &[]);
-        assert!((share(&cut, Placement::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Placement::KeepOut) == 0.0);
+        assert!((share(&cut, TexelZone::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, TexelZone::KeepOut) == 0.0);
         // With a margin of 0.3 m, the open part is the L shrunk by the margin, with a quarter of a disc at the inner
         // corner.
         let kept = of(0.3, &[]);
         let exact = 5.4 * 3.4 - (2.0 * 2.0 + std::f64::consts::FRAC_PI_4 * 0.09 - 0.09);
         assert!(
-            (share(&kept, Placement::Open) * 24.0 - exact).abs() < 0.08,
+            (share(&kept, TexelZone::Open) * 24.0 - exact).abs() < 0.08,
             "{}",
-            share(&kept, Placement::Open) * 24.0
+            share(&kept, TexelZone::Open) * 24.0
         );
         // A zone of 2 × 1 m inside the L.
         let zone = of(-1.0, &[DVec4::new(1.0, 2.5, 3.0, 3.5)]);
-        assert!((share(&zone, Placement::KeepOut) * 24.0 - 2.0).abs() < 0.05);
-        assert_eq!(zone[300 * 600 + 200], Placement::KeepOut);
+        assert!((share(&zone, TexelZone::KeepOut) * 24.0 - 2.0).abs() < 0.05);
+        assert_eq!(zone[300 * 600 + 200], TexelZone::KeepOut);
     }
 
     #[test]
@@ -167,12 +167,13 @@ mod tests {
         let turned = surface.turned(&scene, 0.5).unwrap();
         let size = (turned.size * 100.0).round().as_uvec2();
         let zone = DVec4::new(1.0, 2.5, 3.0, 3.5);
-        let ground = of(&scene, (&turned, &surface), 0.0, &[zone], size, Monitor::default().job()).unwrap().unwrap();
+        let texel_zones =
+            find(&scene, (&turned, &surface), 0.0, &[zone], size, Monitor::default().job()).unwrap().unwrap();
         let area = f64::from(turned.size.element_product());
         assert!(
-            (share(&ground, Placement::Open) * area - 18.0).abs() < 0.15,
+            (share(&texel_zones, TexelZone::Open) * area - 18.0).abs() < 0.15,
             "{}",
-            share(&ground, Placement::Open) * area
+            share(&texel_zones, TexelZone::Open) * area
         );
         assert!((turned.size.x - (6.0 * 0.5f32.cos() + 2.0 * 0.5f32.sin())).abs() < 1.5);
     }
@@ -210,8 +211,9 @@ mod tests {
         // Both slabs must share one rectangle, and so one pattern. The beam's part of the rectangle is hidden.
         assert!((by_name.size.element_product() - 24.0).abs() < 1e-3, "{}", by_name.size);
         let size = UVec2::new(600, 400);
-        let ground = of(&scene, (&by_name, &by_name), -1.0, &[], size, Monitor::default().job()).unwrap().unwrap();
-        assert!((share(&ground, Placement::Hidden) - 1.0 / 6.0).abs() < 0.01);
+        let texel_zones =
+            find(&scene, (&by_name, &by_name), -1.0, &[], size, Monitor::default().job()).unwrap().unwrap();
+        assert!((share(&texel_zones, TexelZone::Hidden) - 1.0 / 6.0).abs() < 0.01);
     }
 
     #[test]
@@ -222,6 +224,6 @@ mod tests {
         let surface = surface::find(&scene, "Ceiling").unwrap();
         let size = UVec2::new(60, 40);
         let job = Monitor::default();
-        assert!(of(&scene, (&surface, &surface), -1.0, &[], size, job.job()).unwrap().is_none());
+        assert!(find(&scene, (&surface, &surface), -1.0, &[], size, job.job()).unwrap().is_none());
     }
 }

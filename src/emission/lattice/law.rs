@@ -1,5 +1,5 @@
-//! How the pattern of a texture continues beyond its exemplar: on a lattice, in a row, by repetition, or by patches
-//! without a lattice.
+//! The law of a texture: the rule by which its pattern continues beyond the exemplar. The pattern continues on a
+//! lattice, in a row, by repetition, or by patches without a lattice.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
@@ -7,10 +7,10 @@ use glam::{DMat2, DVec2};
 /// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
-/// How a texture continues beyond its exemplar. Vectors are in unwarped pixels.
+/// The rule by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Continuation {
-    /// No continuation: the texture is a part of the exemplar.
+pub enum Law {
+    /// The texture is a part of the exemplar.
     Copy,
     /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
@@ -18,16 +18,16 @@ pub enum Continuation {
     /// across the row, which serves as the second period.
     Row([DVec2; 2]),
     /// Too few lights for a period: the exemplar repeats as a whole, with its extent as both periods.
-    Tile([DVec2; 2]),
+    Whole([DVec2; 2]),
     /// Many lights without a period: patches are placed without a lattice.
     Free,
 }
 
-impl Continuation {
+impl Law {
     /// The two periods of the lattice; patches may be shifted only by lattice vectors. `None` if there is no lattice.
     pub fn lattice(&self) -> Option<[DVec2; 2]> {
         match *self {
-            Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
+            Self::Lattice(basis) | Self::Row(basis) | Self::Whole(basis) => Some(basis),
             Self::Copy | Self::Free => None,
         }
     }
@@ -53,7 +53,7 @@ impl Continuation {
         Ok(match self {
             Self::Lattice(basis) => Self::Lattice(fit(basis)?),
             Self::Row(basis) => Self::Row(fit(basis)?),
-            Self::Tile(basis) => Self::Tile(fit(basis)?),
+            Self::Whole(basis) => Self::Whole(fit(basis)?),
             Self::Copy | Self::Free => self,
         })
     }

@@ -1,6 +1,6 @@
-//! The canvas of a render in progress: for each pixel, the sums over its paths so far.
+//! The accumulator of a render in progress: for each pixel, the sums over its paths so far.
 
-use super::eye::Eye;
+use super::camera_rays::CameraRays;
 use super::grid::{AREA, Grid};
 use super::pass::Pass;
 use super::pixel::Pixel;
@@ -19,12 +19,12 @@ use std::sync::atomic::AtomicU64;
 use std::time::Instant;
 
 /// The sums over all paths so far, for every pixel of the image.
-pub struct Canvas<'a> {
+pub struct Accumulator<'a> {
     pub(super) world: &'a World,
     /// A copy of `world`, updated after each pass with what its paths have learned about which lights reach the
     /// surfaces in view.
     pub(super) learning: World,
-    pub(super) eye: Eye,
+    pub(super) camera_rays: CameraRays,
     pub(super) seed: u64,
     pub(super) grid: Grid,
     /// Pixels tile by tile, [`AREA`] per tile.
@@ -34,7 +34,7 @@ pub struct Canvas<'a> {
     pub(super) discarded: AtomicU64,
 }
 
-impl<'a> Canvas<'a> {
+impl<'a> Accumulator<'a> {
     pub fn new(world: &'a World, camera: &'a Camera, params: &'a Params) -> Result<Self> {
         Self::sized(world, camera, params, Grid { width: params.width, height: params.height })
     }
@@ -42,16 +42,16 @@ impl<'a> Canvas<'a> {
     fn sized(world: &'a World, camera: &'a Camera, params: &'a Params, grid: Grid) -> Result<Self> {
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
-        let eye = Eye::new(camera, params);
+        let camera_rays = CameraRays::new(camera, params);
         let learning = world.learning()?;
-        Ok(Self { world, learning, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
+        Ok(Self { world, learning, camera_rays, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// Builds a canvas for the pixels of one part of a distributed render, filled with the sums of this part.
+    /// Builds an accumulator for the pixels of one part of a distributed render, filled with the sums of this part.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
-        let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
-        let Self { grid, pixels, layers, .. } = &mut canvas;
+        let mut accumulator = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
+        let Self { grid, pixels, layers, .. } = &mut accumulator;
         let layers = layers.as_ref();
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             for (i, pixel) in pixels.iter_mut().enumerate() {
@@ -63,17 +63,18 @@ impl<'a> Canvas<'a> {
                 }
             }
         })?;
-        canvas.discarded = AtomicU64::new(sums.discarded());
-        Ok(canvas)
+        accumulator.discarded = AtomicU64::new(sums.discarded());
+        Ok(accumulator)
     }
 
     /// Traces paths until every pixel has the number of paths that `pass` asks for; stops early at the deadline.
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
-        let Self { learning, eye, seed, grid, pixels, layers, discarded, .. } = self;
+        let Self { learning, camera_rays, seed, grid, pixels, layers, discarded, .. } = self;
         let layers = layers.as_ref();
         let median_radiance = roulette::median_radiance(pixels, job.part(0.0, 0.0))?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
-        let context = TileContext { world: learning, eye, seed: *seed, grid: *grid, median_radiance, discarded };
+        let context =
+            TileContext { world: learning, camera_rays, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Skip tiles in which a coarse pass covers no pixel.
             if !pass.passes_over(grid.corner(tile)) {
@@ -115,8 +116,8 @@ impl<'a> Canvas<'a> {
         (x, y)
     }
 
-    /// Returns, for each pixel of the image, the pixel whose value it shows ([`Canvas::nearest`]): tile, index in the
-    /// tile, and number of paths.
+    /// Returns, for each pixel of the image, the pixel whose value it shows ([`Accumulator::nearest`]): tile, index in
+    /// the tile, and number of paths.
     pub(super) fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
         let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
         exec::for_rows(&mut places, self.grid.width, job, |y, row| {

@@ -9,7 +9,7 @@ use crate::job::Job;
 
 /// Whether light may be shown at a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Placement {
+pub enum TexelZone {
     /// Light is allowed.
     Open,
     /// The texel is not visible: light there is removed.
@@ -19,18 +19,18 @@ pub enum Placement {
 }
 
 impl Emission {
-    /// Removes light where `ground`, which has one entry per texel, does not allow it. The statistics of the emission
+    /// Removes light where `zones`, which has one entry per texel, does not allow it. The statistics of the emission
     /// still describe the pattern before the removal.
     ///
     /// Errors: `Degenerate` if no lamp is left.
-    pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
+    pub fn restrict(&mut self, zones: &[TexelZone], job: Job) -> Result<()> {
         // Mark the lamps to be removed as a whole before hidden light is removed, while every lamp is still connected.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
-        for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {
+        for (&label, _) in found.labels.iter().zip(zones).filter(|(l, g)| **l != 0 && **g == TexelZone::KeepOut) {
             is_out[label as usize - 1] = true;
         }
-        let goes = |lamp: usize, i: usize| is_out[lamp] || ground[i] == Placement::Hidden;
+        let goes = |lamp: usize, i: usize| is_out[lamp] || zones[i] == TexelZone::Hidden;
         let lit = found.labels.iter().enumerate().filter(|(_, label)| **label != 0);
         if !lit.map(|(i, &label)| (label as usize - 1, i)).any(|(lamp, i)| goes(lamp, i)) {
             return Ok(());

@@ -1,0 +1,291 @@
+//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a
+//! row, repetition of the whole exemplar, or patches without a lattice.
+//!
+//! A single analysis is not reliable, because distant lamps are magnified with their blur and spoil the
+//! autocorrelation of the near ones. So several laws are proposed, from the whole exemplar and from its
+//! sharper parts, with strict and with loose thresholds. Each is scored by how well it predicts the lamps of the whole
+//! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless
+//! another one scores clearly higher.
+
+pub mod sites;
+
+use super::exemplar::Exemplar;
+use super::exemplar::measured_lamp::MeasuredLamp;
+use super::exemplar::roles::Role;
+use super::lattice::law::Law;
+use super::lattice::{self, Correlated, basis, extent, neighbours};
+use super::params::{Input, LawMode, Params, working_side};
+use crate::error::{Error, Result};
+use crate::job::Job;
+use glam::DVec2;
+use sites::Sites;
+
+/// Lattices and rows are also proposed from parts of the exemplar in which the magnification is at most one of these
+/// values. Magnification is relative to the least magnified pixel. [judged on 20 photos]
+const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
+/// Limits for shifts that are proposed as periods: `MIN_CORRELATION` is the minimum correlation,
+/// `MIN_RELATIVE_CORRELATION` the minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of
+/// shifts. [judged on 20 photos]
+const MIN_CORRELATION: f32 = 0.35;
+const MIN_RELATIVE_CORRELATION: f32 = 0.6;
+const MAX_SHIFTS: usize = 6;
+/// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
+const SCORE_WITHOUT_PERIOD: f64 = 0.35;
+/// If the lattice or row found in the whole exemplar with the threshold `min_regularity` scores below this value, it
+/// is dropped, and the pattern counts as having no period. [judged on 20 photos]
+const MIN_SCORE: f64 = 0.15;
+/// The lattice or row found in the whole exemplar with the threshold `min_regularity` is replaced only by one whose
+/// score is higher by more than this. [judged on 20 photos]
+const CLEAR_MARGIN: f64 = 0.1;
+/// Laws are compared only if lamps have at least this share of the photo pixels of all lights; the other
+/// lights run through the photo. [judged on 20 photos]
+const MIN_LAMP_SHARE: f64 = 0.5;
+/// Two lattices or rows count as equal if the relative difference between their periods is at most this.
+/// [judged on 20 photos]
+const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
+
+/// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
+    /// for a comparison.
+    pub score: f64,
+    /// The best alternative law, and its score; the score is 0 if there is no alternative.
+    pub runner_up: Law,
+    pub runner_up_score: f64,
+}
+
+impl Choice {
+    /// The score minus the score of the runner-up.
+    pub fn margin(&self) -> f64 {
+        self.score - self.runner_up_score
+    }
+
+    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the law itself,
+    /// with score 0.
+    pub fn only(law: Law) -> Self {
+        Self { score: f64::NAN, runner_up: law, runner_up_score: 0.0 }
+    }
+}
+
+/// The analysis of an exemplar: its lamps, and how their pattern continues (on a lattice, in a row, by repetition or
+/// without a period).
+pub struct Analysis {
+    pub exemplar: Exemplar,
+    pub law: Law,
+    pub regularity: f64,
+    pub choice: Choice,
+    /// The settings with which the exemplar was analysed.
+    working_side: f64,
+    min_regularity: f32,
+    law_mode: LawMode,
+    max_magnification: f64,
+}
+
+/// A proposed law (lattice, row, …), with its regularity and its score.
+#[derive(Clone, Copy)]
+struct Proposal {
+    law: Law,
+    regularity: f64,
+    score: f64,
+}
+
+impl Proposal {
+    /// A proposal without a period, in which no lamp predicts another.
+    fn without_period(law: Law) -> Self {
+        Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
+    }
+}
+
+impl Analysis {
+    /// Analyses the exemplar of an input. Errors: no valid pixel, no light (`Degenerate`).
+    pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let exemplar = Exemplar::new(input, working_side(input, params), params.max_magnification, job.part(0.0, 0.4))?;
+        Self::of(exemplar, input, params, job)
+    }
+
+    /// Analyses an exemplar that has been built already: finds how its pattern continues.
+    pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let working_side = working_side(input, params);
+        let min_regularity = params.min_regularity;
+        let whole = Correlated::new(&exemplar, |_| true, job.part(0.4, 0.6))?;
+        let (law, regularity) = lattice::find_law(&exemplar, &whole, min_regularity);
+        let mut analysis = Self {
+            choice: Choice::only(law),
+            exemplar,
+            law,
+            regularity,
+            working_side,
+            min_regularity,
+            law_mode: params.law,
+            max_magnification: params.max_magnification,
+        };
+        match params.law {
+            LawMode::Correlation => {}
+            LawMode::Best if min_regularity >= 1.0 => {}
+            LawMode::Best => analysis.compare(&whole, job.part(0.6, 1.0))?,
+            LawMode::Whole => analysis.set(Proposal::without_period(extent::as_period(&analysis.exemplar))),
+            LawMode::Free => analysis.set(Proposal::without_period(Law::Free)),
+            LawMode::Lattice | LawMode::Row => analysis.choose_by_mode(params.law, &whole, job.part(0.6, 1.0))?,
+        }
+        Ok(analysis)
+    }
+
+    /// Whether an analysis with the given input and settings would have the same result, so that this one can be
+    /// reused.
+    pub fn is_reusable_for(&self, input: &Input, params: &Params) -> bool {
+        let Exemplar { width, height, .. } = self.exemplar;
+        [width, height] == [input.unwarped.width, input.unwarped.height]
+            && self.working_side == working_side(input, params)
+            && self.min_regularity == params.min_regularity
+            && self.law_mode == params.law
+            && self.max_magnification == params.max_magnification
+    }
+
+    /// Compares the law found in the whole exemplar with other proposals, and chooses one.
+    fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
+        let exemplar = &self.exemplar;
+        let lamps = exemplar.measured_lamps(Role::is_whole);
+        let parts = exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
+        let seen: f64 = lamps.iter().map(|l| l.weight).sum();
+        let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
+        let endless: f64 = through.map(|(_, area)| area).sum();
+        if lamps.len() == 1 && parts.is_empty() && endless == 0.0 {
+            // A single lamp shows no repetition, even if its few pixels correlate.
+            self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
+            return Ok(());
+        }
+        if lamps.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
+            return Ok(());
+        }
+        let score = |law: Law| score(exemplar, (&lamps, &parts), law);
+        let own = Proposal { law: self.law, regularity: self.regularity, score: score(self.law) };
+        if own.score.is_nan() {
+            return Ok(());
+        }
+        let mut proposals = self.propose(&lamps, whole, job)?;
+        proposals.iter_mut().for_each(|p| p.score = score(p.law));
+        proposals.retain(|p| p.score.is_finite());
+        let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
+
+        // Find the proposal with the highest score, the first one among equals. It replaces the law found in
+        // the whole exemplar only if its score is clearly higher.
+        let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
+        let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
+        let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
+        // For the panes of a luminous ceiling, prefer the best lattice, unless the law found in the whole
+        // exemplar scores clearly higher.
+        let panes = lattice.filter(|p| {
+            exemplar.is_luminous_ceiling()
+                && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN
+                && p.score > own.score - CLEAR_MARGIN
+        });
+        let chosen = match panes {
+            Some(panes) => panes,
+            None if best.score > own.score + CLEAR_MARGIN && best.score > SCORE_WITHOUT_PERIOD => best,
+            None if own.score < MIN_SCORE => without_period,
+            None => own,
+        };
+        proposals.extend([own, without_period]);
+        let others = proposals.iter().filter(|p| !is_same(p.law, chosen.law));
+        let runner_up = others.max_by(|a, b| a.score.total_cmp(&b.score));
+        (self.law, self.regularity) = (chosen.law, chosen.regularity);
+        self.choice = Choice {
+            score: chosen.score,
+            runner_up: runner_up.map_or(chosen.law, |p| p.law),
+            runner_up_score: runner_up.map_or(0.0, |p| p.score),
+        };
+        Ok(())
+    }
+
+    /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
+    /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
+    /// from the distances between neighbouring panes.
+    fn propose(&self, lamps: &[MeasuredLamp], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
+        let exemplar = &self.exemplar;
+        let mut parts = Vec::new();
+        for limit in MAGNIFICATIONS {
+            let Some(limit) = exemplar.magnification_limit(limit) else { continue };
+            let pitch = exemplar.working.pitch;
+            let width = exemplar.working.width;
+            let centre = |i: usize| (DVec2::new((i % width) as f64, (i / width) as f64) + 0.5) * pitch;
+            parts.extend(Correlated::new(exemplar, |i| limit.contains(centre(i)), job.part(0.0, 0.0)).ok());
+        }
+        let mut proposals = Vec::new();
+        let extent = extent::of(exemplar);
+        for correlated in std::iter::once(whole).chain(&parts) {
+            let (law, regularity) = lattice::find_law(exemplar, correlated, self.min_regularity);
+            proposals.push(Proposal { law, regularity, score: 0.0 });
+            let shifts = lattice::shifts(exemplar, correlated, MIN_CORRELATION, MIN_RELATIVE_CORRELATION, MAX_SHIFTS);
+            for (n, &(a, goodness)) in shifts.iter().enumerate() {
+                let row = lattice::row(exemplar, a, extent);
+                proposals.push(Proposal { law: row, regularity: goodness, score: 0.0 });
+                for &(b, other) in shifts[n + 1..].iter().filter(|(b, _)| !lattice::is_parallel(a, *b)) {
+                    let law = Law::Lattice(basis::refine(exemplar, [a, b], 2));
+                    proposals.push(Proposal { law, regularity: goodness.min(other), score: 0.0 });
+                }
+            }
+            job.check()?;
+        }
+        let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(lamps) } else { Vec::new() };
+        for basis in panes {
+            let law = Law::Lattice(basis::refine(exemplar, basis, 2));
+            proposals.push(Proposal { law, regularity: 0.0, score: 0.0 });
+        }
+        Ok(proposals)
+    }
+
+    /// Chooses the best lattice or the best row, as `mode` asks. Errors: `Degenerate` if there is none.
+    fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
+        let is_asked = |c: &Law| match mode {
+            LawMode::Row => matches!(c, Law::Row(_)),
+            _ => matches!(c, Law::Lattice(_)),
+        };
+        if is_asked(&self.law) {
+            return Ok(());
+        }
+        let lamps = self.exemplar.measured_lamps(Role::is_whole);
+        let parts = self.exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
+        let mut proposals = self.propose(&lamps, whole, job)?;
+        proposals.retain(|p| is_asked(&p.law));
+        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&lamps, &parts), p.law));
+        let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
+        let best = best.ok_or_else(|| {
+            Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
+        })?;
+        self.set(best);
+        Ok(())
+    }
+
+    fn set(&mut self, chosen: Proposal) {
+        (self.law, self.regularity) = (chosen.law, chosen.regularity);
+        self.choice = Choice { score: chosen.score, ..Choice::only(chosen.law) };
+    }
+}
+
+/// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
+/// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
+fn score(exemplar: &Exemplar, (lamps, parts): (&[MeasuredLamp], &[MeasuredLamp]), law: Law) -> f64 {
+    match Sites::new(exemplar, lamps, law) {
+        Some(sites) => sites.score(parts),
+        None => match law {
+            Law::Free | Law::Whole(_) => SCORE_WITHOUT_PERIOD,
+            _ => f64::NAN,
+        },
+    }
+}
+
+/// Whether two laws are equal except for a small difference between their periods.
+fn is_same(a: Law, b: Law) -> bool {
+    let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
+        let close = |p: DVec2, q: DVec2| {
+            (p - q).length().min((p + q).length()) < MAX_PERIOD_DIFFERENCE * p.length().max(q.length())
+        };
+        (close(a, c) && close(b, d)) || (close(a, d) && close(b, c))
+    };
+    match (a, b) {
+        (Law::Lattice(a), Law::Lattice(b)) | (Law::Row(a), Law::Row(b)) => near(a, b),
+        (Law::Whole(_) | Law::Free, Law::Whole(_) | Law::Free) => true,
+        (a, b) => a == b,
+    }
+}
