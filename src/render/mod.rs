@@ -51,6 +51,7 @@ mod shared;
 mod tape;
 mod texture_context;
 mod vertex;
+mod vicinity;
 mod world;
 
 pub use aov::Aov;
