@@ -16,9 +16,9 @@ use glam::{Vec3, Vec3A};
 const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// A split replaces a better one found before only if its cost is lower by more than this share. The splits of lamps in
-/// a regular pattern often have equal costs; the first one then wins, whichever costs less by rounding. The tree, and
-/// with it the image, so remains the same if the scene is scaled. [rounding]
+/// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. The splits of lamps
+/// in a regular pattern often have equal costs, up to rounding, which must not decide: a scaled scene gets the same
+/// tree, and so the same image. [rounding]
 const TIE: f32 = 1e-4;
 /// Added to a position in units of bins, so that a light on the border of two bins falls into the upper one, whichever
 /// way its position is rounded. [rounding]
@@ -311,7 +311,7 @@ fn split(items: &mut [Item]) -> usize {
         for i in 1..BINS {
             extent.merge(&bins[i - 1]);
             let cost = extent.cost() + above[i];
-            if extent.count > 0 && (extent.count as usize) < items.len() && cost < best.0 * (1.0 - TIE) {
+            if extent.count > 0 && (extent.count as usize) < items.len() && cost <= best.0 * (1.0 + TIE) {
                 best = (cost, axis, i);
             }
         }
