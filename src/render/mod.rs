@@ -14,10 +14,10 @@
 //! - A [`PathSink`] receives its contributions.
 //! - `film` keeps means and errors, and decides which pixels get more paths.
 //!
-//! `shared` lets the paths of neighbouring pixels reuse each other's secondary vertices. `layers` computes further
-//! images from the same paths: light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes
-//! grids and surface maps in lux, [`glare`] the unified glare rating of observers. `denoise` filters previews, which
-//! biases them.
+//! `vicinity` holds the surfaces around the paths, which suffice for most rays. `shared` lets the paths of neighbouring
+//! pixels reuse each other's secondary vertices. `layers` computes further images from the same paths: light path
+//! expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and surface maps in lux, [`glare`]
+//! the unified glare rating of observers. `denoise` filters previews, which biases them.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 //! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene; in C,
@@ -51,6 +51,7 @@ mod shared;
 mod tape;
 mod texture_context;
 mod vertex;
+mod vicinity;
 mod world;
 
 pub use aov::Aov;

@@ -7,6 +7,7 @@ use super::ggx::AlbedoTable;
 use super::light::{Lights, Reach};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
+use super::vicinity::Vicinity;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
@@ -24,6 +25,11 @@ use std::sync::Arc;
 pub struct World {
     scene: Arc<Scene>,
     accel: Arc<Accel>,
+    /// The structure of the triangles around the vertices of the paths; `None` until a render has learned where they
+    /// are, and if it saves little.
+    vicinity: Option<Arc<Vicinity>>,
+    /// Whether renders may build the structure `vicinity`.
+    has_vicinity: bool,
     centre: DVec3,
     /// Id of the first triangle of each mesh, followed by the total number of triangles.
     first: Arc<Vec<u32>>,
@@ -35,6 +41,10 @@ pub struct World {
     /// Whether any material lets light through. If not, rays do not test the opacity of their hits.
     any_see_through: bool,
 }
+
+/// The structure of the triangles around the vertices has at most one triangle per this number of light samples so
+/// far, so that building it takes a small part of the time spent so far. [convention]
+const TRIANGLES_PER_SAMPLE: usize = 4;
 
 /// A surface on a shadow ray through which light passes in a straight line: a clear pane, or a surface of partial
 /// opacity.
@@ -95,6 +105,8 @@ impl World {
         Ok(Self {
             scene,
             accel: Arc::new(accel),
+            vicinity: None,
+            has_vicinity: true,
             centre,
             first: Arc::new(first),
             facets: Arc::new(facets),
@@ -126,6 +138,12 @@ impl World {
         self.lights.learns = false;
     }
 
+    /// Makes renders trace all rays through the structure of the whole scene, which changes no result. Tests and
+    /// benchmarks use this function to measure how much the structure of the surroundings saves.
+    pub fn without_vicinity(&mut self) {
+        self.has_vicinity = false;
+    }
+
     /// Returns a copy that learns, from the paths traced in it, which lights reach the surfaces in view.
     pub(super) fn learning(&self) -> Result<Self> {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
@@ -133,13 +151,33 @@ impl World {
 
     /// Returns an updated copy for the next pass; `None` if this copy stays in use ([`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
-        Ok(self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }))
+        self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.in_vicinity()).transpose()
     }
 
     /// Ends the learning: returns a copy that keeps what this copy has learned, and learns no more.
     pub(super) fn settled(&self) -> Result<Self> {
         let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
-        Ok(Self { lights: learned.settled(), ..self.clone() })
+        let world = Self { lights: learned, ..self.clone() }.in_vicinity()?;
+        Ok(Self { lights: world.lights.clone().settled(), ..world })
+    }
+
+    /// Builds the structure of the triangles around the vertices so far, unless there is one that still fits.
+    fn in_vicinity(self) -> Result<Self> {
+        let Some((places, counted)) = self.lights.places()?.filter(|_| self.has_vicinity) else { return Ok(self) };
+        if let Some(vicinity) = &self.vicinity
+            && vicinity.fits(places)?
+        {
+            return Ok(self);
+        }
+        let max = counted as usize / TRIANGLES_PER_SAMPLE;
+        let vicinity = Vicinity::new(&self.accel, self.facets.len(), places, max)?;
+        Ok(Self { vicinity: vicinity.map(Arc::new), ..self })
+    }
+
+    /// Returns the structure of the surroundings of the paths, if this copy has one.
+    #[cfg(test)]
+    pub(super) fn vicinity(&self) -> Option<&Vicinity> {
+        self.vicinity.as_deref()
     }
 
     /// Returns how many lamps do not reach the surfaces in view ([`Lights::reach`]).
@@ -226,9 +264,38 @@ impl World {
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {
-            return self.accel.closest(ray, |hit| hit.triangle != from);
+            return self.nearest(ray, |hit| hit.triangle != from);
         }
-        self.accel.closest(ray, |hit| hit.triangle != from && self.is_present(hit, &seed))
+        self.nearest(ray, |hit| hit.triangle != from && self.is_present(hit, &seed))
+    }
+
+    /// Returns the nearest hit that `accept` accepts.
+    #[inline]
+    fn nearest(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        let near = self.vicinity.as_deref().and_then(|vicinity| vicinity.closest(ray, &accept));
+        near.or_else(|| self.accel.closest(ray, accept))
+    }
+
+    /// Whether a hit that `accept` accepts lies between the ends of a ray.
+    #[inline]
+    fn is_blocked(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
+        match self.vicinity.as_deref() {
+            // A hit near the start is a hit, wherever the ray ends.
+            Some(near) if near.contains(ray.origin) => {
+                near.accel().occluded(ray, &accept)
+                    || !near.contains(ray.at(ray.t_max)) && self.accel.occluded(ray, accept)
+            }
+            _ => self.accel.occluded(ray, accept),
+        }
+    }
+
+    /// Returns the structure that holds all triangles which may lie between the ends of a ray.
+    #[inline]
+    fn accel_between(&self, ray: &Ray) -> &Accel {
+        match self.vicinity.as_deref() {
+            Some(vicinity) if vicinity.contains_segment(ray) => vicinity.accel(),
+            _ => &self.accel,
+        }
     }
 
     /// Whether the surface is present at a hit, according to its opacity. With alpha blending, the decision is random.
@@ -256,12 +323,12 @@ impl World {
             panes.clear();
         }
         if !self.any_see_through {
-            let blocked = self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle));
+            let blocked = self.is_blocked(ray, |hit| !ends.contains(&hit.triangle));
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
         }
         // Multiply in f64, so that the order of the hits does not affect the rounded result.
         let mut share = DVec3::ONE;
-        let blocked = self.accel.occluded(ray, |hit| {
+        let blocked = self.accel_between(ray).occluded(ray, |hit| {
             if ends.contains(&hit.triangle) {
                 return false;
             }
@@ -286,7 +353,7 @@ impl World {
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;
-        !self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle) && is_met(hit))
+        !self.is_blocked(ray, |hit| !ends.contains(&hit.triangle) && is_met(hit))
     }
 
     fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {

@@ -31,15 +31,16 @@ use crate::image::try_vec;
 /// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
 /// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` divided by the square root of the
-/// number of samples already drawn from them, clamped to the range `UNLIKELY_SHARES`. [judged on 3 scenes]
+/// number of samples already drawn from them, clamped to the range `UNLIKELY_SHARES`. The square root is rounded down
+/// to a power of two. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
 /// A neighbour in the light tree counts as at most this many samples. If it has more, its counts of drawn and of
 /// arrived samples are scaled down by the same factor. [judged on 3 scenes]
 const MAX_WITNESS: f64 = 16.0;
 /// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
-/// arrives. The root counts as at least this value. [judged on 3 scenes]
-const MIN_WEIGHT: f64 = 0.1;
+/// arrives. The root is rounded to a power of two and counts as at least this value. [judged on 3 scenes]
+const MIN_WEIGHT: f64 = 0.125;
 /// Bit that marks an unlikely light in an entry of [`Split::places`].
 const UNLIKELY: u32 = 1 << 31;
 
@@ -130,13 +131,15 @@ impl Split {
 /// That probability is at most about `1 / samples`.
 pub fn unlikely_share(samples: u64) -> f64 {
     let [min, max] = UNLIKELY_SHARES;
-    (UNLIKELY_ROOT / (samples.max(1) as f64).sqrt()).clamp(min, max)
+    let root = f64::from(samples.max(1).ilog2() / 2).exp2();
+    (UNLIKELY_ROOT / root).clamp(min, max)
 }
 
 /// Returns the factor on each light's importance: the square root of the probability that a sample of the light
 /// arrives, at least [`MIN_WEIGHT`], or 0 if the light is unlikely. The root minimises the variance if the probability
-/// is the same for all receivers. The probability is estimated from the light's own samples and a prior, which counts
-/// as one further sample.
+/// is the same for all receivers. It is rounded to a power of two, so that one sample more or less seldom changes the
+/// weights, and lights whose samples nearly all arrive keep the weight 1. The probability is estimated from the light's
+/// own samples and a prior, which counts as one further sample.
 pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> Result<Vec<f32>> {
     let mut priors = try_vec(lights.len(), 1.0)?;
     neighbour_priors(tree, evidence, &mut priors)?;
@@ -144,7 +147,7 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
     for ((weight, prior), own) in weights.iter_mut().zip(priors).zip(evidence) {
         let arrival = (own.arrived as f64 + prior) / (own.drawn as f64 + 1.0);
         if own.arrived > 0 || arrival >= MIN_ARRIVAL {
-            *weight = arrival.sqrt().clamp(MIN_WEIGHT, 1.0) as f32;
+            *weight = arrival.sqrt().log2().round().exp2().clamp(MIN_WEIGHT, 1.0) as f32;
         }
     }
     Ok(weights)

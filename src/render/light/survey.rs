@@ -4,6 +4,7 @@
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
+use crate::render::vicinity::Places;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Value of `LightSample::surveyed` for a light sample that is not counted.
@@ -17,6 +18,8 @@ pub const ENOUGH: u64 = 1 << 17;
 pub struct Survey {
     /// For each light, the number of its samples, and the number of its samples that were not occluded.
     counts: Vec<[AtomicU32; 2]>,
+    /// Positions of receivers.
+    pub places: Places,
 }
 
 /// The counts of a light or of a cluster of lights.
@@ -39,7 +42,7 @@ impl Survey {
     pub fn new(lights: usize) -> Result<Self> {
         let mut counts = try_with_capacity(lights)?;
         counts.resize_with(lights, Default::default);
-        Ok(Self { counts })
+        Ok(Self { counts, places: Places::new()? })
     }
 
     /// Counts a sample of the light with number `light`.

@@ -256,6 +256,32 @@ fn any_number_of_threads_builds_the_same_tree() {
 }
 
 #[test]
+fn regular_patterns_of_lamps_make_the_same_tree_at_any_scale() {
+    // Such lamps have candidate splits of equal cost, and centres on the borders of bins.
+    let mut rng = Rng::new(44, &[]);
+    let pmfs = |scale: f32, side: usize, receivers: &[Receiver]| {
+        let lamp = |i: usize| {
+            let corner = Vec3::new((i % side) as f32 * 0.7, 3.0, (i / side) as f32 * 0.7) * scale;
+            let corners = [corner, corner + Vec3::new(0.3, 0.0, 0.3) * scale];
+            Bounds::of_surface(corners, Vec3::NEG_Y, false, 5.0 * scale * scale)
+        };
+        let tree = LightTree::build(&(0..side * side).map(lamp).collect::<Vec<_>>()).unwrap();
+        let scaled = receivers.iter().map(|r| Receiver { position: r.position * scale, ..*r });
+        scaled.flat_map(|r| (0..side * side).map(|light| tree.pmf(&r, light)).collect::<Vec<_>>()).collect::<Vec<_>>()
+    };
+    for side in [3, 4, 8, 13, 15, 20, 25] {
+        let receivers = receivers(4, Vec3::splat(2.0), &mut rng);
+        let unit = pmfs(1.0, side, &receivers);
+        for scale in [1e-4, 0.1, 0.3, 7.0, 1e3, 1e6] {
+            let scaled = pmfs(scale, side, &receivers);
+            // Allow for rounding, which may also move a tiny probability to 0.
+            let differ = unit.iter().zip(&scaled).filter(|&(a, b)| (a - b).abs() > 1e-3 * a.max(*b) + 1e-6).count();
+            assert_eq!(differ, 0, "{side} × {side} lamps, scale {scale}");
+        }
+    }
+}
+
+#[test]
 fn lights_all_in_one_place_or_of_all_sizes_make_a_tree() {
     let same = vec![Bounds::of_point(Vec3::ONE, 1.0); 1000];
     let growing: Vec<Bounds> =

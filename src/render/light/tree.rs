@@ -16,6 +16,13 @@ use glam::{Vec3, Vec3A};
 const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
+/// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. The splits of lamps
+/// in a regular pattern often have equal costs, up to rounding, which must not decide: a scaled scene gets the same
+/// tree, and so the same image. [rounding]
+const TIE: f32 = 1e-4;
+/// Added to a position in units of bins, so that a light on the border of two bins falls into the upper one, whichever
+/// way its position is rounded. [rounding]
+const BORDER: f32 = 1e-3;
 /// Clusters of at least this many lights are split in parallel.
 /// [convention: Embree's builders have the same threshold]
 const PARALLEL_FROM: usize = 1024;
@@ -111,7 +118,8 @@ impl LightTree {
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
             let cost = |i: usize| clusters[parts[i] as usize].cost;
-            let Some(costliest) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
+            let costlier = |best: usize, i: usize| if cost(i) > cost(best) * (1.0 + TIE) { i } else { best };
+            let Some(costliest) = divisible.reduce(costlier) else { break };
             let two = clusters[parts[costliest] as usize].parts;
             parts.splice(costliest..=costliest, two);
         }
@@ -303,7 +311,7 @@ fn split(items: &mut [Item]) -> usize {
         for i in 1..BINS {
             extent.merge(&bins[i - 1]);
             let cost = extent.cost() + above[i];
-            if extent.count > 0 && (extent.count as usize) < items.len() && cost < best.0 {
+            if extent.count > 0 && (extent.count as usize) < items.len() && cost <= best.0 * (1.0 + TIE) {
                 best = (cost, axis, i);
             }
         }
@@ -328,7 +336,7 @@ impl Binning {
     }
 
     fn bin(&self, x: f32) -> usize {
-        (((x - self.low) * self.scale) as usize).min(BINS - 1)
+        (((x - self.low) * self.scale + BORDER) as usize).min(BINS - 1)
     }
 }
 

@@ -133,6 +133,26 @@ fn any_number_of_threads_learns_the_same() {
 }
 
 #[test]
+fn paths_in_one_room_need_only_the_surfaces_around_it() {
+    let mut scene = building();
+    (6..30).for_each(|i| add_room(&mut scene, 3.0 * i as f32, [0.0; 2], 3));
+    let surroundings = world(scene);
+    let mut whole = surroundings.clone();
+    whole.without_vicinity();
+    let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
+    let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
+    assert!(a.beauty == b.beauty && a.variance == b.variance && a.reach == b.reach);
+    // The structure of the surroundings is in use after a few hundred paths.
+    let has_vicinity = |world: &World| {
+        let learning = world.learning().unwrap();
+        let point = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::splat(0.3), front: true };
+        (0..1024).for_each(|i| irradiance(&learning, &point, 5, i, &mut Sum(DVec3::ZERO)));
+        learning.settled().unwrap().vicinity().is_some()
+    };
+    assert!(has_vicinity(&surroundings) && !has_vicinity(&whole));
+}
+
+#[test]
 fn light_through_a_gap_is_not_lost() {
     // The lamp of the first room is so dim that most of the room's light comes through the gap.
     let mut scene = building();

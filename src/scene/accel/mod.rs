@@ -22,6 +22,7 @@ mod lines;
 mod node;
 mod packet;
 mod pages;
+mod part;
 mod ray;
 mod reinsert;
 mod stack;

@@ -85,6 +85,12 @@ impl Node {
         self.children[lane] = child.0;
     }
 
+    /// Whether a lane has a child whose box satisfies the test `meets`, which takes the lower and the upper corner.
+    pub fn is_met(&self, lane: usize, meets: impl Fn(Vec3, Vec3) -> bool) -> bool {
+        let corner = |side: usize| Vec3::from_array([0, 1, 2].map(|axis| self.bounds[2 * axis + side].0[lane]));
+        !self.child(lane).is_empty() && meets(corner(0), corner(1))
+    }
+
     #[inline(always)]
     pub fn child(&self, lane: usize) -> Child {
         Child(self.children[lane & 7])

@@ -35,6 +35,18 @@ impl Packet {
         packet
     }
 
+    /// Returns the index and the corners of each triangle.
+    pub fn triangles(&self) -> impl Iterator<Item = (u32, [Vec3; 3])> {
+        let used = (0..WIDTH).filter(|&lane| self.ids[lane] != u32::MAX);
+        let point = |lane: usize| move |rows: &[Row; 3]| Vec3::from_array([0, 1, 2].map(|axis| rows[axis].0[lane]));
+        used.map(move |lane| (self.ids[lane], self.corners.each_ref().map(point(lane))))
+    }
+
+    /// Replaces the index of each triangle by the entry of `ids` at that index.
+    pub fn renumber(&mut self, ids: &[u32]) {
+        self.ids.iter_mut().filter(|id| **id != u32::MAX).for_each(|id| *id = ids[*id as usize]);
+    }
+
     /// Returns a mask of the triangles hit, and the hits of all lanes. A hit counts if its distance is at most `t_max`
     /// and exceeds its own rounding error.
     #[inline(always)]

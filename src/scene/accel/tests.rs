@@ -216,6 +216,40 @@ fn a_scene_built_in_parts_gives_the_hits_of_testing_every_triangle() {
 }
 
 #[test]
+fn a_part_gives_the_hits_of_the_whole_within_its_box() {
+    let mut triangles = room_with_block();
+    // Add coincident triangles, of which the lowest index is hit, and degenerate ones.
+    triangles.extend_from_within(100..400);
+    triangles.insert(50, [Vec3::ONE; 3]);
+    let whole = build(&triangles);
+    let (low, high) = (Vec3::new(-0.6, -3.0, 0.0), Vec3::new(0.2, 0.5, 0.9));
+    let job = Monitor::default();
+    let (margin, all) = (Vec3::splat(1e-4), triangles.len());
+    let part = whole.part([low - margin, high + margin], all, job.job()).unwrap().unwrap();
+    let mut rng = Rng::new(6, &[]);
+    let within = |rng: &mut Rng| low + (high - low) * (random_vec(rng) * 0.5 + 0.5);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..2000 {
+        let (from, to) = (within(&mut rng), within(&mut rng));
+        let segment = Ray { origin: from, direction: to - from, t_max: 1.0 };
+        assert_eq!(part.closest(&segment, |_| true), whole.closest(&segment, |_| true));
+        assert_eq!(part.occluded(&segment, |_| true), whole.occluded(&segment, |_| true));
+        // A hit within the box is also the nearest of a longer ray.
+        let ray = Ray::new(from, to - from);
+        match part.closest(&ray, |_| true).filter(|hit| hit.t < 1.0) {
+            Some(hit) => hits += usize::from(whole.closest(&ray, |_| true) == Some(hit)),
+            None => misses += 1,
+        }
+    }
+    assert!(hits + misses == 2000 && hits > 200 && misses > 200, "{hits} {misses}");
+    let bytes = |accel: &Accel| accel.bytes() as f64;
+    assert!(bytes(&part) < 0.7 * bytes(&whole), "{} {}", bytes(&part), bytes(&whole));
+    assert!(whole.part([low, high], 10, job.job()).unwrap().is_none());
+    assert!(whole.part([Vec3::splat(9.0), Vec3::splat(10.0)], all, job.job()).unwrap().is_none());
+    assert!(build(&[]).part([low, high], all, job.job()).unwrap().is_none());
+}
+
+#[test]
 fn the_structure_is_the_same_to_the_bit_on_any_number_of_threads() {
     let triangles = room_with_block();
     let [a, b] = [1, 3].map(|threads| Pool::new(threads).unwrap().run(|| build(&triangles)));

@@ -1,0 +1,64 @@
+//! The structure of a part of the scene: the triangles near a box. Rays that stay within the box find the same hits in
+//! it, in fewer steps.
+
+use super::node::Node;
+use super::packet::Packet;
+use super::traverse::Accel;
+use crate::error::Result;
+use crate::image::try_collect;
+use crate::job::Job;
+use glam::Vec3;
+
+impl Accel {
+    /// Builds the structure of the triangles whose bounding boxes meet the box from `low` to `high`. The triangles
+    /// keep their indices. Returns `None` if there are more than `max`, or none.
+    pub fn part(&self, [low, high]: [Vec3; 2], max: usize, job: Job) -> Result<Option<Self>> {
+        let Some(found) = self.triangles_in([low, high], max)? else { return Ok(None) };
+        let ids = try_collect(found.iter().map(|&(id, _)| id))?;
+        let mut part = Self::build(&try_collect(found.into_iter().map(|(_, corners)| corners))?, job)?;
+        part.renumber(&ids);
+        Ok(Some(part))
+    }
+
+    /// Returns the triangles whose bounding boxes meet a box, by ascending index; `None` if there are more than `max`,
+    /// or none.
+    fn triangles_in(&self, [low, high]: [Vec3; 2], max: usize) -> Result<Option<Vec<(u32, [Vec3; 3])>>> {
+        let meets = |from: Vec3, to: Vec3| from.cmple(high).all() && to.cmpge(low).all();
+        let mut found = Vec::new();
+        let mut open = vec![self.root];
+        while let Some(child) = open.pop().filter(|_| found.len() <= max) {
+            if child.is_empty() {
+                continue;
+            }
+            if child.is_packet() {
+                // SAFETY: children refer to the lines at which nodes and packets were written.
+                let packet = unsafe { self.lines.get::<Packet>(child.line()) };
+                let within = |corners: &[Vec3; 3]| {
+                    let [a, b, c] = *corners;
+                    meets(a.min(b).min(c), a.max(b).max(c))
+                };
+                found.extend(packet.triangles().filter(|(_, corners)| within(corners)));
+            } else {
+                // SAFETY: children refer to the lines at which nodes and packets were written.
+                let node = unsafe { self.lines.get::<Node>(child.line()) };
+                open.extend((0..8).filter(|&lane| node.is_met(lane, meets)).map(|lane| node.child(lane)));
+            }
+        }
+        found.sort_unstable_by_key(|&(id, _)| id);
+        Ok((!found.is_empty() && found.len() <= max).then_some(found))
+    }
+
+    /// Replaces the index of each triangle by the entry of `ids` at that index.
+    fn renumber(&mut self, ids: &[u32]) {
+        let mut open = vec![self.root];
+        while let Some(child) = open.pop() {
+            if child.is_packet() && !child.is_empty() {
+                self.lines.get_mut::<Packet>(child.line()).renumber(ids);
+            } else if !child.is_empty() {
+                // SAFETY: children refer to the lines at which nodes and packets were written.
+                let node = unsafe { self.lines.get::<Node>(child.line()) };
+                open.extend((0..8).map(|lane| node.child(lane)));
+            }
+        }
+    }
+}
