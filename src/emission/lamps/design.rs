@@ -51,13 +51,15 @@ const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// (`BLOOM`), both in photo pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, and
-/// bloom explains at least the share `MIN_EXPLAINED` of the variation of their sides. Lamps of several lengths, and
-/// partly hidden lamps, fail this test, because their sides do not grow with magnification. [bench photos:tune,
-/// photos:real]
-const SHOWN_BLOOM: f64 = 1.5;
+/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, the bloom
+/// is at most `MAX_BLOOM`, and it explains at least the share `MIN_EXPLAINED` of the variation of their sides. Lamps of
+/// several lengths, and partly hidden lamps, fail this test, because their sides do not grow with magnification.
+/// `MIN_SIDE`: minimum side without bloom, as a share of the shortest measured side. [bench photos:tune, photos:real]
+const SHOWN_BLOOM: f64 = 6.0;
+const MAX_BLOOM: f64 = 10.0;
 const MIN_EXPLAINED: f64 = 0.5;
 const MIN_BLOOM_LAMPS: usize = 4;
+const MIN_SIDE: f64 = 0.35;
 /// Number of corners of an ellipse's outline. [rounding]
 const ELLIPSE_CORNERS: usize = 64;
 
@@ -240,7 +242,7 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     if agreement < MIN_AGREEMENT {
         return None;
     }
-    if let Some(diameter) = smeared_disc(&judges) {
+    if let Some(diameter) = disc(&judges, is_round) {
         design = Design { shape: Shape::Ellipse, size: DVec2::splat(diameter), axis: DVec2::X };
     }
     let Design { axis, shape, .. } = design;
@@ -251,10 +253,23 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps that are discs elongated by blur, measured along the shorter axis; `None` if they are not.
-/// Lamps count as such discs if two conditions hold: at least half of them, by weight, are elongated along their blur;
-/// and they are small in the photo, or not all elongated in the same direction.
-fn smeared_disc(members: &[&Member]) -> Option<f64> {
+/// The diameter of lamps that are discs, without their bloom; `None` if they are not discs.
+///
+/// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. If this
+/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Lamps without a clear
+/// shape are discs if two conditions hold: at least half of them, by weight, are elongated along their blur; and they
+/// are small in the photo, or not all elongated in the same direction.
+fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
+    let pixel = |m: &Member, x: f64, y: f64| (m.inverse_map.transpose() * DVec2::new(x, y)).length();
+    let sides = |m: &&Member| {
+        let [[short, x], [long, y]] = principal(m.moments);
+        [(4.0 * short, pixel(m, -y, x)), (4.0 * long, pixel(m, x, y))]
+    };
+    let are_enough = members.len() >= MIN_BLOOM_LAMPS;
+    let shown = are_enough.then(|| BloomFit::new(members.iter().flat_map(sides)).shown()).flatten();
+    if are_round && shown.is_some() {
+        return shown;
+    }
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
     let smeared: f64 = members.iter().filter(|m| m.is_smeared()).map(|m| m.weight).sum();
@@ -262,15 +277,11 @@ fn smeared_disc(members: &[&Member]) -> Option<f64> {
         let [[_, x], [_, y]] = principal(m.moments);
         DVec2::from_angle(2.0 * y.atan2(x)) * m.weight
     };
-    let common_turn = members.iter().map(|m| turn(m)).sum::<DVec2>().length() / total;
+    let common_turn = members.iter().map(turn).sum::<DVec2>().length() / total;
     if smeared < 0.5 * total || (mean_area > MAX_SMEARED && common_turn > MIN_COMMON_DIRECTION) {
         return None;
     }
-    common_side(members.iter().map(|m| {
-        let [[short, x], [_, y]] = principal(m.moments);
-        let across = DVec2::new(-y, x);
-        (4.0 * short, (m.inverse_map.transpose() * across).length())
-    }))
+    shown.or_else(|| common_side(members.iter().map(|m| sides(m)[0])))
 }
 
 /// Returns `[[short, x], [long, y]]`: the standard deviations along the short and the long principal axis, and the
@@ -291,30 +302,67 @@ fn common_axis(members: &[&Member]) -> DVec2 {
     if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The common side of lamps, without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a
-/// lamp, and the length of a photo pixel there, both in unwarped pixels. Solves side = s + 2 bloom × photo pixel for s
-/// and the bloom by least squares, with a normal prior on the bloom.
-fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
-    // Normal equations for s and the bloom.
-    let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);
-    let (mut least, mut count) = (f64::INFINITY, 0);
-    for (side, pixel) in sides {
-        let weight = (SIDE_NOISE * pixel).powi(-2);
-        let row = DVec2::new(1.0, 2.0 * pixel);
-        gram += DMat2::from_cols(row * row.x, row * row.y) * weight;
-        sums += row * side * weight;
-        square += side * side * weight;
-        (least, count) = (least.min(side), count + 1);
+/// The common side of lamps without bloom. Each item of `sides` holds the measured side of a lamp, and the length of a
+/// photo pixel there, both in unwarped pixels. As much bloom is taken off as the sides of at least [`MIN_BLOOM_LAMPS`]
+/// lamps show; if they do not show it, as the prior [`BLOOM`] allows.
+fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let fit = BloomFit::new(sides);
+    let shown = if fit.count >= MIN_BLOOM_LAMPS { fit.shown() } else { None };
+    shown.or_else(|| {
+        let [side, bloom] = fit.solve(BLOOM).to_array();
+        fit.limited(if bloom > 0.0 && fit.count > 1 { side } else { fit.mean() })
+    })
+}
+
+/// A least-squares fit of `side = s + 2 bloom × photo pixel`: the side `s` of lamps without bloom in unwarped pixels, and
+/// the bloom at each edge in photo pixels.
+struct BloomFit {
+    /// Normal equations for the side and the bloom, and the weighted sum of squared sides.
+    gram: DMat2,
+    sums: DVec2,
+    square: f64,
+    shortest: f64,
+    count: usize,
+}
+
+impl BloomFit {
+    fn new(sides: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut fit = Self { gram: DMat2::ZERO, sums: DVec2::ZERO, square: 0.0, shortest: f64::INFINITY, count: 0 };
+        for (side, pixel) in sides {
+            let weight = (SIDE_NOISE * pixel).powi(-2);
+            let row = DVec2::new(1.0, 2.0 * pixel);
+            fit.gram += DMat2::from_cols(row * row.x, row * row.y) * weight;
+            fit.sums += row * side * weight;
+            fit.square += side * side * weight;
+            (fit.shortest, fit.count) = (fit.shortest.min(side), fit.count + 1);
+        }
+        fit
     }
-    let mean = sums.x / gram.x_axis.x;
-    let fit = |deviation: f64| (gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * sums;
-    let shown = fit(SHOWN_BLOOM);
-    // Sums of squared residuals of two models: with bloom (`left`), and with the mean side alone (`all`).
-    let (left, all) = (square - 2.0 * shown.dot(sums) + shown.dot(gram * shown), square - mean * sums.x);
-    let is_shown = count >= MIN_BLOOM_LAMPS && left < (1.0 - MIN_EXPLAINED) * all;
-    let fitted = if is_shown { shown } else { fit(BLOOM) };
-    let bloomless = if fitted.y > 0.0 && count > 1 { fitted.x } else { mean };
-    Some(bloomless.max(0.5 * least)).filter(|s| s.is_finite() && *s > 0.0)
+
+    /// The side and the bloom, for a normal prior on the bloom with mean 0.
+    fn solve(&self, deviation: f64) -> DVec2 {
+        (self.gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * self.sums
+    }
+
+    /// The mean of the measured sides.
+    fn mean(&self) -> f64 {
+        self.sums.x / self.gram.x_axis.x
+    }
+
+    /// The side, if bloom explains at least the share [`MIN_EXPLAINED`] of the variation of the measured sides.
+    fn shown(&self) -> Option<f64> {
+        let solution = self.solve(SHOWN_BLOOM);
+        // Sums of squared residuals of two models: with bloom (`left`), and with the mean side alone (`all`).
+        let left = self.square - 2.0 * solution.dot(self.sums) + solution.dot(self.gram * solution);
+        let all = self.square - self.mean() * self.sums.x;
+        let is_shown = (0.0..=MAX_BLOOM).contains(&solution.y) && left < (1.0 - MIN_EXPLAINED) * all;
+        is_shown.then_some(solution.x).and_then(|side| self.limited(side))
+    }
+
+    /// The side, raised to the share [`MIN_SIDE`] of the shortest measured side; `None` unless positive and finite.
+    fn limited(&self, side: f64) -> Option<f64> {
+        Some(side.max(MIN_SIDE * self.shortest)).filter(|s| s.is_finite() && *s > 0.0)
+    }
 }
 
 impl Design {
@@ -428,6 +476,7 @@ fn rectangle_angle(corners: &[DVec2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2Swizzles;
 
     #[test]
     fn moments_of_polygons_are_exact() {
@@ -447,6 +496,38 @@ mod tests {
         assert!((side - 40.0).abs() < 1.0, "{side}");
         // A single lamp keeps its measured side.
         assert!((common_side([(41.6, 1.0)].into_iter()).unwrap() - 41.6).abs() < 1e-9);
+    }
+
+    /// Unwarping magnifies the photo by `pixel` along y. Bloom of 4 photo pixels at each edge makes ellipses of discs.
+    #[test]
+    fn discs_that_bloom_has_elongated_are_round_again() {
+        let (diameter, bloom) = (20.0, 4.0);
+        let lamp = |k: usize, pixel: f64| {
+            let size = DVec2::new(diameter + 2.0 * bloom, diameter + 2.0 * bloom * pixel);
+            let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::X }.outline(DVec2::new(100.0, 0.0));
+            let (area, centre, moments) = polygon_moments(&outline).unwrap();
+            Member {
+                component: k,
+                angle: rectangle_angle(&outline),
+                outline,
+                area,
+                centre,
+                moments,
+                weight: 1000.0,
+                blur: DVec2::new(1.0, pixel),
+                inverse_map: DMat2::from_diagonal(DVec2::new(1.0, pixel)),
+                is_clear: true,
+            }
+        };
+        let lamps: Vec<Member> = [1.2, 1.5, 1.9, 2.4].into_iter().enumerate().map(|(k, p)| lamp(k, p)).collect();
+        let (design, _) = fit(&lamps, 0).unwrap();
+        assert_eq!(design.shape, Shape::Ellipse);
+        assert!((design.size - diameter).abs().max_element() < 0.5, "{}", design.size);
+        // Ellipses that are long across their blur are no discs.
+        let turned: Vec<Member> =
+            lamps.into_iter().map(|m| Member { inverse_map: DMat2::from_diagonal(m.blur.yx()), ..m }).collect();
+        let (design, _) = fit(&turned, 0).unwrap();
+        assert!(design.size.y > 1.2 * design.size.x, "{}", design.size);
     }
 
     #[test]
