@@ -64,10 +64,14 @@ pub enum Code {
     FarFromOrigin = 25,
     /// Scene: it has luminaires. Pictures do not show them, because a luminaire shines from a point.
     NotInPicture = 26,
+    /// Guides: the previous frame of a sequence lacks objects of the frame, so their motion is unknown.
+    NoCounterpart = 27,
+    /// Stylisation: the motion disagrees with the guides of the two frames.
+    MotionDisagrees = 28,
 }
 
 impl Code {
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 28] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -94,6 +98,8 @@ impl Code {
         Self::Proposed,
         Self::FarFromOrigin,
         Self::NotInPicture,
+        Self::NoCounterpart,
+        Self::MotionDisagrees,
     ];
 }
 

@@ -29,9 +29,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
     ("relight", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
-    ("stylize", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
+    ("stylize", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Pipelines, which pass data between stages.
-    ("guides", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
+    ("guides", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("sheet", &["error", "job", "exec", "image", "geometry", "rectify"]),
     ("demo", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render", "segment", "guides"]),
     (

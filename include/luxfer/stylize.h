@@ -104,11 +104,16 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
                                       luxfer_image **image);
 
 /**
- * Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
- * The parameter guides is the current frame; the parameter previous is the frame before it. For each pixel of the
- * current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
- * in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
- * thread.
+ * Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides is
+ * the current frame; the parameter previous is the frame before it. For each pixel of the current frame, the image motion
+ * holds the offset, x and y in pixels, to the position of the pixel's surface point in the previous frame; NaN where
+ * the previous frame does not show the point. The caller releases *motion. Any thread.
+ *
+ * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
+ * equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
+ * correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
+ * luxfer_get_warnings of guides has a warning. What is seen in a mirror or through a pane moves like the mirror or
+ * pane.
  * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
@@ -422,11 +427,14 @@ luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
 
 /**
  * Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
- * moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. Any thread.
+ * moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. It is found anew where the
+ * light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
  *
  * The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
  * position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
- * visible. If motion is NULL, each job starts from nothing.
+ * visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves too. If motion
+ * is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of stylize has a
+ * warning after the job.
  */
 luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
                                         luxfer_image *motion);

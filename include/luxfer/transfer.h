@@ -146,6 +146,9 @@ static inline luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *
     return luxfer_init(LUXFER_STRUCT_TRANSFER_PARAMS, place, size);
 }
 
+/** No stage of a transfer, but a stylisation or its guides: occurs only in warnings. */
+#define LUXFER_STAGE_STYLIZE -2
+
 /** No stage, but a loaded scene: occurs only in warnings. */
 #define LUXFER_STAGE_SCENE -1
 
@@ -537,7 +540,8 @@ typedef struct luxfer_warning {
     /**
      * The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
      * luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the size of the
-     * scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE.
+     * scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE; for a luxfer_guides or a luxfer_stylize it is
+     * LUXFER_STAGE_STYLIZE.
      */
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
@@ -699,6 +703,23 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_NOT_IN_PICTURE 26
 
+/**
+ * The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their motion is
+ * unknown: it is NaN. The severity is the share of the picture that shows these objects; the message names them. The
+ * warning points to a pixel of the largest one.
+ */
+#define LUXFER_WARNING_NO_COUNTERPART 27
+
+/**
+ * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows
+ * another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with
+ * the exact motion of their scenes; otherwise the guides of data, such as object codes, normals or positions, are
+ * compared along the motion, except in a preview, and guides of light alone find no error. The severity is the
+ * share of these pixels among the pixels that were compared. The warning points to the pixel with the largest
+ * error.
+ */
+#define LUXFER_WARNING_MOTION_DISAGREES 28
+
 /** Gets the number of warnings in a list. Any thread. */
 luxfer_status luxfer_warnings_get_count(luxfer_warnings *warnings, uint32_t *count);
 
@@ -732,6 +753,8 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
  * - a luxfer_emission: about the texture; a plan has no warnings;
  * - a luxfer_relight;
+ * - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
+ * - a luxfer_stylize: about the motion of its latest result;
  * - a luxfer_scene: an implausible size, a place far from the origin, luminaires that are invisible in renderings,
  *   and features of its file that are not rendered.
  *

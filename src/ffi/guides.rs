@@ -5,7 +5,7 @@
 //! Guides from another renderer do not need this object: see luxfer_stylize_add_guide.
 
 use super::context::luxfer_context;
-use super::guard::enter;
+use super::guard::{enter, lock};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -17,7 +17,9 @@ use super::status::luxfer_status;
 use crate::error::Error;
 use crate::guides::{self, Guides};
 use crate::image::Image;
-use std::sync::Arc;
+use crate::warning::Warning;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex};
 
 /// The guides of a scene. See luxfer_guides_create.
 pub struct luxfer_guides {
@@ -84,8 +86,28 @@ pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
 }
 
+/// The rendered guides, and the warnings about the latest motion that was computed from them.
+pub(super) struct Rendered {
+    guides: Guides,
+    warnings: Mutex<Vec<Warning>>,
+}
+
+impl Deref for Rendered {
+    type Target = Guides;
+
+    fn deref(&self) -> &Guides {
+        &self.guides
+    }
+}
+
+impl Rendered {
+    pub(super) fn motion_warnings(&self) -> Vec<Warning> {
+        lock(&self.warnings).clone()
+    }
+}
+
 impl Handle for luxfer_guides {
-    type Object = Stage<Inputs, Guides>;
+    type Object = Stage<Inputs, Rendered>;
     const TAG: u64 = tag(b"lux.guid");
     const NAME: &'static str = "luxfer_guides";
 }
@@ -144,7 +166,8 @@ pub unsafe extern "C" fn luxfer_guides_start(
         let camera = camera.ok_or_else(|| missing("camera", p.camera, scene.cameras.len()))?;
         stage.start(job, move |_, _, job| {
             let world = object.world(&scene, job.part(0.0, 0.05))?;
-            guides::run(&world, &camera, &params, job.part(0.05, 1.0))
+            let guides = guides::run(&world, &camera, &params, job.part(0.05, 1.0))?;
+            Ok(Rendered { guides, warnings: Mutex::default() })
         })
     })
 }
@@ -159,7 +182,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 ) -> luxfer_status {
     enter(guides, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Guides) -> &Image = match kind {
+        let pick: fn(&Rendered) -> &Image = match kind {
             LUXFER_GUIDES_FULL => |g| &g.light[0],
             LUXFER_GUIDES_DIRECT => |g| &g.light[1],
             LUXFER_GUIDES_SPECULAR => |g| &g.light[2],
@@ -176,11 +199,16 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
     })
 }
 
-/// Computes the motion between two frames of one scene under a moving camera, as luxfer_stylize_set_motion takes it.
-/// The parameter guides is the current frame; the parameter previous is the frame before it. For each pixel of the
-/// current frame, the image motion holds the offset, x and y in pixels, to the position of the pixel's surface point
-/// in the previous frame; NaN where the previous frame does not show the point. The caller releases *motion. Any
-/// thread.
+/// Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides is
+/// the current frame; the parameter previous is the frame before it. For each pixel of the current frame, the image motion
+/// holds the offset, x and y in pixels, to the position of the pixel's surface point in the previous frame; NaN where
+/// the previous frame does not show the point. The caller releases *motion. Any thread.
+///
+/// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
+/// equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
+/// correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
+/// luxfer_get_warnings of guides has a warning. What is seen in a mirror or through a pane moves like the mirror or
+/// pane.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(
@@ -190,10 +218,15 @@ pub unsafe extern "C" fn luxfer_guides_get_motion(
 ) -> luxfer_status {
     enter(guides, |stage| {
         let out = Out::new(motion, "motion")?;
-        let (current, previous) =
-            (stage.output()?, handle::borrow_in(stage.context(), previous, "previous")?.output()?);
-        let (width, height) = (current.depth.width, current.depth.height);
-        let image = Pixels::counted(stage.context(), width, height, 2, || guides::motion(&current, &previous))?;
+        let (now, previous) = (stage.output()?, handle::borrow_in(stage.context(), previous, "previous")?.output()?);
+        let (context, mut warnings) = (stage.context(), Vec::new());
+        let image = Pixels::counted(context, now.surfaces.width, now.surfaces.height, 2, || {
+            let monitor = context.monitor();
+            let motion = context.quick.run(|| guides::motion(&now.surfaces, &previous.surfaces, monitor.job()))?;
+            warnings = motion.warnings();
+            Ok(motion.image)
+        })?;
+        *lock(&now.warnings) = warnings;
         out.set(handle::give(image));
         Ok(())
     })

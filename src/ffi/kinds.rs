@@ -72,7 +72,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<luxfer_distribution>(),
     Kind::with_warnings::<luxfer_emission>(),
     Kind::with_warnings::<luxfer_features>(),
-    Kind::of::<luxfer_guides>(),
+    Kind::with_warnings::<luxfer_guides>(),
     Kind::of::<luxfer_illuminance>(),
     Kind::of::<luxfer_image>(),
     Kind::of::<luxfer_importance>(),
@@ -86,7 +86,7 @@ const KINDS: &[Kind] = &[
     Kind::with_warnings::<luxfer_segment>(),
     Kind::of::<luxfer_strokes>(),
     #[cfg(feature = "stylize")]
-    Kind::of::<luxfer_stylize>(),
+    Kind::with_warnings::<luxfer_stylize>(),
     Kind::with_warnings::<luxfer_transfer>(),
     Kind::of::<luxfer_warnings>(),
 ];

@@ -21,7 +21,7 @@ use super::status::luxfer_status;
 use super::stylize_output::Stylised;
 use super::stylize_params::{choice, luxfer_stylize_params};
 use crate::error::{Error, ErrorKind, Result, check_range};
-use crate::guides;
+use crate::guides::{self, Surfaces};
 use crate::image::Image;
 use crate::stylize::{self, Guide, MAX_CHANNELS, Range};
 use std::ffi::c_char;
@@ -58,6 +58,8 @@ pub(super) struct Inputs {
     source_mask: Option<Arc<Pixels>>,
     target: Target,
     motion: Option<Arc<Pixels>>,
+    /// The surfaces of the target scene, if luxfer_stylize_add_guides added its guides.
+    surfaces: Option<Arc<Surfaces>>,
 }
 
 #[derive(Clone)]
@@ -234,6 +236,7 @@ pub unsafe extern "C" fn luxfer_stylize_add_guides(
             let mut all = inputs.guides.clone();
             added.into_iter().try_for_each(|pair| add(&mut all, pair))?;
             inputs.guides = all;
+            inputs.surfaces = Some(target.surfaces.clone());
             Ok(())
         })
     })
@@ -245,6 +248,7 @@ pub unsafe extern "C" fn luxfer_stylize_clear_guides(stylize: *mut luxfer_styliz
     enter(stylize, |stage| {
         stage.change(|inputs| {
             inputs.guides.clear();
+            inputs.surfaces = None;
             Ok(())
         })
     })
@@ -287,11 +291,14 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
 }
 
 /// Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
-/// moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. Any thread.
+/// moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. It is found anew where the
+/// light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
 ///
 /// The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
 /// position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
-/// visible. If motion is NULL, each job starts from nothing.
+/// visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves too. If motion
+/// is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of stylize has a
+/// warning after the job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -322,20 +329,33 @@ pub unsafe extern "C" fn luxfer_stylize_start(
         let (params, keep) = (settings.params()?, params::flag(settings.keep_for_update, "keep_for_update")?);
         stage.inputs().check()?;
         let previous = match stage.inputs().motion {
-            Some(motion) => Some((stage.output()?.field()?, motion)),
+            Some(motion) => Some((stage.output()?.frame()?, motion)),
             None => None,
         };
         stage.start(job, move |inputs, stage, job| {
             let publish = |intermediate: stylize::IntermediateResult| stage.publish(Stylised::unfinished(intermediate));
             let (before, motion) = (previous.as_ref().map(|p| &*p.0), previous.as_ref().map(|p| p.1.image()));
+            let surfaces = inputs.surfaces.clone();
+            // Compare the motion with the true motion, if the scenes of both frames are known.
+            let deviation = match (motion, &surfaces, before.and_then(|b| b.surfaces.as_ref())) {
+                (Some(motion), Some(now), Some(before)) => Some(guides::deviation(motion, now, before, job)?),
+                _ => None,
+            };
             inputs.with_input(|input| {
-                let input = stylize::Input { previous: before, motion, ..*input };
-                if keep {
+                let (field, memory) = (before.map(|b| &b.field), before.map(|b| &b.memory));
+                let input = stylize::Input { previous: field, memory, motion, ..*input };
+                let (updater, output) = if keep {
                     let (updater, output) = stylize::Updater::new(&input, &params, &publish, job)?;
-                    Ok(Stylised::finished(output, Some(updater)))
+                    (Some(updater), output)
                 } else {
-                    Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
-                }
+                    (None, stylize::run_and_publish(&input, &params, &publish, job)?)
+                };
+                let agreement = output.report.agreement;
+                let [compared, wrong] =
+                    deviation.map_or([agreement.compared, agreement.wrong], |d| [d.compared, d.wrong]);
+                let place = deviation.map_or(agreement.place, |d| d.place);
+                let warnings = stylize::motion_disagrees(compared, wrong, place).into_iter().collect();
+                Ok(Stylised::finished(output, surfaces, warnings, updater))
             })
         })
     })

@@ -2,9 +2,11 @@
 
 use super::scene::missing;
 use crate::error::{Error, ErrorKind, Result};
+use crate::guides::Surfaces;
 use crate::image::Image;
 use crate::patch::Field;
-use crate::stylize::{IntermediateResult, LevelReport, Output, Updater, Usage};
+use crate::stylize::{IntermediateResult, LevelReport, Memory, Output, Updater, Usage};
+use crate::warning::Warning;
 use std::sync::{Arc, Mutex};
 
 /// The output of a run: the picture so far, and more results if the run has finished.
@@ -27,8 +29,17 @@ pub(super) struct Finished {
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
-    field: Arc<Field>,
+    /// Reasons to doubt the motion.
+    pub warnings: Vec<Warning>,
+    frame: Arc<Frame>,
     updater: Option<Arc<Mutex<Updater>>>,
+}
+
+/// The parts of a result that the next frame of a sequence needs.
+pub(super) struct Frame {
+    pub field: Field,
+    pub memory: Memory,
+    pub surfaces: Option<Arc<Surfaces>>,
 }
 
 impl Stylised {
@@ -41,7 +52,12 @@ impl Stylised {
         }
     }
 
-    pub(super) fn finished(output: Output, updater: Option<Updater>) -> Self {
+    pub(super) fn finished(
+        output: Output,
+        surfaces: Option<Arc<Surfaces>>,
+        warnings: Vec<Warning>,
+        updater: Option<Updater>,
+    ) -> Self {
         let report = output.report;
         let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
         let guide_rms = (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt();
@@ -56,7 +72,8 @@ impl Stylised {
                 usage: report.usage,
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
-                field: Arc::new(output.field),
+                warnings,
+                frame: Arc::new(Frame { field: output.field, memory: output.memory, surfaces }),
                 updater: updater.map(|s| Arc::new(Mutex::new(s))),
             }),
         }
@@ -68,9 +85,9 @@ impl Stylised {
         Self { picture: Arc::new(picture), finished, ..self.clone() }
     }
 
-    /// Returns the matches of a finished run; an error if the run has not finished.
-    pub(super) fn field(&self) -> Result<Arc<Field>> {
-        Ok(self.need_finished()?.field.clone())
+    /// Returns the parts of a finished run that the next frame needs; an error if the run has not finished.
+    pub(super) fn frame(&self) -> Result<Arc<Frame>> {
+        Ok(self.need_finished()?.frame.clone())
     }
 
     pub(super) fn updater(&self) -> Option<Arc<Mutex<Updater>>> {

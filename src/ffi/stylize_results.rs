@@ -12,8 +12,11 @@ use super::scene::missing;
 use super::status::luxfer_status;
 use super::stylize::luxfer_stylize;
 use super::stylize_output::{Finished, Stylised};
+use super::transfer::{LUXFER_STAGE_STYLIZE, luxfer_stage};
+use super::warning::HasWarnings;
 use crate::error::{Error, Result};
 use crate::image::Image;
+use crate::warning::Warning;
 use std::sync::Arc;
 
 /// An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value.
@@ -128,6 +131,14 @@ pub struct luxfer_stylize_pass {
 versioned!(luxfer_stylize_pass, [32], {
     Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
 });
+
+impl HasWarnings for luxfer_stylize {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
+        let output = stage.output()?;
+        let list = output.finished.as_ref().map_or(&[][..], |finished| &finished.warnings);
+        Ok(list.iter().map(|warning| (LUXFER_STAGE_STYLIZE, warning.clone())).collect())
+    }
+}
 
 /// Gets the image of the result that a LUXFER_STYLIZE_IMAGE_ value selects, for example the picture.
 /// luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.

@@ -41,6 +41,8 @@ pub struct luxfer_transfer {
 
 /// A stage of the transfer: a LUXFER_STAGE_ value. The stages run in the order of their values.
 pub type luxfer_stage = i32;
+/// No stage of a transfer, but a stylisation or its guides: occurs only in warnings.
+pub const LUXFER_STAGE_STYLIZE: luxfer_stage = -2;
 /// No stage, but a loaded scene: occurs only in warnings.
 pub const LUXFER_STAGE_SCENE: luxfer_stage = -1;
 /// Finds lines, vanishing points and the camera of the photo.

@@ -9,6 +9,7 @@ use super::context::Context;
 use super::emission::luxfer_emission;
 use super::features::luxfer_features;
 use super::guard::enter;
+use super::guides::luxfer_guides;
 use super::handle::{self, Handle, Owned, tag};
 use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, c_string};
@@ -17,7 +18,7 @@ use super::relight::luxfer_relight;
 use super::scene::{luxfer_scene, missing};
 use super::segment::luxfer_segment;
 use super::status::luxfer_status;
-use super::transfer::{LUXFER_STAGE_SCENE, luxfer_stage, luxfer_transfer};
+use super::transfer::{LUXFER_STAGE_SCENE, LUXFER_STAGE_STYLIZE, luxfer_stage, luxfer_transfer};
 use crate::error::Result;
 use crate::segment;
 use crate::transfer::Stage;
@@ -106,6 +107,17 @@ pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
 /// A scene has luminaires, which shine from points: they are invisible in renderings, and luxfer_image_get_glare does
 /// not rate them. The severity is their number; the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
+/// The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their motion is
+/// unknown: it is NaN. The severity is the share of the picture that shows these objects; the message names them. The
+/// warning points to a pixel of the largest one.
+pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
+/// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows
+/// another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with
+/// the exact motion of their scenes; otherwise the guides of data, such as object codes, normals or positions, are
+/// compared along the motion, except in a preview, and guides of light alone find no error. The severity is the
+/// share of these pixels among the pixels that were compared. The warning points to the pixel with the largest
+/// error.
+pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 
 /// A warning: a reason to doubt a result.
 #[repr(C)]
@@ -117,7 +129,8 @@ pub struct luxfer_warning {
     pub code: luxfer_warning_code,
     /// The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
     /// luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the size of the
-    /// scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE.
+    /// scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE; for a luxfer_guides or a luxfer_stylize it is
+    /// LUXFER_STAGE_STYLIZE.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
@@ -264,6 +277,13 @@ impl HasWarnings for luxfer_scene {
     }
 }
 
+impl HasWarnings for luxfer_guides {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
+        let list = stage.output()?.motion_warnings();
+        Ok(list.into_iter().map(|warning| (LUXFER_STAGE_STYLIZE, warning)).collect())
+    }
+}
+
 /// Gets the number of warnings in a list. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
@@ -332,6 +352,8 @@ pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c
         LUXFER_WARNING_PROPOSED => c"LUXFER_WARNING_PROPOSED",
         LUXFER_WARNING_FAR_FROM_ORIGIN => c"LUXFER_WARNING_FAR_FROM_ORIGIN",
         LUXFER_WARNING_NOT_IN_PICTURE => c"LUXFER_WARNING_NOT_IN_PICTURE",
+        LUXFER_WARNING_NO_COUNTERPART => c"LUXFER_WARNING_NO_COUNTERPART",
+        LUXFER_WARNING_MOTION_DISAGREES => c"LUXFER_WARNING_MOTION_DISAGREES",
         _ => c"LUXFER_WARNING_UNKNOWN",
     };
     name.as_ptr()

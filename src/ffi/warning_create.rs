@@ -17,6 +17,8 @@ use std::ffi::c_void;
 /// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
 /// - a luxfer_emission: about the texture; a plan has no warnings;
 /// - a luxfer_relight;
+/// - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
+/// - a luxfer_stylize: about the motion of its latest result;
 /// - a luxfer_scene: an implausible size, a place far from the origin, luminaires that are invisible in renderings,
 ///   and features of its file that are not rendered.
 ///

@@ -9,18 +9,22 @@
 //! The light is smoothed along surfaces (`smooth`), because `stylize` would match sampling noise as if it were
 //! texture.
 //!
-//! For sequences, [`motion`] computes the position of each pixel in the previous frame.
+//! For sequences, [`motion`] computes the position of each pixel in the previous frame, from the surface points that
+//! the pixels show (`surfaces`).
 //!
-//! Not modelled: motion of objects; only the camera moves.
+//! Not modelled: motion of what is seen in mirrors and through panes, whose pixels move as the mirror or pane does.
 
 mod edges;
 mod motion;
 mod smooth;
+mod surfaces;
+mod warnings;
 
 #[cfg(test)]
 mod tests;
 
-pub use motion::motion;
+pub use motion::{Deviation, Motion, Unmatched, deviation, motion};
+pub use surfaces::{Point, Shape, Surfaces};
 
 use crate::error::{Result, check_range};
 use crate::image::colour::luminance;
@@ -30,6 +34,7 @@ use crate::render::{self, Aov, Outputs, World};
 use crate::rng::Rng;
 use crate::scene::Camera;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// The light components, each with a name and its light path expression in Heckbert's notation. "Full" is all light.
 /// "Direct" has one diffuse reflection. "Specular" is light that comes by way of one glossy surface, mirror or clear
@@ -75,10 +80,8 @@ pub struct Guides {
     pub edges: Image,
     /// A colour for each material, derived from its name; black where there is no surface. 3 channels.
     pub materials: Image,
-    /// The camera of the view.
-    pub camera: Camera,
-    /// Distance along the viewing direction in metres, infinite where there is no surface; 1 channel.
-    pub depth: Image,
+    /// The surface points that the pixels show, and the camera of the view.
+    pub surfaces: Arc<Surfaces>,
 }
 
 /// Renders the guides of a view.
@@ -120,8 +123,9 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     }
     let edges = edges::edges(&normals, &material, &depth, job)?;
     let materials = coded(&material, &world.scene().materials)?;
+    let surfaces = Surfaces::trace(world, camera, params.width, params.height, job)?;
     job.report(1.0);
-    Ok(Guides { light, normals, edges, materials, camera: camera.clone(), depth })
+    Ok(Guides { light, normals, edges, materials, surfaces: Arc::new(surfaces) })
 }
 
 /// Returns an image in which each pixel has the colour that stands for its material.

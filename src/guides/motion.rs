@@ -1,40 +1,197 @@
-//! Computes the position of each pixel of a frame in the previous frame, for a moving camera in a static scene.
+//! Computes the position of each pixel of a frame in the previous frame. Camera and objects may have moved, and meshes
+//! may have changed their shape, as skins do.
+//!
+//! The surface point that a pixel shows is a triangle and a position on it. The vertices of the triangle in the
+//! previous frame give the previous position of the point, exactly. The point was visible if the previous frame shows
+//! the same mesh there, from the same side and at about the same depth.
 
-use super::Guides;
-use crate::error::Result;
-use crate::image::Image;
+use super::surfaces::{Point, Surfaces};
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::scene::Camera;
 use glam::Vec3;
 
 /// A point was occluded in the previous frame if its depth exceeds the depth seen there by more than this share.
 /// [origin not recorded]
 const DEPTH_TOLERANCE: f32 = 0.02;
 
-/// Computes the displacement in pixels from each pixel to the position of its surface point in the previous frame: two
-/// channels, NaN where there is no surface, and where the point was occluded or outside the picture.
-pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
-    now.depth.check_same_size("this frame", &before.depth, "the frame before")?;
-    let (width, height) = (now.depth.width, now.depth.height);
-    let size = [width as f32, height as f32];
-    let aspect = size[0] / size[1];
-    let forward = now.camera.forward.normalize_or_zero();
-    let old = &before.camera;
-    let old_forward = old.forward.normalize_or_zero();
-    let right = old_forward.cross(old.up).normalize_or_zero();
-    let up = right.cross(old_forward);
-    let half = (old.fov_y / 2.0).tan();
-    let mut out = Image::new(width, height, 2)?;
-    for (i, motion) in out.data.chunks_exact_mut(2).enumerate() {
-        let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
-        // Reproject the visible point into the camera of the previous frame.
-        let ray = now.camera.direction(x / size[0], y / size[1], aspect);
-        let point = now.camera.position + ray * (now.depth.data[i] / ray.dot(forward));
-        let offset: Vec3 = point - old.position;
-        let depth = offset.dot(old_forward);
-        let u = (offset.dot(right) / (depth * half * aspect) + 1.0) / 2.0 * size[0];
-        let v = (1.0 - offset.dot(up) / (depth * half)) / 2.0 * size[1];
-        let inside = depth > 0.0 && u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
-        let seen = inside && depth <= before.depth.pixel(u as usize, v as usize)[0] * (1.0 + DEPTH_TOLERANCE);
-        motion.copy_from_slice(&if seen { [u - x, v - y] } else { [f32::NAN; 2] });
+/// The motion between two frames.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The displacement in pixels from each pixel to the position of its surface point in the previous frame: two
+    /// channels, NaN where the previous frame does not show the point.
+    pub image: Image,
+    /// The objects of the frame that the previous frame lacks, or that have other triangles there, as far as pixels
+    /// show them.
+    pub unmatched: Vec<Unmatched>,
+}
+
+/// An object without counterpart in the previous frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unmatched {
+    pub name: String,
+    /// Number of pixels that show it.
+    pub pixels: usize,
+    /// One of these pixels.
+    pub place: [usize; 2],
+}
+
+/// Computes the motion of each pixel since the previous frame.
+pub fn motion(now: &Surfaces, before: &Surfaces, job: Job) -> Result<Motion> {
+    let (width, height) = (now.width, now.height);
+    if (width, height) != (before.width, before.height) {
+        return Err(Error::argument(format!(
+            "this frame is {width} x {height} and the frame before is {} x {}; they must have the same size",
+            before.width, before.height
+        )));
     }
-    Ok(out)
+    let mut image = Image::new(width, height, 2)?;
+    let frames = Frames { now, before, counterparts: now.counterparts(before) };
+    exec::for_rows(&mut image.data, 2 * width, job, |y, row| {
+        for (x, motion) in row.chunks_exact_mut(2).enumerate() {
+            let [cx, cy] = [x as f32 + 0.5, y as f32 + 0.5];
+            let place = frames.previous_place(x, y);
+            motion.copy_from_slice(&place.map_or([f32::NAN; 2], |[u, v]| [u - cx, v - cy]));
+        }
+    })?;
+    Ok(Motion { image, unmatched: frames.unmatched()? })
+}
+
+/// The deviation of a given motion from the true motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// Number of pixels whose motion was compared, and number of those whose motion is wrong.
+    pub compared: usize,
+    pub wrong: usize,
+    /// The pixel with the largest error, if any is wrong.
+    pub place: Option<[usize; 2]>,
+}
+
+/// A motion is wrong if it differs by more than this number of pixels from the true motion of the pixel and of its
+/// neighbours. At silhouettes, renderers choose either surface. [convention]
+const MAX_ERROR: f32 = 1.0;
+
+/// Compares a given motion with the true motion of the surfaces, where both are known.
+pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> Result<Deviation> {
+    if given.channels != 2 {
+        return Err(Error::argument(format!("motion has {} channels; it must have 2", given.channels)));
+    }
+    let exact = motion(now, before, job)?.image;
+    exact.check_same_size("the guides", given, "the motion")?;
+    let (width, height) = (exact.width, exact.height);
+    let rows = exec::map(height, job, |y| {
+        let (mut found, mut largest) = (Deviation::default(), MAX_ERROR);
+        // Leave out pixels that the previous frame does not show: no true motion is known there.
+        for x in (0..width).filter(|&x| exact.pixel(x, y)[0].is_finite()) {
+            let around = (y.saturating_sub(1)..(y + 2).min(height))
+                .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));
+            let given = given.pixel(x, y);
+            let error = |(x, y)| {
+                let exact = exact.pixel(x, y);
+                (given[0] - exact[0]).hypot(given[1] - exact[1])
+            };
+            // The minimum ignores NaN. It is infinite if the given motion is NaN.
+            let least = around.map(error).fold(f32::INFINITY, f32::min);
+            found.compared += usize::from(least.is_finite());
+            if least.is_finite() && least > MAX_ERROR {
+                found.wrong += 1;
+                if least > largest {
+                    (found.place, largest) = (Some([x, y]), least);
+                }
+            }
+        }
+        (found, largest)
+    })?;
+    let mut all = (Deviation::default(), MAX_ERROR);
+    for (found, largest) in rows {
+        all.0.compared += found.compared;
+        all.0.wrong += found.wrong;
+        if largest > all.1 {
+            (all.0.place, all.1) = (found.place, largest);
+        }
+    }
+    Ok(all.0)
+}
+
+/// A frame, its previous frame, and the meshes of the previous frame that correspond to those of the frame.
+struct Frames<'a> {
+    now: &'a Surfaces,
+    before: &'a Surfaces,
+    counterparts: Vec<Option<u32>>,
+}
+
+impl Frames<'_> {
+    /// Returns the position, in pixels of the previous frame, of the surface point that a pixel shows; `None` if the
+    /// previous frame does not show it.
+    fn previous_place(&self, x: usize, y: usize) -> Option<[f32; 2]> {
+        let (now, before) = (self.now, self.before);
+        let size = [now.width as f32, now.height as f32];
+        let to_pixels = |[u, v]: [f32; 2]| [u * size[0], v * size[1]];
+        let inside = |[u, v]: [f32; 2]| u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
+        let Some(point) = &now.points[y * now.width + x] else {
+            // The background is infinitely far away: only the camera's rotation moves it.
+            let ray = now.camera.direction((x as f32 + 0.5) / size[0], (y as f32 + 0.5) / size[1], size[0] / size[1]);
+            let place = to_pixels(before.camera.project(ray, size[0] / size[1])?.0);
+            return (inside(place) && before.at(place).is_none()).then_some(place);
+        };
+        let mesh = self.counterparts[point.mesh as usize]?;
+        let old = Point { mesh, ..*point };
+        let triangle = before.shapes[mesh as usize].triangle(&old)?;
+        let offset = old.on(triangle) - before.camera.position;
+        let (place, depth) = before.camera.project(offset, size[0] / size[1])?;
+        let place = to_pixels(place);
+        let seen = inside(place)
+            && before.at(place).is_some_and(|there| there.mesh == mesh)
+            && depth <= before.depth_near(place) * (1.0 + DEPTH_TOLERANCE)
+            && front(triangle, &before.camera) == front(now.shapes[point.mesh as usize].triangle(point)?, &now.camera);
+        seen.then_some(place)
+    }
+
+    /// Lists the visible objects without counterpart.
+    fn unmatched(&self) -> Result<Vec<Unmatched>> {
+        let mut counts = try_vec(self.counterparts.len(), (0, 0))?;
+        for (i, point) in self.now.points.iter().enumerate() {
+            let mesh = point.map(|p| p.mesh as usize).filter(|mesh| self.counterparts[*mesh].is_none());
+            if let Some((count, place)) = mesh.map(|mesh| &mut counts[mesh]) {
+                (*count, *place) = (*count + 1, i);
+            }
+        }
+        let width = self.now.width;
+        let seen = counts.into_iter().zip(&self.now.shapes).filter(|((count, _), _)| *count > 0);
+        let describe = |((pixels, i), shape): ((usize, usize), &super::surfaces::Shape)| Unmatched {
+            name: shape.name.clone(),
+            pixels,
+            place: [i % width, i / width],
+        };
+        Ok(seen.map(describe).collect())
+    }
+}
+
+impl Surfaces {
+    /// Returns the surface point that the pixel at a position shows.
+    fn at(&self, [x, y]: [f32; 2]) -> Option<&Point> {
+        self.points[y as usize * self.width + x as usize].as_ref()
+    }
+
+    /// Returns the depth of the surface that the pixel at a position shows: at the pixel's centre, or at the position
+    /// itself on the plane of the triangle, whichever is larger. On a surface seen at a flat angle the two differ.
+    fn depth_near(&self, [x, y]: [f32; 2]) -> f32 {
+        let triangle =
+            self.at([x, y]).and_then(|point| Some((point, self.shapes[point.mesh as usize].triangle(point)?)));
+        let Some((point, [a, b, c])) = triangle else { return f32::INFINITY };
+        let (width, height) = (self.width as f32, self.height as f32);
+        // The component of this direction along the viewing direction is 1, so ray parameters are depths.
+        let direction = self.camera.direction(x / width, y / height, width / height);
+        let normal = (b - a).cross(c - a);
+        let on_plane = normal.dot(a - self.camera.position) / normal.dot(direction);
+        let centre = (point.on([a, b, c]) - self.camera.position).dot(self.camera.forward);
+        if on_plane > 0.0 { centre.max(on_plane) } else { centre }
+    }
+}
+
+/// Whether the camera sees the front of a triangle, from which its corners wind counter-clockwise.
+fn front([a, b, c]: [Vec3; 3], camera: &Camera) -> bool {
+    (b - a).cross(c - a).dot(camera.position - a) > 0.0
 }

@@ -73,26 +73,4 @@ fn pairs_share_their_exposure() {
     assert!(full.target.data.iter().all(|v| (0.0..=1.0).contains(v)));
 }
 
-#[test]
-fn motion_follows_the_camera_and_marks_occlusions() {
-    let at = |shift: f32| {
-        let mut scene = demo::sphere_on_table().unwrap();
-        let camera = &mut scene.cameras[0];
-        camera.position += camera.forward.cross(camera.up) * shift;
-        rendered(scene, 120, 4)
-    };
-    let (before, now) = (at(0.0), at(0.06));
-    let still = motion(&before, &before).unwrap();
-    let defined = |m: &Image| m.data.chunks_exact(2).filter(|p| p[0].is_finite()).count();
-    assert!(still.data.iter().all(|v| v.is_nan() || v.abs() < 1e-2));
-    assert!(defined(&still) > 120 * 90 * 95 / 100);
-    let moved = motion(&now, &before).unwrap();
-    // If the camera moves right, the picture moves left, and the ball, which is nearer, moves farther than the wall.
-    // The previous positions are therefore farther right.
-    let row: Vec<f32> = (0..120).map(|x| moved.pixel(x, 45)[0]).collect();
-    let ball = moved.pixel(52, 45)[0];
-    let wall = moved.pixel(5, 10)[0];
-    assert!(ball > wall && wall > 0.0, "{ball} {wall} {row:?}");
-    // Motion is undefined in the strip that the ball occluded and in the strip that was outside the picture.
-    assert!(row.iter().any(|v| v.is_nan()) && defined(&moved) > 120 * 90 * 80 / 100);
-}
+mod motion;

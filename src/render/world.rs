@@ -298,6 +298,12 @@ impl World {
         }
     }
 
+    /// Finds the surface that a ray from the camera sees. Whether it hits a partly transparent surface is a random
+    /// decision that is equal for all rays.
+    pub fn visible(&self, ray: &Ray) -> Option<Hit> {
+        self.closest(ray, NONE, || 0)
+    }
+
     /// Whether the surface is present at a hit, according to its opacity. With alpha blending, the decision is random.
     fn is_present(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
         let facet = self.facet(hit.triangle);

@@ -30,4 +30,29 @@ impl Camera {
         let right = self.forward.cross(self.up);
         self.forward + right * ((2.0 * x - 1.0) * half * aspect) + self.up * ((1.0 - 2.0 * y) * half)
     }
+
+    /// Returns the direction's position in the image, as [`Camera::direction`] takes it, and its length along the
+    /// viewing direction; `None` for a direction that points away from the image.
+    pub fn project(&self, direction: Vec3, aspect: f32) -> Option<([f32; 2], f32)> {
+        let half = (self.fov_y / 2.0).tan();
+        let depth = direction.dot(self.forward);
+        let x = direction.dot(self.forward.cross(self.up)) / (depth * half * aspect);
+        let y = direction.dot(self.up) / (depth * half);
+        (depth > 0.0).then_some(([(1.0 + x) / 2.0, (1.0 - y) / 2.0], depth))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_projection_inverts_the_direction() {
+        let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(-0.5, 0.2, 0.1), 0.7);
+        for [x, y] in [[0.0, 0.0], [0.5, 0.5], [0.9, 0.2], [1.3, -0.4]] {
+            let ([u, v], depth) = camera.project(camera.direction(x, y, 1.6) * 2.5, 1.6).unwrap();
+            assert!((u - x).abs() < 1e-5 && (v - y).abs() < 1e-5 && (depth - 2.5).abs() < 1e-5, "{x} {y}: {u} {v}");
+        }
+        assert_eq!(camera.project(-camera.forward, 1.6), None);
+    }
 }

@@ -1,6 +1,11 @@
 //! Stylises the frames of a sequence (StyLit, section 5, future work). The matches of the previous frame, advected by
-//! the motion, are kept where they still fit, so that paint sticks to objects. Patches that moved into different light
-//! or came into view are matched anew.
+//! the motion, are kept where they still fit, so that paint sticks to objects. Three kinds of patches are matched anew:
+//!
+//! - patches whose match fits badly;
+//! - patches astride a silhouette, whose pixels do not all come from one patch of the previous frame. Their paint
+//!   would stay behind as the ghost of a contour;
+//! - patches whose light has changed since their match was chosen (`memory`). The change adds up over the frames, so
+//!   the paint follows slow changes too.
 //!
 //! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
 //! keeps the matches of a random set of blocks, so that the frames flicker as if painted by hand (after the temporal
@@ -8,10 +13,11 @@
 
 use super::budget::budget;
 use super::level::{Level, Problem};
+use super::memory::Memory;
 use super::params::Params;
 use super::picture::paint;
 use crate::error::Result;
-use crate::image::{Image, try_collect};
+use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, halve};
 use crate::rng::Rng;
@@ -19,11 +25,26 @@ use crate::rng::Rng;
 /// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
+/// A patch is astride a silhouette if the motion of one of its pixels differs from that of its centre by more than
+/// this number of pixels along x or y. [bench sequences]
+const MAX_SPREAD: f32 = 1.0;
+/// A patch is matched anew when the light has changed by this much since its match was chosen, as a root mean square
+/// over the guides of light, encoded for display. [bench sequences]
+const MAX_CHANGE: f32 = 0.02;
+
+/// The matches of the previous frame, advected into this frame.
+pub(super) struct Moved {
+    pub field: Field,
+    /// The patch of the previous frame from which each match comes, or [`NONE`] if the match must not be kept: if its
+    /// patch is astride a silhouette or was not visible.
+    pub from: Vec<u32>,
+}
+
 /// Advects the field (the matches) of the previous frame into this frame: `motion` gives the displacement of a patch's
 /// centre to its position in the previous frame, and the patch takes the match found there. `motion` has the
 /// resolution of the guides; this function halves `motion` if the problem has half that resolution (`halved` is not
 /// 0).
-pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
+pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Moved> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
     }
@@ -32,24 +53,42 @@ pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: u
     advect(before, &half, problem.patch)
 }
 
-fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
+fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
     let mut field = Field::new(before.width, before.height)?;
+    let mut from = try_vec(before.at.len(), NONE)?;
     let inside = |v: f32, n: usize| (v >= 0.0 && v < n as f32).then_some(v as usize);
     for (i, at) in field.at.iter_mut().enumerate() {
         let (x, y) = (i % before.width, i / before.width);
         let step = motion.pixel(x + patch / 2, y + patch / 2);
         // Adding half a pixel before truncation rounds to the nearest position; NaN counts as outside.
-        let from = (inside(x as f32 + step[0] + 0.5, before.width), inside(y as f32 + step[1] + 0.5, before.height));
-        if let (Some(px), Some(py)) = from {
+        let place = (inside(x as f32 + step[0] + 0.5, before.width), inside(y as f32 + step[1] + 0.5, before.height));
+        if let (Some(px), Some(py)) = place {
             *at = before.at[py * before.width + px];
+            let differs = |other: &[f32]| (0..2).any(|k| !((other[k] - step[k]).abs() <= MAX_SPREAD));
+            let is_astride = (y..y + patch).any(|y| (x..x + patch).any(|x| differs(motion.pixel(x, y))));
+            if !is_astride {
+                from[i] = (py * before.width + px) as u32;
+            }
         }
     }
-    Ok(field)
+    Ok(Moved { field, from })
 }
 
+/// The memories of the previous frame and of this frame.
+pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
+
 /// Computes the distances of the advected matches, and returns which target patches keep their match: the patches
-/// whose error lies left of the knee of the sorted errors, except in blocks that are chosen for new matches.
-pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
+/// whose error lies left of the knee of the sorted errors and whose light has hardly changed, except in blocks that
+/// are chosen for new matches.
+pub(super) fn keep(
+    level: &mut Level,
+    moved: &mut Moved,
+    memories: Memories,
+    params: &Params,
+    seed: u64,
+    job: Job,
+) -> Result<Vec<bool>> {
+    let Moved { field, from } = moved;
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;
     level.set_picture(&picture, job)?;
@@ -60,9 +99,15 @@ pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: 
     errors.sort_unstable();
     let feasible = (budget(&errors).knee * errors.len() as f64).ceil() as usize;
     let limit = errors.get(feasible.saturating_sub(1)).copied().unwrap_or(0);
-    let stays = |i: usize| {
-        let block = [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
-        Rng::new(seed, &block).next_f32() < params.coherence
+    let block = |i: usize| [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
+    let stays = |i: usize| Rng::new(seed, &block(i)).next_f32() < params.coherence;
+    let is_lit_alike = |i: usize| {
+        // Spread the moment of the change over the blocks, so that a picture does not change all at once.
+        let share = 0.5 + Rng::new(2, &block(i)).next_f32();
+        memories.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };
-    try_collect((0..field.at.len()).map(|i| fits(i) && field.error[i] <= limit && stays(i)))
+    try_collect(
+        (0..field.at.len())
+            .map(|i| fits(i) && field.error[i] <= limit && stays(i) && from[i] != NONE && is_lit_alike(i)),
+    )
 }

@@ -42,6 +42,8 @@ pub(super) struct Channels {
     /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1, or to 0 if
     /// every guide has weight 0.
     pub weights: Vec<f64>,
+    /// Whether each channel belongs to an image of light.
+    pub is_light: Vec<bool>,
     /// Per pixel: whether one of its samples is NaN or infinite.
     pub broken_source: Vec<bool>,
     pub broken_target: Vec<bool>,
@@ -84,16 +86,17 @@ impl Channels {
             let weight = if total > 0.0 { f64::from(guide.weight) / total / channels as f64 } else { 0.0 };
             weights.extend(std::iter::repeat_n(weight, channels));
         }
+        let light = guides.iter().flat_map(|g| std::iter::repeat_n(g.range == Range::Light, g.source.channels));
+        let is_light: Vec<bool> = light.collect();
         let broken_source = clear_broken(&mut source, job)?;
         let broken_target = clear_broken(&mut target, job)?;
         if match_appearance > 0.0 {
-            let light = guides.iter().flat_map(|g| std::iter::repeat_n(g.range == Range::Light, g.source.channels));
-            for channel in light.enumerate().filter(|c| c.1).map(|c| c.0) {
+            for channel in (0..count).filter(|&c| is_light[c]) {
                 job.check()?;
                 match_channel(&mut source, &target, channel, match_appearance);
             }
         }
-        Ok(Self { source, target, weights, broken_source, broken_target })
+        Ok(Self { source, target, weights, is_light, broken_source, broken_target })
     }
 }
 

@@ -2,6 +2,7 @@
 //! ([`Level`]).
 
 use super::guides::{Channels, no_guides};
+use super::memory::Memory;
 use super::params::{Input, Mode, Params, check_side};
 use super::pca;
 use crate::error::{Error, Result};
@@ -25,6 +26,8 @@ pub(super) struct Problem {
     pub known: Option<Image>,
     /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
+    /// The target's guides for the next frame of a sequence; `None` on coarse levels.
+    pub memory: Option<Memory>,
 }
 
 impl Problem {
@@ -69,16 +72,17 @@ impl Problem {
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
         check_motion(input, first.target)?;
-        if params.preview {
-            pca::compress(&mut guides, job)?;
-        }
         // The Lit Sphere looks up single pixels; in other modes, reduce the patch to an odd width that fits.
         let patch = match params.mode {
             Mode::LitSphere => 1,
             _ if params.patch <= shortest => params.patch,
             _ => (shortest - 1) | 1,
         };
-        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts })
+        let memory = Some(Memory::of(&guides, patch, job)?);
+        if params.preview {
+            pca::compress(&mut guides, job)?;
+        }
+        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts, memory })
     }
 
     /// Returns the shortest side of exemplar and target, in pixels.
@@ -115,10 +119,12 @@ impl Problem {
                 source: halve(source, job)?,
                 target: halve(target, job)?,
                 weights: self.guides.weights.clone(),
+                is_light: Vec::new(),
                 broken_source: Vec::new(),
                 broken_target: Vec::new(),
             },
             broken: self.broken,
+            memory: None,
         })
     }
 }

@@ -39,6 +39,7 @@ mod finder;
 mod greedy;
 mod guides;
 mod level;
+mod memory;
 mod multires;
 mod output;
 mod params;
@@ -48,18 +49,21 @@ mod pilot;
 mod report;
 mod retrieve;
 mod updater;
+mod warnings;
 
 #[cfg(test)]
 mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
+pub use memory::{Agreement, Memory};
 pub use output::{IntermediateResult, Output, Publish};
 pub use params::{Finder, Input, Mode, Params};
 pub use pilot::{PilotRuns, Prediction};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::PassReport;
 pub use updater::Updater;
+pub use warnings::{MAX_DISAGREEMENT, motion_disagrees};
 
 use crate::error::Result;
 use crate::job::Job;

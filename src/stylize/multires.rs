@@ -1,10 +1,11 @@
 //! The coarse-to-fine loop (StyLit, §3.4): alternate matching and voting on each level, then continue on the next
 //! finer level from the upsampled field.
 
-use super::animate::{keep, moved};
+use super::animate::{Moved, keep, moved};
 use super::finder::Nearest;
 use super::greedy;
 use super::level::{Level, Problem};
+use super::memory::{Agreement, Memory};
 use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
 use super::picture::{DecodeInput, decode, decode_into, paint, restore_known};
@@ -29,7 +30,7 @@ struct Setup<'a> {
     /// Number of halvings from the artwork's size to the finest level: 1 for a preview, else 0.
     halved: usize,
     /// The matches of the previous frame, advected into this one.
-    moved: Option<Field>,
+    moved: Option<Moved>,
 }
 
 /// The state of a level between two iterations.
@@ -38,16 +39,19 @@ struct State {
     picture: Image,
     /// For each target patch, whether it keeps its match of the previous frame; empty without motion.
     kept: Vec<bool>,
+    /// The memory of this frame's guides, with the light for which the kept matches were chosen.
+    memory: Option<Memory>,
 }
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     let halved = usize::from(!problem.is_of(input.artwork));
-    // A run that continues the matches of a previous frame or result needs only the finest level.
     let moved = match (input.previous, input.motion) {
         (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
         _ => None,
     };
-    let continues = input.previous.is_some() && (moved.is_none() || params.coherence == 1.0);
+    // A run that continues the matches of a previous result needs only the finest level. A frame of a sequence needs
+    // all levels: on the finest level alone, uncovered places and changed light would get the paint around them.
+    let continues = input.previous.is_some() && moved.is_none();
     // Build the pyramid; the coarsest level is at least five patches wide.
     let levels = match params.mode {
         Mode::LitSphere => 1,
@@ -65,11 +69,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     let total: f64 = (0..levels).map(cost).sum();
     let mut done = 0.0;
     let mut reports = Vec::new();
-    let mut field = match (&moved, input.previous) {
-        _ if !continues => None,
-        (None, Some(previous)) => Some(checked_size(previous, problem)?),
-        (moved, _) => moved.as_ref().map(Field::try_clone).transpose()?,
-    };
+    let previous = input.previous.filter(|_| continues);
+    let mut field = previous.map(|previous| checked_size(previous, problem)).transpose()?;
     let setup = Setup { input, params, levels, halved, moved };
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
@@ -116,12 +117,19 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
         None => by_guides_alone(problem, params, level.seed, job.part(0.0, 0.1))?,
     };
     // Keep the matches of the previous frame where they fit.
+    let mut memory = problem.memory.as_ref().map(Memory::try_clone).transpose()?;
     let kept = match &setup.moved {
         Some(moved) if l == 0 => {
-            let mut moved = checked(moved.try_clone()?, level)?;
-            let kept = keep(level, &mut moved, params, hash(level.seed, &[1]), job.part(0.1, 0.1))?;
+            let from = try_collect(moved.from.iter().copied())?;
+            let mut moved = Moved { field: checked(moved.field.try_clone()?, level)?, from };
+            let before = setup.input.memory.filter(|before| memory.as_ref().is_some_and(|now| now.is_like(before)));
+            let memories = before.zip(memory.as_ref());
+            let kept = keep(level, &mut moved, memories, params, hash(level.seed, &[1]), job.part(0.1, 0.1))?;
             for i in (0..kept.len()).filter(|&i| kept[i]) {
-                (field.at[i], field.error[i]) = (moved.at[i], moved.error[i]);
+                (field.at[i], field.error[i]) = (moved.field.at[i], moved.field.error[i]);
+                if let (Some(memory), Some(before)) = (&mut memory, before) {
+                    memory.recall(i, before, moved.from[i] as usize);
+                }
             }
             kept
         }
@@ -130,7 +138,7 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
     let mut picture = problem.blank_picture()?;
     let vote_mode = if params.mode == Mode::LitSphere { VoteMode::Nearest } else { params.vote };
     paint(&mut picture, &field, problem, vote_mode, job.part(0.1, 0.12), |_| true)?;
-    Ok(State { field, picture, kept })
+    Ok(State { field, picture, kept, memory })
 }
 
 /// Alternates matching and voting on level `l`.
@@ -171,7 +179,7 @@ fn rematch(
     k: usize,
     job: Job,
 ) -> Result<Option<Vec<PassReport>>> {
-    let State { field, picture, kept } = state;
+    let State { field, picture, kept, .. } = state;
     // The distance of a match changes only if the patch contains a changed pixel, so rematch only these patches. The
     // first iteration of `Params::polish` is an exception: it rematches all patches, because they were assigned under
     // the budget.
@@ -202,7 +210,9 @@ fn rematch(
 
 /// Decodes the picture of the finest level and completes the report.
 fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
-    let State { field, picture, .. } = state;
+    let State { field, picture, memory, .. } = state;
+    let missing = || Error::new(crate::error::ErrorKind::Internal, "the finest level has no memory");
+    let memory = memory.ok_or_else(missing)?;
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;
     drop(level);
@@ -218,8 +228,18 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
         patch: problem.patch,
         broken_source: problem.broken.0,
         broken_target: problem.broken.1,
+        agreement: agreement(&memory, setup.input, setup.halved, job)?,
     };
-    Ok(Output { image, field, report })
+    Ok(Output { image, field, memory, report })
+}
+
+/// Compares the motion, if any, with the guides of this frame and the previous one. A preview compares nothing: at half
+/// the resolution, motion and guides are averages over silhouettes.
+fn agreement(memory: &Memory, input: &Input, halved: usize, job: Job) -> Result<Agreement> {
+    match (input.motion, input.memory) {
+        (Some(motion), Some(before)) if halved == 0 && memory.is_like(before) => memory.agreement(before, motion, job),
+        _ => Ok(Agreement::default()),
+    }
 }
 
 /// Finds the nearest exemplar patch of each target patch that has changed. The matches of all other target patches are

@@ -1,5 +1,6 @@
 //! The results of a stylisation.
 
+use super::memory::Memory;
 use super::report::{LevelReport, Report};
 use crate::image::Image;
 use crate::patch::Field;
@@ -10,6 +11,8 @@ pub struct Output {
     pub image: Image,
     /// The match of each target patch: the exemplar patch that it shows.
     pub field: Field,
+    /// The guides, for the next frame of a sequence.
+    pub memory: Memory,
     pub report: Report,
 }
 

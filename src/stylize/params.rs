@@ -1,6 +1,7 @@
 //! The inputs and the settings of a stylisation.
 
 use super::guides::Guide;
+use super::memory::Memory;
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
@@ -53,12 +54,24 @@ pub struct Input<'a> {
     /// `previous`: two channels, NaN where the point was not visible. The matches of the previous frame are moved
     /// along this displacement, and the share `Params::coherence` of them is kept.
     pub motion: Option<&'a Image>,
+    /// The memory of the frame of `previous`. With it, paint follows changes of light, and the report says how the
+    /// motion agrees with the guides.
+    pub memory: Option<&'a Memory>,
 }
 
 impl<'a> Input<'a> {
     /// Uses the whole exemplar for the whole target.
     pub fn new(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Self {
-        Self { artwork, guides, source_mask: None, target_mask: None, known: None, previous: None, motion: None }
+        Self {
+            artwork,
+            guides,
+            source_mask: None,
+            target_mask: None,
+            known: None,
+            previous: None,
+            motion: None,
+            memory: None,
+        }
     }
 }
 

@@ -187,6 +187,7 @@ mod tests {
             source: source.clone(),
             target: target.clone(),
             weights: weights.clone(),
+            is_light: vec![true; 9],
             broken_source: Vec::new(),
             broken_target: Vec::new(),
         };

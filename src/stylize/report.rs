@@ -1,6 +1,7 @@
 //! Measures a run: energy, coverage, patch usage, guide error.
 
 use super::level::{Level, Problem};
+use super::memory::Agreement;
 use super::retrieve::PassReport;
 use crate::error::Result;
 use crate::exec;
@@ -53,6 +54,8 @@ pub struct Report {
     /// guide pixels set to 0 for the same reason (`broken_target`).
     pub broken_source: usize,
     pub broken_target: usize,
+    /// How the motion agrees with the guides of both frames; zeros without motion.
+    pub agreement: Agreement,
 }
 
 impl Usage {

@@ -7,6 +7,8 @@ use crate::patch::VoteMode;
 use crate::rng::Rng;
 use std::sync::Mutex;
 
+mod sequences;
+
 /// A lit ball in front of a background, as one guide of three channels.
 fn scene(width: usize, height: usize, cx: f32, cy: f32, radius: f32) -> Image {
     Image::from_fn(width, height, |x, y| {

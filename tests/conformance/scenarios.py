@@ -414,6 +414,7 @@ def stylisation() -> Scenario:
     s.references(guides[0])
     s.make("guides_get_image", guides[0], 0)
     s.make("guides_get_motion", guides[1], guides[1])
+    s.make("get_warnings", guides[1])
     artwork = s.make("demo_create_artwork", guides[0], 0)
     stage = s.make("stylize_create", s.context)
     s.references(stage)
@@ -431,6 +432,7 @@ def stylisation() -> Scenario:
     s.call("stylize_get_level", stage, 0, ROOM, ROOM, ROOM)
     s.call("stylize_get_round", stage, 0, 0, *report("stylize_round"))
     s.call("stylize_get_pass", stage, 0, 0, 0, *report("stylize_pass"))
+    s.make("get_warnings", stage)
     s.call("stylize_set_motion", stage, s.image(24, 16, 2, 0.0))
     s.call("stylize_set_painted", stage, s.image(24, 16, 1, 1.0))
     return s

@@ -243,6 +243,23 @@ void sheets() {
     CHECK_OK(luxfer_release(picture));
 }
 
+// The codes of an object's warnings.
+std::vector<luxfer_warning_code> codes_of(void *object) {
+    luxfer_warnings *warnings = nullptr;
+    uint32_t count = 0;
+    CHECK_OK(luxfer_get_warnings(object, &warnings));
+    CHECK_OK(luxfer_warnings_get_count(warnings, &count));
+    std::vector<luxfer_warning_code> codes;
+    for (uint32_t i = 0; i < count; ++i) {
+        luxfer_warning warning;
+        CHECK_OK(luxfer_warnings_get(warnings, i, &warning, sizeof warning));
+        CHECK(warning.stage == LUXFER_STAGE_STYLIZE && warning.has_place && warning.severity > warning.limit);
+        codes.push_back(warning.code);
+    }
+    CHECK_OK(luxfer_release(warnings));
+    return codes;
+}
+
 luxfer_status paint(luxfer_stylize *stylize, const luxfer_stylize_params *params) {
     luxfer_job *job = nullptr;
     const luxfer_status started = luxfer_stylize_start(stylize, params, &job);
@@ -251,6 +268,14 @@ luxfer_status paint(luxfer_stylize *stylize, const luxfer_stylize_params *params
 
 // Stylises with all guides, then a sequence of two frames, then with extreme masks.
 void stylise(luxfer_guides *source, luxfer_guides *target) {
+    // The still life lacks the ball, and has other objects instead: their motion is unknown.
+    luxfer_image *between = nullptr;
+    CHECK_OK(luxfer_guides_get_motion(source, source, &between));
+    CHECK(codes_of(source).empty());
+    CHECK_OK(luxfer_release(between));
+    CHECK_OK(luxfer_guides_get_motion(source, target, &between));
+    CHECK(codes_of(source) == std::vector<luxfer_warning_code>{LUXFER_WARNING_NO_COUNTERPART});
+    CHECK_OK(luxfer_release(between));
     luxfer_stylize *stylize = nullptr;
     luxfer_image *artwork = nullptr, *picture = nullptr, *motion = nullptr;
     CHECK_OK(luxfer_stylize_create(context, &stylize));
@@ -289,6 +314,15 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     for (size_t i = 0; i < first.size(); ++i) same += first[i] == second[i];
     CHECK(same > first.size() * 8 / 10);
     CHECK_OK(luxfer_release(picture));
+
+    CHECK(codes_of(stylize).empty());
+
+    // Motion that contradicts the scenes is painted, but causes a warning.
+    luxfer_image *wrong = flat({WIDTH, HEIGHT, 2}, 5);
+    CHECK_OK(luxfer_stylize_set_motion(stylize, wrong));
+    CHECK_OK(paint(stylize, &params));
+    CHECK(codes_of(stylize) == std::vector<luxfer_warning_code>{LUXFER_WARNING_MOTION_DISAGREES});
+    CHECK_OK(luxfer_release(wrong));
 
     // Refuse a motion with the wrong number of channels, and a motion without a previous frame.
     luxfer_image *mask = flat({WIDTH, HEIGHT, 1}, 1);

@@ -535,6 +535,14 @@ class Stylisation(Case):
         stylize.run(preset="fast", levels=2)
         moved = (np.abs(stylize.image().numpy() - first).max(-1) > 0.02).mean()
         self.assertLess(moved, 0.2)
+        self.assertEqual(stylize.warnings, [])
+        stylize.set_motion(np.full((48, 64, 2), 5, np.float32))
+        stylize.run(preset="fast", levels=2)
+        self.assertEqual([w.code.name for w in stylize.warnings], ["MOTION_DISAGREES"])
+        self.still.motion(self.ball)
+        self.assertEqual([w.code.name for w in self.still.warnings], ["NO_COUNTERPART"])
+        self.still.motion(self.still)
+        self.assertEqual(self.still.warnings, [])
 
         painted = np.ones((48, 64), bool)
         painted[20:28, 30:40] = False

@@ -37,8 +37,12 @@ public:
     /// Gets an image of the results; `kind` is a LUXFER_GUIDES_ value.
     Result<Image> image(luxfer_guides_image kind) const { return make<Image>(luxfer_guides_get_image, kind); }
 
-    /// Computes the motion of each pixel since the previous frame, whose guides are `before`.
+    /// Computes the motion of each pixel since the previous frame, whose guides are `before`: of camera, objects and
+    /// deforming meshes.
     Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
+
+    /// Gets the warnings about the latest motion.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Draws an artwork of the scene in place of an artist; `style` is a LUXFER_ARTWORK_ value.
     Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_create_artwork, style); }
@@ -86,6 +90,9 @@ public:
     Result<Job> start(const luxfer_stylize_params &params = StylizeParams()) const {
         return make<Job>(luxfer_stylize_start, &params);
     }
+
+    /// Gets the warnings about the motion of the latest result.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Starts a job that updates the picture after a change of the artwork.
     Result<Job> update(const Image &artwork, const Image &changed) const {

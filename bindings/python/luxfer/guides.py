@@ -8,6 +8,7 @@ from . import _abi, _params
 from .image import Image, made
 from .job import Job, Progress, StageBase
 from .types import Artwork, GuidesImage
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -49,8 +50,14 @@ class Guides(StageBase):
         return self._get_image("get_image", _params.member(GuidesImage, which))
 
     def motion(self, before: Guides) -> Image:
-        """The motion of each pixel since the previous frame, whose guides are `before`; for Stylize.set_motion."""
+        """The motion of each pixel since the previous frame, whose guides are `before`; for Stylize.set_motion. Camera,
+        objects and single vertices may have moved."""
         return self._get_image("get_motion", before)
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the latest motion."""
+        return warnings_of(self)
 
     def demo_artwork(self, style: Artwork | str) -> Image:
         """Draws an artwork of the scene in place of an artist: "pen", "stipple" or "paint"."""

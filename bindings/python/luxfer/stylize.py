@@ -11,6 +11,7 @@ from ._library import library
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .types import GuideRange, GuidesWith, StylizeImage, StylizePass, StylizePreset, StylizeReport, StylizeRound
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -132,6 +133,11 @@ class Stylize(StageBase):
     def report(self) -> StylizeReport:
         """Current quality of the result."""
         return cast(StylizeReport, self._read("get_report", _abi.luxfer_stylize_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the motion of the latest result."""
+        return warnings_of(self)
 
     @property
     def levels(self) -> list[Level]:

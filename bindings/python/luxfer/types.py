@@ -450,6 +450,8 @@ class PatternScale(IntEnum):
 class Stage(IntEnum):
     """A stage of the transfer."""
 
+    STYLIZE = -2
+    """No stage of a transfer, but a stylisation or its guides: occurs only in warnings."""
     SCENE = -1
     """No stage, but a loaded scene: occurs only in warnings."""
     VIEW = 0
@@ -601,6 +603,17 @@ class WarningCode(IntEnum):
     """A scene has luminaires, which shine from points: they are invisible in renderings, and
     luxfer_image_get_glare does not rate them. The severity is their number; the message lists the first ones
     with their positions."""
+    NO_COUNTERPART = 27
+    """The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their
+    motion is unknown: it is NaN. The severity is the share of the picture that shows these objects; the message
+    names them. The warning points to a pixel of the largest one."""
+    MOTION_DISAGREES = 28
+    """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
+    shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
+    compared with the exact motion of their scenes; otherwise the guides of data, such as object codes, normals
+    or positions, are compared along the motion, except in a preview, and guides of light alone find no error.
+    The severity is the share of these pixels among the pixels that were compared. The warning points to the
+    pixel with the largest error."""
 
 
 class IlluminanceImage(IntEnum):
@@ -1785,7 +1798,7 @@ class Warning:
     stage: Stage
     """The stage whose result is in doubt: Stage. For a luxfer_segment it is Stage.LIGHTS if
     luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene, and for the size of the scene
-    of a luxfer_transfer, it is Stage.SCENE."""
+    of a luxfer_transfer, it is Stage.SCENE; for a luxfer_guides or a luxfer_stylize it is Stage.STYLIZE."""
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float

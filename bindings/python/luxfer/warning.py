@@ -24,7 +24,8 @@ class StageWarning:
     code: WarningCode
     """The kind of the warning."""
     stage: Stage
-    """The stage whose result is in doubt. For a Segment, it is LIGHTS if a region is set, else PLANE."""
+    """The stage whose result is in doubt. For a Segment, it is LIGHTS if a region is set, else PLANE;
+    for Guides and Stylize it is STYLIZE."""
     severity: float
     """The figure that caused the warning; its meaning depends on the code."""
     limit: float

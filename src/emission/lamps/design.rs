@@ -524,10 +524,10 @@ mod tests {
         assert_eq!(design.shape, Shape::Ellipse);
         assert!((design.size - diameter).abs().max_element() < 0.5, "{}", design.size);
         // Ellipses that are long across their blur are no discs.
-        let turned: Vec<Member> =
-            lamps.into_iter().map(|m| Member { inverse_map: DMat2::from_diagonal(m.blur.yx()), ..m }).collect();
+        let turn = |m: Member| Member { blur: m.blur.yx(), inverse_map: DMat2::from_diagonal(m.blur.yx()), ..m };
+        let turned: Vec<Member> = lamps.into_iter().map(turn).collect();
         let (design, _) = fit(&turned, 0).unwrap();
-        assert!(design.size.y > 1.2 * design.size.x, "{}", design.size);
+        assert!(design.size.y > 1.15 * design.size.x, "{}", design.size);
     }
 
     #[test]

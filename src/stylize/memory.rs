@@ -1,0 +1,156 @@
+//! The guides of a frame as the next frame of a sequence needs them: the light to which the paint of each patch was
+//! matched, and the data by which points of surfaces are recognised.
+
+use super::guides::Channels;
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_collect, try_vec};
+use crate::job::Job;
+
+/// Number of steps into which the range `[0, 1]` of a guide is divided: values are stored in 8 bits. [rounding]
+const STEPS: f32 = 255.0;
+/// A pixel shows another surface than before if a channel of its data differs by more than this share of the channel's
+/// range. [judged on 1 scene]
+const DATA_TOLERANCE: f32 = 0.25;
+
+/// What a frame remembers of its guides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Memory {
+    /// Size of the target in pixels, and number of patches along x and y.
+    size: [usize; 2],
+    patches: [usize; 2],
+    /// For each patch, the mean of each channel of light when the patch's match was chosen, as multiples of 1/255.
+    light: Vec<u8>,
+    /// Weight of each channel of light; the weights sum to 1, or to 0 if there is no light.
+    weights: Vec<f32>,
+    /// For each pixel, the channels of the other guides, as multiples of 1/255; empty if there are none.
+    data: Vec<u8>,
+}
+
+/// How the motion of a frame agrees with the guides of both frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Agreement {
+    /// Number of pixels whose motion was compared, and number of those that show another surface at the end of their
+    /// motion.
+    pub compared: usize,
+    pub wrong: usize,
+    /// One of the wrong pixels: the one with the largest difference.
+    pub place: Option<[usize; 2]>,
+}
+
+impl Memory {
+    /// Stores the guides of a target.
+    pub(super) fn of(guides: &Channels, patch: usize, job: Job) -> Result<Self> {
+        let target = &guides.target;
+        let size = [target.width, target.height];
+        let patches = size.map(|n| n + 1 - patch);
+        let channel = |is_light: bool| -> Vec<usize> {
+            (0..target.channels).filter(|&c| guides.is_light[c] == is_light).collect()
+        };
+        let (lights, others) = (channel(true), channel(false));
+        let mut light = try_vec(patches[0] * patches[1] * lights.len(), 0u8)?;
+        if !lights.is_empty() {
+            let row_len = patches[0] * lights.len();
+            exec::for_rows(&mut light, row_len, job, |y, row| means(row, target, &lights, y, patch))?;
+        }
+        let pixels = target.data.chunks_exact(target.channels);
+        let data = try_collect(pixels.flat_map(|p| others.iter().map(|&c| stored(p[c]))))?;
+        let total: f64 = lights.iter().map(|&c| guides.weights[c]).sum();
+        let weight = |&c: &usize| if total > 0.0 { (guides.weights[c] / total) as f32 } else { 0.0 };
+        Ok(Self { size, patches, light, weights: lights.iter().map(weight).collect(), data })
+    }
+
+    pub(super) fn try_clone(&self) -> Result<Self> {
+        let copy = |list: &[u8]| try_collect(list.iter().copied());
+        Ok(Self { light: copy(&self.light)?, data: copy(&self.data)?, weights: self.weights.clone(), ..*self })
+    }
+
+    /// Whether values of both memories can be compared: the guides have equal sizes and channels.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        (self.size, self.patches, self.weights.len(), self.data.len())
+            == (other.size, other.patches, other.weights.len(), other.data.len())
+    }
+
+    /// Returns the weighted root mean square difference between the light on a patch and the light on a patch of
+    /// another memory.
+    pub(super) fn change(&self, patch: usize, other: &Self, other_patch: usize) -> f32 {
+        let n = self.weights.len();
+        let light = self.light[patch * n..(patch + 1) * n].iter();
+        let pairs = light.zip(&other.light[other_patch * n..(other_patch + 1) * n]);
+        let terms = pairs.zip(&self.weights).map(|((a, b), w)| w * ((f32::from(*a) - f32::from(*b)) / STEPS).powi(2));
+        terms.sum::<f32>().sqrt()
+    }
+
+    /// Replaces the light on a patch by the light on a patch of another memory.
+    pub(super) fn recall(&mut self, patch: usize, other: &Self, other_patch: usize) {
+        let n = self.weights.len();
+        self.light[patch * n..(patch + 1) * n].copy_from_slice(&other.light[other_patch * n..(other_patch + 1) * n]);
+    }
+
+    /// Compares the data of each pixel with the data of the previous frame at the end of the pixel's motion. A pixel
+    /// counts as wrong if its data differ from those of all pixels within one pixel of this place.
+    pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Agreement> {
+        let [width, height] = self.size;
+        let channels = self.data.len() / (width * height);
+        if channels == 0 || [motion.width, motion.height] != self.size {
+            return Ok(Agreement::default());
+        }
+        let at = |x: usize, y: usize| (y * width + x) * channels..(y * width + x + 1) * channels;
+        let row = |y: usize| {
+            let (mut found, mut largest) = (Agreement::default(), DATA_TOLERANCE);
+            for x in 0..width {
+                let step = motion.pixel(x, y);
+                let (u, v) = ((x as f32 + 0.5 + step[0]).floor(), (y as f32 + 0.5 + step[1]).floor());
+                if !(u >= 0.0 && v >= 0.0 && u < width as f32 && v < height as f32) {
+                    continue;
+                }
+                let (u, v) = (u as usize, v as usize);
+                let own = &self.data[at(x, y)];
+                let around = (v.saturating_sub(1)..(v + 2).min(height))
+                    .flat_map(|v| (u.saturating_sub(1)..(u + 2).min(width)).map(move |u| (u, v)));
+                let differences = around.map(|(u, v)| difference(own, &before.data[at(u, v)]));
+                let least = differences.fold(f32::INFINITY, f32::min);
+                found.compared += 1;
+                found.wrong += usize::from(least > DATA_TOLERANCE);
+                if least > largest {
+                    (found.place, largest) = (Some([x, y]), least);
+                }
+            }
+            (found, largest)
+        };
+        let rows = exec::map(height, job, row)?;
+        let mut all = (Agreement::default(), DATA_TOLERANCE);
+        for (found, largest) in rows {
+            all.0.compared += found.compared;
+            all.0.wrong += found.wrong;
+            if largest > all.1 {
+                (all.0.place, all.1) = (found.place, largest);
+            }
+        }
+        Ok(all.0)
+    }
+}
+
+fn stored(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * STEPS + 0.5) as u8
+}
+
+/// Returns the largest difference of a channel.
+fn difference(a: &[u8], b: &[u8]) -> f32 {
+    f32::from(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)) / STEPS
+}
+
+/// Writes the means of the chosen channels over the patches of row `y`.
+fn means(row: &mut [u8], target: &Image, channels: &[usize], y: usize, patch: usize) {
+    let n = channels.len();
+    let scale = 1.0 / (patch * patch) as f32;
+    for (x, out) in row.chunks_exact_mut(n).enumerate() {
+        let mut sums = [0.0f32; super::guides::MAX_CHANNELS];
+        for dy in 0..patch {
+            let start = x * target.channels;
+            let pixels = target.row(y + dy)[start..start + patch * target.channels].chunks_exact(target.channels);
+            pixels.for_each(|p| sums.iter_mut().zip(channels).for_each(|(sum, &c)| *sum += p[c]));
+        }
+        out.iter_mut().zip(&sums).for_each(|(out, sum)| *out = stored(sum * scale));
+    }
+}
