@@ -33,7 +33,7 @@ const MIN_ARRIVAL: f64 = 0.003;
 /// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` divided by the square root of the
 /// number of samples already drawn from them, clamped to the range `UNLIKELY_SHARES`. The square root is rounded down
 /// to a power of two. [judged on 3 scenes]
-const UNLIKELY_SHARES: [f64; 2] = [0.05, 0.1];
+const UNLIKELY_SHARES: [f64; 2] = [0.03, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
 /// A neighbour in the light tree counts as at most this many samples. If it has more, its counts of drawn and of
 /// arrived samples are scaled down by the same factor. [judged on 3 scenes]
