@@ -81,6 +81,13 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         unsafe { &mut *lines.as_mut_ptr().cast() }
     }
 
+    /// Returns the value at a line, and panics if the line is not in the list. Any bits are a valid `T`.
+    pub fn checked<T: Plain>(&self, line: usize) -> &T {
+        let lines = &self.list[line..line + lines_of::<T>()];
+        // SAFETY: `T` is `Plain`, and it fills `lines_of::<T>()` lines with the alignment of a line.
+        unsafe { &*lines.as_ptr().cast() }
+    }
+
     /// # Safety
     /// A value of type `T` must have been stored at this line.
     #[inline(always)]

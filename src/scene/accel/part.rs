@@ -31,16 +31,14 @@ impl Accel {
                 continue;
             }
             if child.is_packet() {
-                // SAFETY: children refer to the lines at which nodes and packets were written.
-                let packet = unsafe { self.lines.get::<Packet>(child.line()) };
+                let packet = self.lines.checked::<Packet>(child.line());
                 let within = |corners: &[Vec3; 3]| {
                     let [a, b, c] = *corners;
                     meets(a.min(b).min(c), a.max(b).max(c))
                 };
                 found.extend(packet.triangles().filter(|(_, corners)| within(corners)));
             } else {
-                // SAFETY: children refer to the lines at which nodes and packets were written.
-                let node = unsafe { self.lines.get::<Node>(child.line()) };
+                let node = self.lines.checked::<Node>(child.line());
                 open.extend((0..8).filter(|&lane| node.is_met(lane, meets)).map(|lane| node.child(lane)));
             }
         }
@@ -55,8 +53,7 @@ impl Accel {
             if child.is_packet() && !child.is_empty() {
                 self.lines.get_mut::<Packet>(child.line()).renumber(ids);
             } else if !child.is_empty() {
-                // SAFETY: children refer to the lines at which nodes and packets were written.
-                let node = unsafe { self.lines.get::<Node>(child.line()) };
+                let node = self.lines.checked::<Node>(child.line());
                 open.extend((0..8).map(|lane| node.child(lane)));
             }
         }
