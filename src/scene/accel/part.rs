@@ -13,7 +13,7 @@ impl Accel {
     /// Builds the structure of the triangles whose bounding boxes meet the box from `low` to `high`. The triangles
     /// keep their indices. Returns `None` if there are more than `max`, or none.
     pub fn part(&self, [low, high]: [Vec3; 2], max: usize, job: Job) -> Result<Option<Self>> {
-        let Some(found) = self.triangles_in([low, high], max)? else { return Ok(None) };
+        let Some(found) = self.triangles_in([low, high], max) else { return Ok(None) };
         let ids = try_collect(found.iter().map(|&(id, _)| id))?;
         let mut part = Self::build(&try_collect(found.into_iter().map(|(_, corners)| corners))?, job)?;
         part.renumber(&ids);
@@ -22,7 +22,7 @@ impl Accel {
 
     /// Returns the triangles whose bounding boxes meet a box, by ascending index; `None` if there are more than `max`,
     /// or none.
-    fn triangles_in(&self, [low, high]: [Vec3; 2], max: usize) -> Result<Option<Vec<(u32, [Vec3; 3])>>> {
+    fn triangles_in(&self, [low, high]: [Vec3; 2], max: usize) -> Option<Vec<(u32, [Vec3; 3])>> {
         let meets = |from: Vec3, to: Vec3| from.cmple(high).all() && to.cmpge(low).all();
         let mut found = Vec::new();
         let mut open = vec![self.root];
@@ -43,7 +43,7 @@ impl Accel {
             }
         }
         found.sort_unstable_by_key(|&(id, _)| id);
-        Ok((!found.is_empty() && found.len() <= max).then_some(found))
+        (!found.is_empty() && found.len() <= max).then_some(found)
     }
 
     /// Replaces the index of each triangle by the entry of `ids` at that index.
