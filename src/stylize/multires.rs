@@ -211,8 +211,11 @@ fn rematch(
 /// Decodes the picture of the finest level and completes the report.
 fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, memory, .. } = state;
-    let missing = || Error::new(crate::error::ErrorKind::Internal, "the finest level has no memory");
-    let memory = memory.ok_or_else(missing)?;
+    // A preview, or the run of a plan, ends on a coarser level, whose guides are not stored beforehand.
+    let memory = match memory {
+        Some(memory) => memory,
+        None => Memory::of(&level.problem.guides, level.problem.patch, job)?,
+    };
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;
     drop(level);
