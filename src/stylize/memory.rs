@@ -13,8 +13,8 @@ const STEPS: f32 = 255.0;
 /// range. [judged on 1 scene]
 const DATA_TOLERANCE: f32 = 0.25;
 
-/// What a frame remembers of its guides.
-#[derive(Clone, Debug, PartialEq)]
+/// What a frame remembers of its guides. The default, of no pixels, is like no frame.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
     /// Size of the target in pixels, and number of patches along x and y.
     size: [usize; 2],

@@ -211,11 +211,8 @@ fn rematch(
 /// Decodes the picture of the finest level and completes the report.
 fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, memory, .. } = state;
-    // A preview, or the run of a plan, ends on a coarser level, whose guides are not stored beforehand.
-    let memory = match memory {
-        Some(memory) => memory,
-        None => Memory::of(&level.problem.guides, level.problem.patch, job)?,
-    };
+    // A preview, or the run of a plan, ends on a coarser level, with which no later frame is compared.
+    let memory = memory.unwrap_or_default();
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;
     drop(level);
