@@ -61,7 +61,7 @@ pub fn tune(words: &[String]) {
 pub fn tune_without_strokes(words: &[String]) {
     let count = words.first().and_then(|word| word.parse().ok()).unwrap_or(60);
     let scene = Arc::new(hall());
-    let (mut sheets, mut tally) = (Sheets::new("nostrokes_tune"), Tally::default());
+    let (mut sheets, mut tally) = (Sheets::new("nostrokes_tune", false), Tally::default());
     for seed in TUNING..TUNING + count {
         let mut photo = made(seed).photo;
         remove_strokes(&mut photo);
@@ -81,7 +81,7 @@ pub fn tune_without_strokes(words: &[String]) {
 /// from ten strokes per photo.
 fn run(section: &str, first: u64, count: usize) -> (Tally, Tally) {
     let scene = Arc::new(hall());
-    let (mut sheets, mut tally, mut ten) = (Sheets::new(section), Tally::default(), Tally::default());
+    let (mut sheets, mut tally, mut ten) = (Sheets::new(section, count == 1), Tally::default(), Tally::default());
     for seed in first..first + count as u64 {
         let mut made = made(seed);
         let mut outcome = Outcome::of(&made.photo, &scene);

@@ -156,7 +156,7 @@ impl Judgement {
         let plane = results.plane.as_ref().map(|plane| Mask::of(&plane.mask));
         let has_lamps = !truth.lamps.is_empty();
         let agreement = truth.layout.as_ref().map(|truth| match outcome.lamps() {
-            Some(texture) => Agreement::between(&texture, truth),
+            Some(texture) => Agreement::between(&texture.joined(truth.bar), truth),
             None => Agreement { area: Some(f64::INFINITY), ..Agreement::default() },
         });
         let mut judgement = Self {

@@ -208,6 +208,7 @@ fn layout(room: &Room, shot: &Shot, to_photo: &Homography, pixels: &[Vec<u32>], 
         cut: Vec::new(),
         others: rest.into_iter().map(|(shape, _, _)| shape.centre).collect(),
         lit: Some(*lit),
+        bar: 0.0,
     }
 }
 

@@ -49,7 +49,7 @@ fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool, prepare: f
     let sources = corpus::sources().map_err(|reason| absent(&format!("photos.{section}.right"), &reason)).ok()?;
     let is_wanted = |source: &&Source| words.is_empty() || words.iter().any(|word| source.name.contains(word.as_str()));
     let scene = Arc::new(hall());
-    let (mut sheets, mut tally) = (Sheets::new(section), Tally::default());
+    let (mut sheets, mut tally) = (Sheets::new(section, !words.is_empty()), Tally::default());
     for source in sources.iter().filter(|source| belongs(source)).filter(is_wanted) {
         match corpus::load(source) {
             Ok(mut photo) => {

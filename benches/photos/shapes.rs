@@ -52,6 +52,32 @@ impl Shape {
     pub fn aspect(&self) -> f64 {
         self.sides.x / self.sides.y
     }
+
+    /// Corners of the smallest rectangle around the lamp.
+    fn corners(&self) -> [DVec2; 4] {
+        let (a, b) = (self.axis * self.sides.x / 2.0, self.axis.perp() * self.sides.y / 2.0);
+        [self.centre + a + b, self.centre - a + b, self.centre - a - b, self.centre + a - b]
+    }
+
+    /// The width of the gap between two lamps that lie side by side; `None` if they do not.
+    fn gap(&self, other: &Self) -> Option<f64> {
+        let corners = other.corners();
+        let apart = |axis: DVec2, side: f64| {
+            let own = axis.dot(self.centre);
+            let at = corners.iter().map(|p| p.dot(axis));
+            let (low, high) = (at.clone().fold(f64::MAX, f64::min), at.fold(f64::MIN, f64::max));
+            (low - own - side / 2.0).max(own - side / 2.0 - high)
+        };
+        let [along, across] = [apart(self.axis, self.sides.x), apart(self.axis.perp(), self.sides.y)];
+        let is_beside = along.min(across) < -0.5 * self.sides.min(other.sides).min_element();
+        is_beside.then_some(along.max(across))
+    }
+
+    /// The smallest rectangle around lamps, with the sum of their areas.
+    fn around(lamps: &[&Self]) -> Option<Self> {
+        let corners: Vec<DVec2> = lamps.iter().flat_map(|lamp| lamp.corners()).collect();
+        Self::of(&corners, Some(lamps.iter().map(|lamp| lamp.area).sum()))
+    }
 }
 
 /// A set of lamps in one plane; all lengths are in one unit.
@@ -67,7 +93,12 @@ pub struct Lamps {
     pub others: Vec<DVec2>,
     /// Lower and upper bound of the lit share of the plane.
     pub lit: Option<[f64; 2]>,
+    /// Maximum width of the bars between panes that count as one lamp; 0 if each pane is a lamp.
+    pub bar: f64,
 }
+
+/// Panes are one lamp if the bar between them is at most this share of the lamps' shorter side. [convention]
+const MAX_BAR: f64 = 0.2;
 
 impl Lamps {
     /// Whether the median lamp is a line.
@@ -85,6 +116,43 @@ impl Lamps {
             Some([median(of(kind).map(|s| s.area))?, median(of(kind).map(Shape::aspect))?, share])
         });
         kinds.collect()
+    }
+
+    /// Joins the lamps that lie side by side with at most `bar` between them: panes with bars of this width between them
+    /// are one window.
+    pub fn joined(&self, bar: f64) -> Self {
+        if bar <= 0.0 {
+            return self.clone();
+        }
+        let mut lamps: Vec<&Shape> = self.whole.iter().collect();
+        lamps.sort_by(|a, b| a.centre.x.total_cmp(&b.centre.x));
+        let reach = bar + lamps.iter().map(|lamp| lamp.sides.length()).fold(0.0, f64::max);
+        // Each lamp has the number of its group. Where two groups meet, the later one takes the number of the earlier.
+        let mut group: Vec<usize> = (0..lamps.len()).collect();
+        for i in 0..lamps.len() {
+            let near = (i + 1..lamps.len()).take_while(|&j| lamps[j].centre.x - lamps[i].centre.x <= reach);
+            for j in near.filter(|&j| lamps[i].gap(lamps[j]).is_some_and(|gap| gap <= bar)) {
+                let (a, b) = (group[i].min(group[j]), group[i].max(group[j]));
+                group.iter_mut().filter(|g| a < b && **g == b).for_each(|g| *g = a);
+            }
+        }
+        let mut groups: Vec<Vec<&Shape>> = vec![Vec::new(); lamps.len()];
+        lamps.iter().zip(&group).for_each(|(lamp, group)| groups[*group].push(lamp));
+        let whole = groups.iter().filter_map(|group| match group[..] {
+            [] => None,
+            [lamp] => Some(lamp.clone()),
+            _ => Shape::around(group),
+        });
+        Self { whole: whole.collect(), ..self.clone() }
+    }
+
+    /// Lamps that were listed by hand: a window of several panes is one of them. The bars between panes have at most the
+    /// share [`MAX_BAR`] of the lamps' shorter side, and half of the width of any gap between two lamps.
+    pub fn with_bars(self) -> Self {
+        let pairs = self.whole.iter().enumerate().flat_map(|(i, a)| self.whole[..i].iter().filter_map(|b| a.gap(b)));
+        let side = median(self.whole.iter().map(|s| s.sides.y)).unwrap_or(0.0);
+        let bar = pairs.map(|gap| 0.5 * gap).fold(MAX_BAR * side, f64::min);
+        Self { bar, ..self }
     }
 
     pub fn area(&self) -> Option<f64> {

@@ -25,12 +25,18 @@ pub struct Sheets {
     name: String,
     rows: Vec<Image>,
     written: usize,
+    /// Whether every panel is also saved at full size, for photos that were chosen one by one.
+    keeps_panels: bool,
 }
+
+/// Names of the panels, for the files with panels at full size.
+const PANELS: [&str; 5] = ["strokes", "masks", "unwarped", "texture", "hall"];
 
 impl Sheets {
     /// Starts sheets that are saved as `out/bench/photos/<name>_<number>.png`.
-    pub fn new(name: &str) -> Self {
-        Self { name: name.into(), rows: Vec::new(), written: 0 }
+    /// `keeps_panels` also saves every panel at full size, as `<name>_<photo>_<panel>.png`.
+    pub fn new(name: &str, keeps_panels: bool) -> Self {
+        Self { name: name.into(), rows: Vec::new(), written: 0, keeps_panels }
     }
 
     /// Adds the row of a photo, and saves the sheet when it is full.
@@ -41,6 +47,9 @@ impl Sheets {
         panels.push(results.emission.as_ref().map_or_else(blank, |emission| emission.texture.clone()));
         panels.push(results.film.as_ref().map_or_else(blank, |film| scaled(&film.beauty, EXPOSURE)));
         let mut row = ground(WIDTHS.iter().sum::<usize>() + GAP * WIDTHS.len(), HEIGHT + GAP);
+        for (panel, what) in panels.iter().zip(PANELS).filter(|_| self.keeps_panels) {
+            save(panel, &format!("{}_{}_{what}", self.name, photo.name));
+        }
         let mut left = 0;
         for (panel, width) in panels.iter().zip(WIDTHS) {
             paste(&mut row, &fitted(panel, width, HEIGHT), [left, 0]);

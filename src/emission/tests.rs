@@ -1,6 +1,7 @@
 //! Tests of emission as a whole: patterns with known statistics, exact copies, and extreme inputs.
 
 mod blending;
+mod cut;
 mod extremes;
 mod lines;
 mod outlines;

@@ -3,8 +3,8 @@
 //! In a building, most paths stay in a few rooms, but their rays descend through an acceleration structure of the whole
 //! building. The first passes therefore record where vertices lie ([`Places`]), and the render builds a second
 //! structure of the triangles that meet the box around these places. It is exact: a triangle that a segment hits before
-//! its end has a point on the segment, and a segment between two points of the box stays within the box. So hits are
-//! the same, bit for bit, as those of the structure of the whole scene, which answers all other rays.
+//! its end has a point on the segment, and a segment between two points of the box stays within the box. So both
+//! structures find the same hits, to the last bit. The structure of the whole scene answers all other rays.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};

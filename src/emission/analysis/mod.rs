@@ -173,12 +173,11 @@ impl Analysis {
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice, unless the law found in the whole
-        // exemplar scores clearly higher.
+        // For the panes of a luminous ceiling, prefer the best lattice, unless another law scores clearly higher.
         let panes = lattice.filter(|p| {
             exemplar.is_luminous_ceiling()
                 && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN
-                && p.score > own.score - CLEAR_MARGIN
+                && p.score > best.score - CLEAR_MARGIN
         });
         let chosen = match panes {
             Some(panes) => panes,
@@ -200,7 +199,7 @@ impl Analysis {
 
     /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
     /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
-    /// from the distances between neighbouring panes.
+    /// and rows from the distances between neighbouring panes.
     fn propose(&self, lamps: &[MeasuredLamp], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -227,15 +226,18 @@ impl Analysis {
             }
             job.check()?;
         }
-        let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(lamps) } else { Vec::new() };
-        for basis in panes {
-            let law = Law::Lattice(basis::refine(exemplar, basis, 2));
-            proposals.push(Proposal { law, regularity: 0.0, score: 0.0 });
+        if exemplar.is_luminous_ceiling() {
+            let periods = neighbours::periods(lamps);
+            let lattices = neighbours::lattices(&periods).into_iter();
+            let lattices = lattices.map(|basis| Law::Lattice(basis::refine(exemplar, basis, 2)));
+            let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period, extent));
+            proposals.extend(lattices.chain(rows).map(|law| Proposal { law, regularity: 0.0, score: 0.0 }));
         }
         Ok(proposals)
     }
 
-    /// Chooses the best lattice or the best row, as `mode` asks. Errors: `Degenerate` if there is none.
+    /// Chooses the lattice with the highest score if `mode` is [`LawMode::Lattice`], or else the row with the highest
+    /// score. Errors: `Degenerate` if there is none.
     fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Law| match mode {
             LawMode::Row => matches!(c, Law::Row(_)),

@@ -96,7 +96,7 @@ impl Sites {
             }
         }
         for k in 0..sites.list.len() {
-            sites.weigh(k, exemplar);
+            sites.weigh(k, lamps, exemplar);
         }
         Some(sites)
     }
@@ -114,21 +114,27 @@ impl Sites {
 
     /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Also measures where the
     /// lattice predicts a lamp of this site in full view but the light mask shows none.
-    fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
+    fn weigh(&mut self, k: usize, all: &[MeasuredLamp], exemplar: &Exemplar) {
         let Site { lamps, .. } = &self.list[k];
         let first = lamps[0];
         let shown: f64 = lamps.iter().map(|l| l.weight).sum();
         let off: DVec2 = lamps.iter().map(|l| self.residual(l.centre - first.centre) * l.weight).sum();
         let at = first.centre + off / shown.max(f64::MIN_POSITIVE);
-        let (unmarked, missing, dark) = self.missing(at, lamps, exemplar);
+        let (unmarked, missing, dark) = self.missing(at, (lamps, all), exemplar);
         let site = &mut self.list[k];
         (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
-    /// Tests the positions in full view where the lattice predicts a lamp but the light mask shows none. Returns the
-    /// photo pixels of positions that shine like the site's lamps, the photo pixels of dark positions, and the number
-    /// of dark positions.
-    fn missing(&self, at: DVec2, lamps: &[MeasuredLamp], exemplar: &Exemplar) -> (f64, f64, usize) {
+    /// Tests the positions in full view where the lattice predicts a lamp of this site (`lamps`, of `all` lamps) but the
+    /// light mask shows none. Returns the photo pixels of positions that shine like the site's lamps, the photo pixels
+    /// of dark positions, and the number of dark positions. A lamp that covers the position off its centre counts as
+    /// dark.
+    fn missing(
+        &self,
+        at: DVec2,
+        (lamps, all): (&[MeasuredLamp], &[MeasuredLamp]),
+        exemplar: &Exemplar,
+    ) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
         let is_shown = |p: DVec2| {
@@ -136,7 +142,20 @@ impl Sites {
             inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
         };
         let corners = [DVec2::ZERO, half, -half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y)];
-        let is_lit = |p: DVec2| exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize] != 0;
+        // A lamp of equal size whose centre lies elsewhere contradicts the lattice, even if it covers the position.
+        let contradicts = |component: usize| {
+            let is_displaced = |l: &MeasuredLamp| {
+                l.component == component
+                    && l.may_be_like(&lamps[0])
+                    && !lamps.iter().any(|own| own.component == component)
+            };
+            all.iter().any(is_displaced)
+        };
+        let label_at = |p: DVec2| exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize];
+        let is_lit = |p: DVec2| match label_at(p) {
+            0 => false,
+            label => !contradicts(label as usize - 1),
+        };
         let is_taken = |p: DVec2| {
             is_lit(p)
                 || lamps.iter().any(|l| {
@@ -155,7 +174,8 @@ impl Sites {
         let (mut unmarked, mut missing, mut dark) = (0.0, 0.0, 0);
         for p in empty {
             let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
-            let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= MIN_SHINING * brightest);
+            let shines =
+                label_at(p) == 0 && brightest > 0.0 && contrast(p).is_some_and(|c| c >= MIN_SHINING * brightest);
             if shines {
                 unmarked += pixels;
             } else {

@@ -289,14 +289,16 @@ impl<'a> PatternPlacement<'a> {
     }
 
     /// Moves lamps to the exact sites of their lattice. `shown` holds the lamps that the copied patches contain; it is
-    /// returned unchanged if there are no designs or no sites, and for a row that ends within the exemplar.
+    /// returned unchanged if there are no designs (except for panes) or no sites, and for a row that ends within the
+    /// exemplar.
     fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
         let &Self { params, law, offset, .. } = self;
         let ends = match law {
             Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
             _ => false,
         };
-        if designs.kinds.is_empty() || ends {
+        let are_panes = params.clean_lamps && exemplar.to_photo.is_some() && exemplar.is_luminous_ceiling();
+        if ends || (designs.kinds.is_empty() && !are_panes) {
             return shown;
         }
         match Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), law) {

@@ -3,6 +3,7 @@
 use super::layer::Layer;
 use super::resample;
 use crate::emission::exemplar::LIT;
+use crate::emission::exemplar::roles::Role;
 use crate::emission::params::Input;
 use crate::error::Result;
 use crate::job::Job;
@@ -109,13 +110,27 @@ impl TexelSource<'_> {
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
         let local = DVec2::new(at.dot(axes[0]), at.dot(axes[1])).clamp(-half, half) * inner;
-        let p = fitted.centre + axes[0] * local.x + axes[1] * local.y;
+        let p = self.shown_point(component, fitted.centre + axes[0] * local.x + axes[1] * local.y);
         let label = component as u32 + 1;
         let colour = match &self.layer.even {
             Some(means) => means[component],
             None => self.colour(p, scale, &self.taps(p, true), Some(label), &|l| l == label),
         };
         Some(Texel { colour: colour * share, share, coverage: share })
+    }
+
+    /// The point of a lamp that stands for the point `p` of its design: `p` itself if the photo shows the lamp there, or
+    /// the first visible point of the lamp on the way to its visible centre. The border hides a part of cut lamps.
+    fn shown_point(&self, component: usize, p: DVec2) -> DVec2 {
+        let exemplar = &self.layer.exemplar;
+        if exemplar.roles[component] != Role::Partial {
+            return p;
+        }
+        let centre = exemplar.components.list[component].centre;
+        let is_lamp = |q: &DVec2| self.label(self.taps(*q, true)[0].0) == component as u32 + 1;
+        let steps = (centre - p).length().ceil().max(1.0);
+        let way = (0..=steps as usize).map(|n| p.lerp(centre, n as f64 / steps));
+        way.into_iter().find(is_lamp).unwrap_or(centre)
     }
 
     /// The colour of the light at a point: from the photo or, outside the photo, from the unwarped image.

@@ -2,6 +2,7 @@
 
 pub mod coverage;
 pub mod crumbs;
+pub mod cut;
 pub mod design;
 pub mod instance;
 pub mod instances;

@@ -23,6 +23,25 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
+/// Width and height of the box around the panes of a luminous ceiling and one of the widest bars between them, in
+/// unwarped pixels.
+pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
+    let along = |axis: usize| {
+        let mut spans: Vec<[usize; 2]> =
+            exemplar.components.list.iter().map(|pane| [pane.min[axis], pane.max[axis] + 1]).collect();
+        spans.sort_unstable();
+        let first = spans.first().map_or(0, |span| span[0]);
+        let (end, widest) = spans
+            .iter()
+            .fold((first, 0), |(end, widest), span| (end.max(span[1]), widest.max(span[0].saturating_sub(end))));
+        [(end - first) as f64, widest as f64]
+    };
+    let [[width, column], [height, row]] = [along(0), along(1)];
+    // A single column or row of panes shows the bars of the other direction only.
+    let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
+    DVec2::new(width + bar(column, row), height + bar(row, column))
+}
+
 /// The law by which the exemplar repeats as a whole.
 pub fn as_period(exemplar: &Exemplar) -> Law {
     let cell = whole_exemplar(exemplar, of(exemplar));
@@ -36,13 +55,14 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
 
 /// The periods along x and y with which an exemplar repeats as a whole, chosen so that the texture keeps the lit share
 /// of the visible part of the plane. The periods are shorter than the exemplar if its corners are not visible, or if
-/// cut lamps are left out.
+/// cut lamps are left out. A single lamp in a photo shows no spacing, so its two periods are equal.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
         lamps.iter().zip(&exemplar.roles).filter(|(_, role)| **role != Role::Cut).map(|(lamp, _)| lamp.area).sum();
     let share = (lit as f64 / exemplar.lit_share / extent.element_product()).min(1.0);
-    if share > 1.0 - 1e-6 {
+    let is_framed = exemplar.to_photo.is_some() && exemplar.pieces().count() == 1;
+    if share > 1.0 - 1e-6 && !is_framed {
         return extent;
     }
     // Keep a gap between the lamps of adjacent repetitions.
@@ -51,6 +71,9 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
         (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
     });
     let least = if low.x <= high.x { (high - low + CELL_GAP) / extent } else { DVec2::ZERO };
+    if is_framed && least.max_element() <= 1.0 {
+        return DVec2::splat((share * extent.element_product()).sqrt()).max(least * extent);
+    }
     let x = (share / least.y.max(share.sqrt())).max(least.x).min(1.0);
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }

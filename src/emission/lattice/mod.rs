@@ -54,8 +54,10 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
     }
 }
 
-/// A row with the given period; the extent of the exemplar serves as its second period.
+/// A row with the given period; the extent of the exemplar serves as its second period. Panes of a luminous ceiling that
+/// fill the exemplar continue beyond a bar.
 pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Law {
+    let extent = if exemplar.is_luminous_ceiling() { extent.max(extent::of_panes(exemplar)) } else { extent };
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
     Law::Row([basis::straight(period), across])

@@ -8,17 +8,22 @@ use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// Number of neighbours whose distances are proposed as periods: the next lamp, and the lamp after it. [convention]
-const ORDERS: usize = 2;
+/// Number of neighbours whose distances are proposed as periods: the next lamp, the lamp after it, and the third one.
+/// Windows of up to three panes along an axis thus give their own period. [convention]
+const ORDERS: usize = 3;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.
-pub fn lattices(lamps: &[MeasuredLamp]) -> Vec<[DVec2; 2]> {
-    let [across, down] = periods(lamps);
+pub fn lattices([across, down]: &[Vec<f64>; 2]) -> Vec<[DVec2; 2]> {
     across.iter().flat_map(|x| down.iter().map(|y| [DVec2::X * *x, DVec2::Y * *y])).collect()
 }
 
+/// Proposes rows along the axes: every period along x, and every period along y.
+pub fn rows([across, down]: &[Vec<f64>; 2]) -> Vec<DVec2> {
+    across.iter().map(|x| DVec2::X * *x).chain(down.iter().map(|y| DVec2::Y * *y)).collect()
+}
+
 /// Periods along x and along y, at most [`ORDERS`] each, in unwarped pixels.
-fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
+pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| {
         let found = (1..=ORDERS).filter_map(|order| {
             let distances = lamps.iter().filter_map(|lamp| Some((distance(lamps, lamp, axis, order)?, lamp.weight)));

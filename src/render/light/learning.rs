@@ -10,8 +10,8 @@ use crate::render::vicinity::Places;
 use std::sync::Arc;
 
 /// Lights that are unlikely to reach the surfaces in view get a selector of their own only if they took at least this
-/// share of all light samples so far. With a smaller share, the samples that learning saves hardly exceed those that
-/// unlikely lights still get (`UNLIKELY_SHARES` in `reach`); the image is then the same, bit for bit, as without
+/// share of all light samples so far. With a smaller share, learning would save hardly any samples, because unlikely
+/// lights still get the share `UNLIKELY_SHARES` (in `reach`). The image then equals, to the last bit, the image without
 /// learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
 /// Minimum number of light samples before the first decision, or half the number of lights if that is larger.

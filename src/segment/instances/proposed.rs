@@ -20,7 +20,8 @@ const MIN_LIGHTNESS: f64 = 80.0;
 const MIN_RING: f64 = 10.0;
 /// Minimum solidity of a lamp (see `Regions::solidity`). [bench photos:nostrokes]
 const MIN_SOLIDITY: f64 = 0.75;
-/// Maximum share of the plane that a lamp may cover. [bench photos:nostrokes]
+/// Maximum share of the plane that a lamp may cover, measured on the face of the room if it has a box layout: a lamp
+/// above the camera may fill much of the photo. [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
 /// At least this share of the ring of pixels around a lamp must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
@@ -48,9 +49,14 @@ pub fn brightest(features: &Image, plane: &Image) -> Result<Vec<u32>> {
 pub fn find(search: &Search) -> Result<Vec<u32>> {
     let Search { tree, regions, photo, plane, negatives } = *search;
     let plane_area = plane.map_or(tree.node_of.len(), |p| p.data.iter().filter(|v| **v > 0.5).count()) as f64;
+    let share = |node: usize| match &regions.surface {
+        Some(surface) => surface.area[node] / surface.shown.max(f64::MIN_POSITIVE),
+        None => regions.area[node] / plane_area,
+    };
     let worth = |node: usize| regions.contrast(node) * regions.area[node].powf(AREA_POWER);
     let is_compact = |node: &usize| {
-        (MIN_AREA..=MAX_SHARE * plane_area).contains(&regions.area[*node])
+        regions.area[*node] >= MIN_AREA
+            && share(*node) <= MAX_SHARE
             && negatives[*node] == 0.0
             && regions.colour(*node)[0] >= MIN_LIGHTNESS
             && regions.solidity(*node) >= MIN_SOLIDITY

@@ -94,6 +94,8 @@ pub struct OnFace {
     pub area: Vec<f64>,
     /// For each node, the number of its pixels that show the face itself, not its extension beyond the edges.
     pub on_face: Vec<f64>,
+    /// Area of all pixels that show the face itself.
+    pub shown: f64,
     u: Vec<f64>,
     v: Vec<f64>,
     uu: Vec<f64>,
@@ -109,6 +111,7 @@ impl OnFace {
         let mut sums = Self {
             area: blank()?,
             on_face: blank()?,
+            shown: 0.0,
             u: blank()?,
             v: blank()?,
             uu: blank()?,
@@ -119,6 +122,7 @@ impl OnFace {
         let shown = footprint.area.iter().zip(&footprint.at).zip(&footprint.is_on_face);
         for (&node, ((&area, at), &is_on_face)) in tree.node_of.iter().zip(shown) {
             let (node, area, [u, v]) = (node as usize, f64::from(area), at.map(f64::from));
+            sums.shown += if is_on_face && area.is_finite() { area } else { 0.0 };
             // The shape of the root is not needed: the root is the whole image.
             if node != 0 {
                 sums.area[node] += area;
@@ -131,7 +135,7 @@ impl OnFace {
                 sums.squares[node] += area * area;
             }
         }
-        let Self { area, on_face, u, v, uu, vv, uv, squares } = &mut sums;
+        let Self { area, on_face, u, v, uu, vv, uv, squares, .. } = &mut sums;
         [area, on_face, u, v, uu, vv, uv, squares].into_iter().for_each(|values| tree.accumulate(values));
         Ok(sums)
     }

@@ -253,6 +253,19 @@ fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
 }
 
 #[test]
+fn without_strokes_a_lamp_above_the_camera_may_fill_much_of_the_photo() {
+    // A level ceiling that recedes downwards: the lamp covers 31 % of its pixels, but 0.4 % of its area.
+    let mut features = features_with(&[[60, 0, 260, 60]]);
+    for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+        let depth = 200.0 / (125.0 - (i / WIDTH).min(119) as f32);
+        pixel[4..7].copy_from_slice(&[0.01 * depth * (i % WIDTH) as f32, 2.0, depth]);
+    }
+    let lamps = segment_in(&features, &[], Some(&ceiling()));
+    assert!(lamps.is_proposed && lamps.mask.data[30 * WIDTH + 160] > 0.5);
+    assert!((lamps.mask.data.iter().sum::<f32>() - 12_000.0).abs() < 600.0);
+}
+
+#[test]
 fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
     let refused = |features: &Image, plane: &Image| {
         let input = Input { features, strokes: &[], region: Some(plane) };

@@ -1,0 +1,35 @@
+//! Completes the lamps that the border of the photo cuts.
+//!
+//! The texture shows a cut lamp only if the photo shows no whole lamp like it. The visible part of a rectangle is a
+//! triangle or a wedge where the border runs obliquely, and nobody builds such lamps. So the lamp becomes its bounding
+//! rectangle, unless the photo shows a place in this rectangle that is not light.
+
+use super::design::{Design, Fitted, Shape};
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::components::Component;
+use crate::emission::exemplar::foreshortening::LocalMap;
+use glam::DVec2;
+
+/// Of the pixels of the rectangle that the photo shows, at least this share must be light. The quarter of a disc that
+/// an oblique border cuts off at its corner fills its bounding rectangle to 0.79. [convention]
+const MIN_LIT: f64 = 0.92;
+
+/// The design of a lamp that the border cuts, and its fit as the only lamp of `kind`. `None` if the visible part shows
+/// that the lamp is not a rectangle along the axes.
+pub fn complete(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Design, Fitted)> {
+    let lamp = &exemplar.components.list[component];
+    if (lamp.area as f64) < MIN_LIT * shown_in_box(exemplar, lamp) as f64 {
+        return None;
+    }
+    let corner = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);
+    let (low, high) = (corner(lamp.min), corner(lamp.max) + 1.0);
+    let (centre, size) = ((low + high) / 2.0, high - low);
+    let photo_pixel = LocalMap::new(exemplar.to_photo, lamp.centre).photo_pixel();
+    Some((Design { shape: Shape::Rectangle, size, axis: DVec2::X }, Fitted { kind, centre, size, photo_pixel }))
+}
+
+/// Number of pixels in the lamp's bounding box that the photo shows.
+fn shown_in_box(exemplar: &Exemplar, lamp: &Component) -> usize {
+    let row = |y: usize| &exemplar.shown[y * exemplar.width..][lamp.min[0]..=lamp.max[0]];
+    (lamp.min[1]..=lamp.max[1]).map(|y| row(y).iter().filter(|shown| **shown).count()).sum()
+}

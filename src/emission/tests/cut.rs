@@ -1,0 +1,98 @@
+//! Tests of lamps that the border of the photo cuts, and of single lamps, which show no spacing.
+
+use super::*;
+use crate::geometry::polygon;
+
+/// The texture of an exemplar that is a photo seen straight on.
+fn continued(exemplar: &Design) -> Emission {
+    let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));
+    let params = Params { width: 500, height: 400, ..Params::default() };
+    run(&Input { photo, ..exemplar.input() }, &params, Monitor::default().job()).unwrap()
+}
+
+/// An exemplar whose upper right corner, beyond a slanted line, the photo does not show.
+fn slanted(lamp: impl Fn(f64, f64) -> bool) -> Design {
+    let mut design = Design::new(160, 90, lamp);
+    for (i, valid) in design.valid.data.iter_mut().enumerate() {
+        *valid = f32::from((i % 160) as f64 - (i / 160) as f64 * 1.5 < 70.0);
+    }
+    design
+}
+
+#[test]
+fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
+    let design = slanted(|x, y| (60.0..100.0).contains(&x) && (10.0..40.0).contains(&y));
+    let result = continued(&design);
+    let lamps = inner(&result.luminaires, 500, 400);
+    assert!(lamps.len() >= 4, "{}", lamps.len());
+    for lamp in lamps {
+        assert!((lamp.area - 1200.0).abs() < 40.0, "{}", lamp.area);
+        // The texels of the hidden part have the colour of the visible part.
+        let at = lamp.centre + DVec2::new(17.0, -12.0);
+        let texel = result.texture.rgb(at.x as usize, at.y as usize);
+        assert!(texel.distance(Vec3::new(0.85, 0.75, 0.65)) < 0.12, "{texel}");
+    }
+}
+
+#[test]
+fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
+    // A triangle with the photo all around it on two sides, and cut at its base.
+    let design = slanted(|x, y| (y - 10.0) * 1.2 > (x - 60.0).abs() && (10.0..45.0).contains(&y));
+    let whole = design.light.data.iter().zip(&design.valid.data).filter(|(l, v)| **l >= 0.5 && **v > 0.5).count();
+    for lamp in inner(&continued(&design).luminaires, 500, 400) {
+        let area = polygon::area(&lamp.outline).abs();
+        assert!((area / whole as f64 - 1.0).abs() < 0.05, "{area} {whole}");
+    }
+}
+
+#[test]
+fn a_single_lamp_repeats_at_equal_distances_along_both_axes() {
+    // A strip of 160 × 40 pixels with one lamp: a square of equal area has sides of 80 pixels.
+    let design = Design::new(160, 40, |x, y| (x - 70.0).abs() < 9.0 && (y - 22.0).abs() < 8.0);
+    let result = continued(&design);
+    let centres: Vec<DVec2> = inner(&result.luminaires, 500, 400).iter().map(|lamp| lamp.centre).collect();
+    let step = |axis: DVec2| {
+        let along = |c: &DVec2| (*c - centres[0]).dot(axis);
+        centres.iter().map(along).filter(|d| *d > 1.0).fold(f64::INFINITY, f64::min)
+    };
+    let (across, down) = (step(DVec2::X), step(DVec2::Y));
+    assert!((across - 80.0).abs() < 1.0 && (down - 80.0).abs() < 1.0, "{across} {down}");
+}
+
+/// Windows of 2 × 2 panes with thin bars inside and wide bars between them are no lattice of panes.
+#[test]
+fn windows_of_panes_keep_the_wide_bars_between_them() {
+    let is_lit = |n: f64| {
+        let n = (n - 6.0).rem_euclid(84.0);
+        (0.0..30.0).contains(&n) || (34.0..64.0).contains(&n)
+    };
+    let design = Design::new(400, 380, |x, y| is_lit(x) && is_lit(y));
+    let result = continued(&design);
+    let Law::Lattice(basis) = result.law else { panic!("{:?}", result.law) };
+    let periods = basis.map(|period| period.length());
+    assert!(periods.iter().all(|period| (period - 84.0).abs() < 1.0), "{periods:?}");
+    let share = |image: &Image| image.data.iter().filter(|l| **l >= 0.5).count() as f64 / image.data.len() as f64;
+    assert!((share(&result.mask) / share(&design.light) - 1.0).abs() < 0.1);
+}
+
+/// Columns of windows at unequal distances: the pattern has a period along the columns only. Across them, it repeats
+/// with its dark margins, or beyond a bar if it fills the photo.
+#[test]
+fn columns_of_windows_at_unequal_distances_repeat_as_one() {
+    let along = |n: f64| {
+        let n = (n - 6.0).rem_euclid(84.0);
+        (0.0..30.0).contains(&n) || (34.0..64.0).contains(&n)
+    };
+    let cases: [(&[f64], usize, f64); 2] = [
+        (&[40.0, 94.0, 128.0], 200, 200.0),
+        // One column of 30 pixels, and the wide bar of 20 pixels that the other direction shows.
+        (&[5.0], 40, 50.0),
+    ];
+    for (columns, width, expected) in cases {
+        let across = |n: f64| columns.iter().any(|left| (*left..left + 30.0).contains(&n));
+        let result = continued(&Design::new(width, 380, |x, y| across(x) && along(y)));
+        let Law::Row([period, repeat]) = result.law else { panic!("{width}: {:?}", result.law) };
+        assert!((period.length() - 84.0).abs() < 1.0, "{width}: {period}");
+        assert!((repeat.length() - expected).abs() < 2.0, "{width}: {repeat}");
+    }
+}
