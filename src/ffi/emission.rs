@@ -176,7 +176,8 @@ pub struct luxfer_emission_report {
     /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
     /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
-    /// many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts.
+    /// many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they are
+    /// completed to rectangles if clean_lamps is 1.
     pub exemplar_lamps: u32,
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
     /// ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are
