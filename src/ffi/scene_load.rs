@@ -9,6 +9,7 @@ use super::handle::{self, Owned};
 use super::params::{self, versioned};
 use super::pointer::{Out, bytes, text};
 use super::scene::{SceneObject, luxfer_scene};
+use super::scene_lights::{LUXFER_LUMINAIRE_FACES, is_point, luxfer_luminaire_shape};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::scene::gltf;
@@ -33,8 +34,9 @@ pub struct luxfer_scene_load_params {
     /// relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
     /// origin of the file, and rounding to floats moves them.
     pub keep_origin: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// From where the luminaires of the file (EXT_lights_ies) shine: a LUXFER_LUMINAIRE_ value; default
+    /// LUXFER_LUMINAIRE_FACES.
+    pub luminaire_shape: luxfer_luminaire_shape,
 }
 
 const SIZE: usize = 24;
@@ -43,20 +45,26 @@ const SIZE: usize = 24;
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
 versioned!(luxfer_scene_load_params, [SIZE], {
-    Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0, keep_origin: 0, reserved: 0 }
+    Self {
+        struct_size: SIZE as u32,
+        allow_external_files: 0,
+        unit: 1.0,
+        keep_origin: 0,
+        luminaire_shape: LUXFER_LUMINAIRE_FACES,
+    }
 });
 
 impl luxfer_scene_load_params {
     fn options(self, budget: &dyn gltf::Budget) -> Result<gltf::Options<'_>> {
         crate::error::check_range("allow_external_files", self.allow_external_files, 0, 1)?;
         crate::error::check_range("keep_origin", self.keep_origin, 0, 1)?;
-        crate::error::check_range("reserved", self.reserved, 0, 0)?;
+        let point_luminaires = is_point("luminaire_shape", self.luminaire_shape)?;
         if !UNITS.contains(&self.unit) {
             let (low, high) = (UNITS.start(), UNITS.end());
             return Err(Error::argument(format!("unit is {}; it must lie in [{low}, {high}] metres", self.unit)));
         }
         let (is_open, keep_origin) = (self.allow_external_files == 1, self.keep_origin == 1);
-        Ok(gltf::Options { budget, unit: self.unit, is_open, keep_origin })
+        Ok(gltf::Options { budget, unit: self.unit, is_open, keep_origin, point_luminaires })
     }
 }
 

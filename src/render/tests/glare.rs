@@ -8,7 +8,7 @@ use crate::rng;
 use std::f64::consts::PI;
 
 fn luminaire(position: Vec3, axis: Vec3, c0: Vec3) -> PunctualLight {
-    PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0 }
+    PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0, is_point: false }
 }
 
 /// A room of 6 × 3 × 8 m with a corner at the origin. Luminaires with the given distribution hang at the given
@@ -185,5 +185,34 @@ fn limits_have_clear_answers() {
     assert!(inside.contains("observer 1") && inside.contains("opening of light 0"), "{inside}");
     for direction in [Vec3::Y, Vec3::ZERO, Vec3::splat(f32::NAN)] {
         assert!(refused(Eye { direction, ..EYE }).contains("direction"), "{direction}");
+    }
+}
+
+/// The picture of a room shows its luminaires, so the rating of the picture agrees with that of the luminaires.
+#[test]
+fn pictures_rate_as_the_luminaires_in_them() {
+    use crate::photometry::glare;
+    let disc = Luminaire::lambertian("disc", 2500.0, [-0.5, -0.5, 0.0]);
+    let globe = Luminaire {
+        gammas: vec![0.0, 180.0],
+        candela: vec![300.0; 2],
+        ..Luminaire::lambertian("globe", 0.0, [-0.35, -0.35, -0.35])
+    };
+    let places = [[2.0, 2.8, 5.0], [4.0, 2.8, 5.0], [3.0, 2.6, 2.5]].map(Vec3::from);
+    for (name, luminaire) in [("panel", panel()), ("disc", disc), ("globe", globe)] {
+        let scene = room(luminaire, &places);
+        let rating = rated(scene.clone(), EYE, 1 << 13);
+        let camera = Camera { position: EYE.position, ..Camera::look_at(Vec3::ZERO, EYE.direction, 1.9) };
+        let params = crate::render::Params { width: 400, height: 400, samples: 16, ..Default::default() };
+        let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
+        let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 1.9, threshold: 500.0 }).unwrap();
+        assert_eq!((seen.sources.len(), rating.sources.len(), film.unseen_lights), (3, 3, 0), "{name}");
+        assert!((seen.ugr - rating.ugr).abs() < 0.5, "{name}: {} in the picture, {}", seen.ugr, rating.ugr);
+        // Compare the sources alone: the picture shows only a part of the background.
+        let sums = [
+            seen.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position.powi(2)).sum::<f64>(),
+            rating.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum(),
+        ];
+        assert!((8.0 * (sums[0] / sums[1]).log10()).abs() < 0.25, "{name}: {sums:?}");
     }
 }
