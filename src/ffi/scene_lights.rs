@@ -9,6 +9,7 @@ use super::handle::{self, Owned};
 use super::params::{self, versioned};
 use super::pointer::set_optional;
 use super::scene::{colour, luxfer_scene};
+use super::scene_load::{LUXFER_LUMINAIRE_FACES, is_point, luxfer_luminaire_shape};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::image::colour::luminance;
@@ -105,26 +106,6 @@ pub unsafe extern "C" fn luxfer_scene_add_light(
         set_optional(index, added);
         Ok(())
     })
-}
-
-/// From where a luminaire shines: a LUXFER_LUMINAIRE_ value.
-pub type luxfer_luminaire_shape = i32;
-/// A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
-/// a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in each direction, the
-/// intensity divided by the projected area of the faces. So the light is right at any distance, and renderings show
-/// the faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
-pub const LUXFER_LUMINAIRE_FACES: luxfer_luminaire_shape = 0;
-/// A luminaire shines from its position as from a point, and is invisible in renderings. The light is right only at
-/// distances of at least five times its size.
-pub const LUXFER_LUMINAIRE_POINT: luxfer_luminaire_shape = 1;
-
-/// Whether a shape is a point. `what` names the parameter in the error.
-pub(super) fn is_point(what: &str, shape: luxfer_luminaire_shape) -> Result<bool> {
-    match shape {
-        LUXFER_LUMINAIRE_FACES => Ok(false),
-        LUXFER_LUMINAIRE_POINT => Ok(true),
-        _ => Err(Error::argument(format!("{what} is {shape}; it must be a LUXFER_LUMINAIRE_ value"))),
-    }
 }
 
 /// Flux, position, orientation, colour and shape of a luminaire. Fill it with luxfer_luminaire_params_init.

@@ -149,10 +149,11 @@ impl Source {
         self.shape.flux * f64::from(self.emission.colour.element_sum() / 3.0)
     }
 
-    /// Returns the corners of the triangles in world coordinates.
+    /// Returns the corners of the triangles in world coordinates. The axes of a luminaire are left-handed, so the
+    /// corners change their order: triangles are wound anticlockwise as seen from outside.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let Faces { points, triangles, .. } = &self.shape.faces;
-        triangles.iter().map(|t| t.map(|i| self.in_world(points[i as usize]).as_vec3()))
+        triangles.iter().map(|&[a, b, c]| [a, c, b].map(|i| self.in_world(points[i as usize]).as_vec3()))
     }
 
     /// Returns the mesh of the faces in scene coordinates.
@@ -162,7 +163,7 @@ impl Source {
             name: format!("light{}", self.light),
             material,
             positions: try_collect(points.iter().map(|p| (self.in_world(*p) + centre).as_vec3()))?,
-            triangles: try_collect(triangles.iter().copied())?,
+            triangles: try_collect(triangles.iter().map(|&[a, b, c]| [a, c, b]))?,
             ..Mesh::default()
         })
     }

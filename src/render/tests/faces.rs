@@ -87,7 +87,7 @@ fn the_near_field_meets_closed_forms() {
             ("tube", &tube, beside(radius + h), cylinder_form_factor((radius + h) / radius, height / radius)),
         ] {
             let expected = PI * luminance * form_factor;
-            let (mean, error) = lux(&world(hung(luminaire.clone())), position, normal, 512);
+            let (mean, error) = lux(&world(hung(luminaire.clone())), position, normal, 1024);
             let off = (mean - expected).abs();
             assert!(off < 4.0 * error + 1e-3 * expected, "{name} at {times}: {mean} ± {error} lx, expected {expected}");
             assert!(off < 0.01 * expected && error < 0.002 * expected, "{name} at {times}: {mean} ± {error} lx");
@@ -188,7 +188,7 @@ fn pictures_show_the_luminance() {
 fn samples_cover_the_solid_angle() {
     let (radius, distance) = (0.15f64, 0.4f64);
     let world = world(hung(round([-0.3; 3], |_| 100.0)));
-    let receiver = light::Receiver { position: Vec3::NEG_Y * distance as f32, normal: Vec3::Y };
+    let receiver = light::Receiver { position: world.from_scene(Vec3::NEG_Y * distance as f32), normal: Vec3::Y };
     let (batches, per_batch) = (16, 4096);
     let means: Vec<f64> = (0..batches)
         .map(|batch| {
@@ -251,7 +251,7 @@ fn a_panel_in_the_plane_of_the_ceiling_is_in_front_of_it() {
         let data = &film.beauty.data;
         let whole = data.iter().filter(|v| (**v / 1000.0 - 1.0).abs() < 1e-3).count();
         let dark = data.iter().filter(|v| **v == 0.0).count();
-        assert!(whole > 3 * 150 && dark > 3 * 1000, "{whole} {dark}");
+        assert!(whole > 3 * 120 && dark > 3 * 1000, "{whole} {dark}");
         // Pixels that are neither lie on the outline of the panel.
         assert!(data.len() - whole - dark < 3 * 4 * 48, "{whole} {dark}");
         assert!(data.iter().all(|v| *v < 1001.0));

@@ -205,14 +205,13 @@ impl Importer<'_> {
         if axes[0] == DVec3::ZERO || c0 == DVec3::ZERO {
             return Err(Error::format("its node is scaled to zero"));
         }
-        let extra = |key: &str| reference.get("extras").and_then(|extras| extras.get(key)?.as_bool());
         self.scene.lights.push(PunctualLight::Luminaire {
             position: transform.w_axis.truncate().as_vec3(),
             axis: axes[0].as_vec3(),
             c0: c0.as_vec3(),
             colour: multiplier * Vec3::from_array(std::array::from_fn(channel)),
             distribution,
-            is_point: self.point_luminaires || extra(IS_POINT) == Some(true),
+            is_point: self.point_luminaires || reference.get(IS_POINT).is_some(),
         });
         Ok(())
     }
