@@ -62,7 +62,7 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has luminaires. Pictures do not show them, because a luminaire shines from a point.
+    /// Scene: it has luminaires that shine from points, which pictures do not show.
     NotInPicture = 26,
     /// Guides: the previous frame of a sequence lacks objects of the frame, so their motion is unknown.
     NoCounterpart = 27,

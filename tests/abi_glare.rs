@@ -1,4 +1,5 @@
-//! Glare of a room that a luminaire lights: its picture says that it lacks the luminaire, and the scene rates it.
+//! Glare of a room that a luminaire lights: its picture shows the luminaire, or says that it lacks it, and the scene
+//! rates it.
 
 mod host;
 
@@ -11,8 +12,8 @@ use std::ptr::null_mut;
 const PANEL: &[u8] = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 7 1 1 2 0.6 0.6 0\n1 1 30\n0 15 30 45 60 75 90\n0\n\
     1000 965.9258 866.0254 707.1068 500 258.819 0\n";
 
-/// A closed room with a luminaire below its ceiling.
-fn lit(context: *mut luxfer_context) -> *mut luxfer_scene {
+/// A closed room with a luminaire below its ceiling, which shines from its faces or from a point.
+fn lit(context: *mut luxfer_context, shape: luxfer_luminaire_shape) -> *mut luxfer_scene {
     let scene = scene(context);
     unsafe {
         let panel = made(|out| {
@@ -24,7 +25,11 @@ fn lit(context: *mut luxfer_context) -> *mut luxfer_scene {
             luxfer_init(LUXFER_STRUCT_LUMINAIRE_PARAMS, (&raw mut params).cast(), size_of_val(&params)),
             LUXFER_OK
         );
-        params.position = [0.0, 1.5, -0.5];
+        assert_eq!(params.shape, LUXFER_LUMINAIRE_FACES);
+        params = luxfer_luminaire_params { position: [0.0, 1.5, -0.5], shape: 7, ..params };
+        assert_eq!(luxfer_scene_add_luminaire(scene, panel, &params, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("luminaire.shape is 7"), "{}", message(context));
+        params.shape = shape;
         assert_eq!(luxfer_scene_add_luminaire(scene, panel, &params, null_mut()), LUXFER_OK);
         assert_eq!(luxfer_release(panel.cast()), LUXFER_OK);
     }
@@ -37,10 +42,47 @@ fn rate(scene: *mut luxfer_scene, observers: &[luxfer_observer]) -> (luxfer_stat
     (unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), count, 256, 1, out) }, ratings)
 }
 
+/// Renders a small picture of a scene. Returns the render and its finished job.
+fn rendered(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut luxfer_render, *mut luxfer_job) {
+    unsafe {
+        let render = made(|out| luxfer_render_create(context, out));
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
+        let mut params = std::mem::zeroed::<luxfer_render_params>();
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
+        params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
+        let job = made(|out| luxfer_render_start(render, &params, out));
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
+        (render, job)
+    }
+}
+
+/// With its faces the luminaire is in the picture, and there is nothing to warn of.
+#[test]
+fn a_picture_shows_the_faces_of_the_luminaire() {
+    let context = context(2);
+    let scene = lit(context, LUXFER_LUMINAIRE_FACES);
+    unsafe {
+        let warnings = made(|out| luxfer_get_warnings(scene.cast(), out));
+        let mut count = 7;
+        assert_eq!(luxfer_warnings_get_count(warnings, &mut count), LUXFER_OK);
+        assert_eq!(count, 0);
+        let (render, job) = rendered(context, scene);
+        let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
+        let mut report = std::mem::zeroed::<luxfer_glare_report>();
+        let size = size_of_val(&report);
+        assert_eq!(luxfer_image_get_glare(beauty, 1.0, 0.0, &mut report, size), LUXFER_OK, "{}", message(context));
+        assert_eq!(report.unseen_lights, 0);
+        for handle in [beauty.cast(), job.cast(), render.cast(), warnings.cast(), scene.cast(), context.cast()] {
+            assert_eq!(luxfer_release(handle), LUXFER_OK);
+        }
+    }
+}
+
 #[test]
 fn a_picture_says_that_it_lacks_the_luminaire() {
     let context = context(2);
-    let scene = lit(context);
+    let scene = lit(context, LUXFER_LUMINAIRE_POINT);
     unsafe {
         let warnings = made(|out| luxfer_get_warnings(scene.cast(), out));
         let (mut count, mut warning) = (0, std::mem::zeroed::<luxfer_warning>());
@@ -50,14 +92,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
         let text = CStr::from_ptr(warning.message).to_str().unwrap();
         assert!(text.contains("light 0, a luminaire at [0, 1.5, -0.5]"), "{text}");
 
-        let render = made(|out| luxfer_render_create(context, out));
-        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
-        assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
-        let mut params = std::mem::zeroed::<luxfer_render_params>();
-        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
-        params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
-        let job = made(|out| luxfer_render_start(render, &params, out));
-        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
+        let (render, job) = rendered(context, scene);
         let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
         let layer = made(|out| luxfer_render_get_layer(render, 0, out));
         for (image, unseen) in [(beauty, 1), (layer, 1), (host::image(context, 4, 4, 1.0), 0)] {
@@ -76,7 +111,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
 #[test]
 fn the_scene_rates_its_luminaires() {
     let context = context(2);
-    let scene = lit(context);
+    let scene = lit(context, LUXFER_LUMINAIRE_FACES);
     let eye = luxfer_observer { position: [0.0, 1.0, 0.8], direction: [0.0, 0.0, -1.0] };
     let away = luxfer_observer { direction: [0.0, 0.0, 1.0], ..eye };
     let (status, ratings) = rate(scene, &[eye, away]);

@@ -506,7 +506,7 @@ layouts! {
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
-    luxfer_scene_load_params: struct_size allow_external_files unit keep_origin reserved;
+    luxfer_scene_load_params: struct_size allow_external_files unit keep_origin luminaire_shape;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
@@ -521,7 +521,7 @@ layouts! {
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
     luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
-    luxfer_luminaire_params: struct_size reserved flux position axis c0 colour;
+    luxfer_luminaire_params: struct_size shape flux position axis c0 colour;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
     luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance subject reserved;

@@ -48,8 +48,13 @@ impl Drop for Folder {
 }
 
 fn params() -> luxfer_scene_load_params {
-    let mut params =
-        luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0, keep_origin: 7, reserved: 7 };
+    let mut params = luxfer_scene_load_params {
+        struct_size: 0,
+        allow_external_files: 7,
+        unit: 7.0,
+        keep_origin: 7,
+        luminaire_shape: 7,
+    };
     assert_eq!(
         unsafe { luxfer_init(LUXFER_STRUCT_SCENE_LOAD_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
         LUXFER_OK

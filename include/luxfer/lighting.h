@@ -701,9 +701,9 @@ typedef struct luxfer_glare_report {
     /** Solid angle of all sources in steradians. */
     double solid_angle;
     /**
-     * Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the image, and
-     * ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image
-     * and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
+     * Number of point lights, spot lights and luminaires of the rendered scene that shine from points. They are
+     * invisible in the image, and ugr leaves them out. Known only for images of luxfer_render_get_image and
+     * luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
      * LUXFER_WARNING_NOT_IN_PICTURE.
      */
     uint32_t unseen_lights;

@@ -161,6 +161,9 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
  * are not rendered.
  * ==================================================================================================================== */
 
+/** From where a luminaire shines: a LUXFER_LUMINAIRE_ value. */
+typedef int32_t luxfer_luminaire_shape;
+
 /** Settings for loading a scene file. Fill them with luxfer_scene_load_params_init. */
 typedef struct luxfer_scene_load_params {
     /** sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init. */
@@ -182,14 +185,31 @@ typedef struct luxfer_scene_load_params {
      * origin of the file, and rounding to floats moves them.
      */
     uint32_t keep_origin;
-    /** Must be 0. */
-    uint32_t reserved;
+    /**
+     * From where the luminaires of the file (EXT_lights_ies) shine: a LUXFER_LUMINAIRE_ value; default
+     * LUXFER_LUMINAIRE_FACES.
+     */
+    luxfer_luminaire_shape luminaire_shape;
 } luxfer_scene_load_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
 static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *place, size_t size) {
     return luxfer_init(LUXFER_STRUCT_SCENE_LOAD_PARAMS, place, size);
 }
+
+/**
+ * A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
+ * a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in each direction, the
+ * intensity divided by the projected area of the faces. So the light is right at any distance, and renderings show
+ * the faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
+ */
+#define LUXFER_LUMINAIRE_FACES 0
+
+/**
+ * A luminaire shines from its position as from a point, and is invisible in renderings. The light is right only at
+ * distances of at least five times its size.
+ */
+#define LUXFER_LUMINAIRE_POINT 1
 
 /**
  * Loads a scene from a glTF 2.0 file: .glb, or .gltf with the files that it names. These files must lie in its folder
@@ -653,15 +673,18 @@ static inline luxfer_status luxfer_light_params_init(luxfer_light_params *place,
     return luxfer_init(LUXFER_STRUCT_LIGHT_PARAMS, place, size);
 }
 
-/** Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init. */
+/** Flux, position, orientation, colour and shape of a luminaire. Fill it with luxfer_luminaire_params_init. */
 typedef struct luxfer_luminaire_params {
     /** sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init. */
     uint32_t struct_size;
-    /** Must be 0. */
-    uint32_t reserved;
+    /** From where the luminaire shines: a LUXFER_LUMINAIRE_ value; default LUXFER_LUMINAIRE_FACES. */
+    luxfer_luminaire_shape shape;
     /** Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution. */
     double flux;
-    /** Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). */
+    /**
+     * Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). A
+     * flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not hidden.
+     */
     float position[3];
     /** Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
     float axis[3];
@@ -701,11 +724,11 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
                                      uint32_t *index);
 
 /**
- * Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by the argument
- * distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
- * luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
- * luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the
- * defaults. Any thread.
+ * Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
+ * distribution. *index, unless NULL, receives its index among the punctual lights. It shines from the faces of its
+ * luminous opening, which are black where they do not emit: they block light and reflect none. If its file states no
+ * size, or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may
+ * be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,

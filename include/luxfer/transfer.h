@@ -698,7 +698,7 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_FAR_FROM_ORIGIN 25
 
 /**
- * A scene has luminaires, which shine from points: they are invisible in renderings, and luxfer_image_get_glare does
+ * A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does
  * not rate them. The severity is their number; the message lists the first ones with their positions.
  */
 #define LUXFER_WARNING_NOT_IN_PICTURE 26

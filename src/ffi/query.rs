@@ -94,7 +94,7 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());
     let ray = world.ray(Vec3::new(ox, oy, oz), (direction.as_dvec3() / unit).as_vec3());
     let ray = Ray { t_max: (f64::from(t_max) * unit) as f32, ..ray };
-    match world.accel().closest(&ray, |_| true) {
+    match world.accel().closest(&ray, |hit| world.is_of_scene(hit.triangle)) {
         Some(hit) => {
             let (mesh, triangle) = world.locate(hit.triangle);
             let t = (f64::from(hit.t) / unit) as f32;

@@ -9,6 +9,7 @@ use super::handle::{self, Owned};
 use super::params::{self, versioned};
 use super::pointer::set_optional;
 use super::scene::{colour, luxfer_scene};
+use super::scene_load::{LUXFER_LUMINAIRE_FACES, is_point, luxfer_luminaire_shape};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::image::colour::luminance;
@@ -107,17 +108,18 @@ pub unsafe extern "C" fn luxfer_scene_add_light(
     })
 }
 
-/// Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init.
+/// Flux, position, orientation, colour and shape of a luminaire. Fill it with luxfer_luminaire_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_luminaire_params {
     /// sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init.
     pub struct_size: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// From where the luminaire shines: a LUXFER_LUMINAIRE_ value; default LUXFER_LUMINAIRE_FACES.
+    pub shape: luxfer_luminaire_shape,
     /// Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution.
     pub flux: f64,
-    /// Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). A
+    /// flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not hidden.
     pub position: [f32; 3],
     /// Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down.
     pub axis: [f32; 3],
@@ -132,7 +134,7 @@ pub struct luxfer_luminaire_params {
 versioned!(luxfer_luminaire_params, [64], {
     Self {
         struct_size: 64,
-        reserved: 0,
+        shape: LUXFER_LUMINAIRE_FACES,
         flux: 0.0,
         position: [0.0; 3],
         axis: [0.0, -1.0, 0.0],
@@ -145,9 +147,7 @@ impl luxfer_luminaire_params {
     /// Returns the luminaire as a punctual light. `rated` is the flux of its distribution in lumens, `distribution`
     /// the index of its distribution in the scene.
     fn light(&self, rated: f64, distribution: usize) -> Result<PunctualLight> {
-        if self.reserved != 0 {
-            return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
-        }
+        let is_point = is_point("luminaire.shape", self.shape)?;
         let position = Vec3::from_array(self.position);
         check_place(|| "luminaire.position", position)?;
         let flux = check_range("luminaire.flux", self.flux, 0.0, f64::from(f32::MAX))?;
@@ -167,7 +167,7 @@ impl luxfer_luminaire_params {
         let factor = if flux > 0.0 { flux / rated } else { 1.0 };
         let colour = colour * (factor / f64::from(luminance(colour))) as f32;
         if colour.is_finite() {
-            return Ok(PunctualLight::Luminaire { position, axis, c0, colour, distribution });
+            return Ok(PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point });
         }
         Err(Error::argument(format!(
             "luminaire.flux is {flux} and luminaire.colour {:?}; neither the colour nor the distribution, of {rated} lm, may \
@@ -177,11 +177,11 @@ impl luxfer_luminaire_params {
     }
 }
 
-/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by the argument
-/// distribution. *index, unless NULL, receives its index among the punctual lights. A point is a good model of a
-/// luminaire only if the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The
-/// luminaire itself is invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the
-/// defaults. Any thread.
+/// Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
+/// distribution. *index, unless NULL, receives its index among the punctual lights. It shines from the faces of its
+/// luminous opening, which are black where they do not emit: they block light and reflect none. If its file states no
+/// size, or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may
+/// be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

@@ -16,6 +16,26 @@ use std::ffi::{c_char, c_void};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+/// From where a luminaire shines: a LUXFER_LUMINAIRE_ value.
+pub type luxfer_luminaire_shape = i32;
+/// A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
+/// a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in each direction, the
+/// intensity divided by the projected area of the faces. So the light is right at any distance, and renderings show
+/// the faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
+pub const LUXFER_LUMINAIRE_FACES: luxfer_luminaire_shape = 0;
+/// A luminaire shines from its position as from a point, and is invisible in renderings. The light is right only at
+/// distances of at least five times its size.
+pub const LUXFER_LUMINAIRE_POINT: luxfer_luminaire_shape = 1;
+
+/// Whether a shape is a point. `what` names the parameter in the error.
+pub(super) fn is_point(what: &str, shape: luxfer_luminaire_shape) -> Result<bool> {
+    match shape {
+        LUXFER_LUMINAIRE_FACES => Ok(false),
+        LUXFER_LUMINAIRE_POINT => Ok(true),
+        _ => Err(Error::argument(format!("{what} is {shape}; it must be a LUXFER_LUMINAIRE_ value"))),
+    }
+}
+
 /// Settings for loading a scene file. Fill them with luxfer_scene_load_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -33,8 +53,9 @@ pub struct luxfer_scene_load_params {
     /// relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
     /// origin of the file, and rounding to floats moves them.
     pub keep_origin: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// From where the luminaires of the file (EXT_lights_ies) shine: a LUXFER_LUMINAIRE_ value; default
+    /// LUXFER_LUMINAIRE_FACES.
+    pub luminaire_shape: luxfer_luminaire_shape,
 }
 
 const SIZE: usize = 24;
@@ -43,20 +64,26 @@ const SIZE: usize = 24;
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
 versioned!(luxfer_scene_load_params, [SIZE], {
-    Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0, keep_origin: 0, reserved: 0 }
+    Self {
+        struct_size: SIZE as u32,
+        allow_external_files: 0,
+        unit: 1.0,
+        keep_origin: 0,
+        luminaire_shape: LUXFER_LUMINAIRE_FACES,
+    }
 });
 
 impl luxfer_scene_load_params {
     fn options(self, budget: &dyn gltf::Budget) -> Result<gltf::Options<'_>> {
         crate::error::check_range("allow_external_files", self.allow_external_files, 0, 1)?;
         crate::error::check_range("keep_origin", self.keep_origin, 0, 1)?;
-        crate::error::check_range("reserved", self.reserved, 0, 0)?;
+        let point_luminaires = is_point("luminaire_shape", self.luminaire_shape)?;
         if !UNITS.contains(&self.unit) {
             let (low, high) = (UNITS.start(), UNITS.end());
             return Err(Error::argument(format!("unit is {}; it must lie in [{low}, {high}] metres", self.unit)));
         }
         let (is_open, keep_origin) = (self.allow_external_files == 1, self.keep_origin == 1);
-        Ok(gltf::Options { budget, unit: self.unit, is_open, keep_origin })
+        Ok(gltf::Options { budget, unit: self.unit, is_open, keep_origin, point_luminaires })
     }
 }
 

@@ -104,7 +104,7 @@ pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// to that origin; the severity is its distance from the origin of the file in metres, and the limit is 0. Otherwise
 /// coordinates of vertices are so large that floats round them; the severity is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// A scene has luminaires, which shine from points: they are invisible in renderings, and luxfer_image_get_glare does
+/// A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does
 /// not rate them. The severity is their number; the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 /// The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their motion is

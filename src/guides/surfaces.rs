@@ -18,7 +18,7 @@ pub struct Surfaces {
     pub height: usize,
     /// One point per pixel; `None` where there is no surface.
     pub points: Vec<Option<Point>>,
-    /// The meshes of the scene, in their order.
+    /// The meshes of the scene in their order, followed by the faces of its luminaires.
     pub shapes: Vec<Shape>,
     pub camera: Camera,
 }
@@ -26,7 +26,7 @@ pub struct Surfaces {
 /// A point on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Index of the mesh in the scene.
+    /// Number of the mesh in [`World::meshes`].
     pub mesh: u32,
     /// Indices of the triangle's corners among the vertices of the mesh.
     pub corners: [u32; 3],
@@ -77,16 +77,15 @@ impl Surfaces {
                 let ray = world.ray(camera.position, camera.direction(at[0], at[1], columns / rows));
                 *point = world.visible(&ray).map(|hit| {
                     let (mesh, triangle) = world.locate(hit.triangle);
-                    let corners = world.scene().meshes[mesh as usize].triangles[triangle as usize];
+                    let corners = world.mesh(mesh).triangles[triangle as usize];
                     Point { mesh, corners, barycentric: Vec2::new(hit.u, hit.v) }
                 });
             }
         })?;
-        let meshes = &world.scene().meshes;
-        let mut is_visible = try_vec(meshes.len(), false)?;
+        let mut is_visible = try_vec(world.meshes().count(), false)?;
         points.iter().flatten().for_each(|p: &Point| is_visible[p.mesh as usize] = true);
-        let mut shapes = Vec::with_capacity(meshes.len());
-        for (mesh, &is_visible) in meshes.iter().zip(&is_visible) {
+        let mut shapes = Vec::with_capacity(is_visible.len());
+        for (mesh, &is_visible) in world.meshes().zip(&is_visible) {
             job.check()?;
             shapes.push(Shape::new(mesh, is_visible)?);
         }

@@ -73,10 +73,14 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     // Read the sizes in millimetres: first those of the housing, which are not used, then those of the luminous area.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
-    let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
+    // The heights of the sides towards C = 0, 90, 180 and 270.
+    let heights = rows.list(4, "a height of the luminous area", 0.0, 1e7)?;
+    let height = heights.iter().copied().fold(0.0, f64::max);
     // EULUMDAT states the length along C = 90, so swap the sides. A round luminaire has its diameter as length and a
     // width of 0; IES marks diameters by a negative sign.
     let size = if width == 0.0 { [-length, -length, height] } else { [width, length, height] }.map(|mm| mm / 1e3);
+    let differ = width > 0.0 && heights.iter().any(|h| *h != height);
+    let side_heights = differ.then(|| std::array::from_fn(|i| heights[i] / 1e3));
     rows.skip(2, "the light output ratio")?;
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
     rows.skip(1, "the tilt")?;
@@ -101,6 +105,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         lamp_flux: if absolute { 0.0 } else { lumens },
         watts,
         size,
+        side_heights,
     };
     luminaire.check().map_err(|e| e.context(format_args!("line {}", rows.line)))?;
     Ok(luminaire)
@@ -224,7 +229,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     for value in [length, width, height.abs(), length, width] {
         line(&value);
     }
-    (0..4).for_each(|_| line(&height.abs()));
+    l.side_heights.map_or([height.abs(); 4], |heights| heights.map(|m| m * 1e3)).iter().for_each(|h| line(h));
     for value in [down, output_ratio, 1.0, 0.0] {
         line(&value);
     }
@@ -311,6 +316,18 @@ mod tests {
         assert_eq!(l.size, [0.3, 1.19, 0.0]);
         assert_eq!(ies::read(ies::write(&l).unwrap().as_bytes()).unwrap().size, l.size);
         assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, l.size);
+    }
+
+    /// A batten whose sides along C = 90 are luminous and whose ends are dark.
+    #[test]
+    fn sides_keep_their_heights() {
+        let batten =
+            file(1, 24, &[7.0]).replace("1190\r\n0\r\n0\r\n0\r\n0\r\n0\r\n", "1190\r\n60\r\n80\r\n0\r\n80\r\n0\r\n");
+        let l = read(batten.as_bytes()).unwrap();
+        assert_eq!((l.size, l.side_heights), ([0.06, 1.19, 0.08], Some([0.08, 0.0, 0.08, 0.0])));
+        let again = read(write(&l).unwrap().as_bytes()).unwrap();
+        assert_eq!((again.size, again.side_heights), (l.size, l.side_heights));
+        assert_eq!(read(file(1, 24, &[7.0]).as_bytes()).unwrap().side_heights, None);
     }
 
     #[test]

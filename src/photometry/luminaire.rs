@@ -1,5 +1,6 @@
 //! A luminaire's luminous intensity distribution in C planes: the content of IES and EULUMDAT files.
 
+use super::opening::Opening;
 use crate::error::{Error, Result};
 
 /// A luminous intensity distribution in C planes (CIE 121). `γ` runs from 0° (straight down) to 180° (straight up),
@@ -22,6 +23,9 @@ pub struct Luminaire {
     /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis. As in IES, a negative
     /// value is the diameter of a round opening.
     pub size: [f64; 3],
+    /// Heights in metres of the luminous sides of a box that face towards C = 0, 90, 180 and 270; `None` if all sides
+    /// are luminous up to the full height.
+    pub side_heights: Option<[f64; 4]>,
 }
 
 impl Luminaire {
@@ -39,7 +43,13 @@ impl Luminaire {
             lamp_flux: flux,
             watts: 0.0,
             size,
+            side_heights: None,
         }
+    }
+
+    /// Returns the luminous opening; `None` if the luminaire states no size, and so is a point.
+    pub fn opening(&self) -> Option<Opening> {
+        Opening::new(self.size, self.side_heights)
     }
 
     /// Checks the distribution for consistency.
@@ -99,9 +109,19 @@ impl Luminaire {
     /// Returns the angle γ in degrees beyond which the luminaire emits no light.
     pub fn widest(&self) -> f64 {
         let n = self.gammas.len();
-        let dark = |i: usize| self.candela.iter().skip(i).step_by(n).all(|v| *v == 0.0);
-        let first_dark = (0..n).rev().take_while(|i| dark(*i)).last().unwrap_or(n);
+        let first_dark = (0..n).rev().take_while(|i| self.is_dark_at(*i)).last().unwrap_or(n);
         self.gammas[first_dark.min(n - 1)]
+    }
+
+    /// Returns the angle γ in degrees below which the luminaire emits no light.
+    pub fn narrowest(&self) -> f64 {
+        let dark = (0..self.gammas.len()).take_while(|i| self.is_dark_at(*i)).last();
+        self.gammas[dark.unwrap_or(0)]
+    }
+
+    /// Whether the intensity at a vertical angle, given by its index, is 0 in all planes.
+    fn is_dark_at(&self, gamma: usize) -> bool {
+        self.candela.iter().skip(gamma).step_by(self.gammas.len()).all(|v| *v == 0.0)
     }
 
     /// Luminous flux in lumens: the integral of the intensity over the sphere. It is exact if the intensity is linear
@@ -158,6 +178,13 @@ mod tests {
         let disc = Luminaire::lambertian("disc", 1000.0, [0.0; 3]);
         assert!((disc.flux() / 1000.0 - 1.0).abs() < 1e-3, "{}", disc.flux());
         assert_eq!((disc.widest(), even.widest()), (90.0, 180.0));
+        assert_eq!((disc.narrowest(), even.narrowest()), (0.0, 0.0));
+        let upwards = Luminaire {
+            gammas: vec![0.0, 60.0, 95.0, 180.0],
+            candela: vec![0.0, 0.0, 1.0, 0.0],
+            ..Luminaire::lambertian("", 0.0, [0.0; 3])
+        };
+        assert_eq!((upwards.narrowest(), upwards.widest()), (60.0, 180.0));
         assert!((disc.intensity(123.0, 60.0) - 500.0 / PI).abs() < 1e-6);
         assert_eq!(disc.intensity(0.0, 120.0), 0.0);
     }

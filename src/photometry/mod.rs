@@ -3,16 +3,17 @@
 //! [`temperature`] converts between colours and correlated colour temperatures, and finds the blackbody light closest
 //! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] holds a
 //! measured luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`])
-//! files. [`opening`] is the shape of a luminaire's luminous area. [`presets`] lists requirements of EN 12464-1 for
-//! common rooms. [`false_colour`] shows luminance and illuminance by a scale of colours.
+//! files. [`opening`] is the shape of a luminaire's luminous area, and [`faces`] its triangles. [`presets`] lists
+//! requirements of EN 12464-1 for common rooms. [`false_colour`] shows luminance and illuminance by a scale of
+//! colours.
 //!
 //! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
 //! that the luminaires of a scene cause for observers.
 //!
-//! Not modelled: spectra and colour rendering; maintenance; luminaires with a body or a luminous face. A luminaire
-//! shines from a point, so it is invisible in renderings, and its light is wrong at distances below five times its
-//! size.
+//! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
+//! luminous face.
 
+pub mod faces;
 pub mod false_colour;
 pub mod glare;
 mod glyphs;

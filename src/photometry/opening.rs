@@ -10,16 +10,20 @@ use std::f64::consts::FRAC_PI_4;
 /// A point within this distance in metres of an opening counts as inside it; no eye is closer to a lamp. [convention]
 const CONTACT: f64 = 1e-3;
 
+/// An opening whose largest face has at most this area in m² is a point; the chip of an LED is larger. [convention]
+const MIN_AREA: f64 = 1e-6;
+
 /// The shape of an opening, with sizes in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opening {
-    /// A box with these sides along x, y and z; a rectangle if the last side is 0.
-    Box(DVec3),
+    /// A box with these sides along x, y and z; a rectangle if the last side is 0. `heights` are those of the luminous
+    /// parts of the sides that face along x, y, -x and -y (C = 0, 90, 180, 270); they begin at the face towards γ = 0.
+    Box { size: DVec3, heights: [f64; 4] },
     /// A cylinder along coordinate axis `axis`, with elliptic ends whose diameters lie along the next two axes; a flat
     /// ellipse if `length` is 0.
     Cylinder { axis: usize, length: f64, diameters: [f64; 2] },
-    /// A ball of this diameter.
-    Ball(f64),
+    /// An ellipsoid with these diameters along x, y and z.
+    Ellipsoid(DVec3),
 }
 
 /// A flat part of an opening as seen from a direction: a parallelogram or an ellipse.
@@ -53,8 +57,9 @@ impl Face {
 
 impl Opening {
     /// The opening with the given dimensions in metres along C = 0, along C = 90 and along the axis. A negative
-    /// dimension is a diameter. `None` for a luminaire without area, which is a point.
-    pub fn new([x, y, z]: [f64; 3]) -> Option<Self> {
+    /// dimension is a diameter. `side_heights` are the luminous heights of a box's sides towards C = 0, 90, 180 and
+    /// 270, if they differ from its height. `None` for a luminaire without area, which is a point.
+    pub fn new([x, y, z]: [f64; 3], side_heights: Option<[f64; 4]>) -> Option<Self> {
         // A round opening may state only one of its diameters.
         let (x, y) = match (x, y) {
             (0.0, d) if d < 0.0 => (d, d),
@@ -62,34 +67,33 @@ impl Opening {
             sides => sides,
         };
         let [a, b, c] = [x.abs(), y.abs(), z.abs()];
+        let heights = side_heights.map_or([c; 4], |heights| heights.map(|h| h.clamp(0.0, c)));
         let opening = match (x < 0.0, y < 0.0, z < 0.0) {
-            (false, false, _) => Self::Box(DVec3::new(a, b, c)),
-            (true, true, true) => Self::Ball(a.max(b)),
+            // LM-63-1995 states a horizontal tube by its length and a negative height.
+            (false, false, true) if b == 0.0 => Self::Cylinder { axis: 0, length: a, diameters: [c, c] },
+            (false, false, true) if a == 0.0 => Self::Cylinder { axis: 1, length: b, diameters: [c, c] },
+            (false, false, _) => Self::Box { size: DVec3::new(a, b, c), heights },
+            (true, true, true) => Self::Ellipsoid(DVec3::new(a, b, c)),
             (false, true, true) => Self::Cylinder { axis: 0, length: a, diameters: [b, c] },
             (true, false, true) => Self::Cylinder { axis: 1, length: b, diameters: [c, a] },
             (_, _, false) => Self::Cylinder { axis: 2, length: c, diameters: [a, b] },
         };
         let sides = [a * b, a * c, b * c];
-        (sides.iter().all(|s| s.is_finite()) && sides.iter().any(|s| *s > 0.0)).then_some(opening)
+        let is_finite = sides.iter().all(|s| s.is_finite());
+        (is_finite && opening.largest_area() > MIN_AREA).then_some(opening)
     }
 
     /// Returns the flat faces that a distant observer in a unit direction sees. Their projections cover the projection
     /// of the opening without gaps or overlap.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
-            Self::Box(size) => (0..3)
-                .map(|axis| {
-                    let towards = DVec3::AXES[axis] * direction[axis].signum();
-                    let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
-                    let sides = [DVec3::AXES[next] * size[next], DVec3::AXES[last] * size[last]];
-                    Face { centre: towards * size[axis] / 2.0, sides, is_round: false }
-                })
-                .filter(|face| face.projected_area(direction) > 0.0)
-                .collect(),
+            Self::Box { size, heights } => box_faces(size, heights, direction),
             Self::Cylinder { axis, length, diameters } => cylinder(axis, length, diameters, direction),
-            Self::Ball(diameter) => {
-                let sides = direction.any_orthonormal_pair();
-                let sides = [sides.0 * diameter, sides.1 * diameter];
+            Self::Ellipsoid(diameters) => {
+                // The outline of an ellipsoid is the image of the outline of the unit ball, seen along the image of
+                // the direction.
+                let of_ball = (direction / diameters).normalize_or(DVec3::Z).any_orthonormal_pair();
+                let sides = [of_ball.0 * diameters, of_ball.1 * diameters];
                 vec![Face { centre: DVec3::ZERO, sides, is_round: true }]
             }
         }
@@ -97,22 +101,57 @@ impl Opening {
 
     /// Returns the area in m² as seen from a unit direction.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
-        self.faces(direction).iter().map(|face| face.projected_area(direction)).sum()
+        let u = direction.abs();
+        match *self {
+            Self::Box { size, heights: [right, front, left, back] } => {
+                let along_x = if direction.x >= 0.0 { right } else { left };
+                let along_y = if direction.y >= 0.0 { front } else { back };
+                size.x * size.y * u.z + along_x * size.y * u.x + along_y * size.x * u.y
+            }
+            Self::Cylinder { axis, length, diameters: [a, b] } => {
+                let width = (a * u[(axis + 2) % 3]).hypot(b * u[(axis + 1) % 3]);
+                FRAC_PI_4 * a * b * u[axis] + length * width
+            }
+            Self::Ellipsoid(d) => FRAC_PI_4 * DVec3::new(d.y * d.z * u.x, d.z * d.x * u.y, d.x * d.y * u.z).length(),
+        }
+    }
+
+    /// Returns the largest of the areas in m² as seen along x, y and z.
+    pub fn largest_area(&self) -> f64 {
+        DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).map(|u| self.projected_area(u)).fold(0.0, f64::max)
     }
 
     /// Whether a point lies inside the opening or within `CONTACT` of it.
     pub fn contains(&self, point: DVec3) -> bool {
         let within = |p: f64, size: f64| p.abs() <= size / 2.0 + CONTACT;
         match *self {
-            Self::Box(size) => (0..3).all(|axis| within(point[axis], size[axis])),
+            Self::Box { size, .. } => (0..3).all(|axis| within(point[axis], size[axis])),
             Self::Cylinder { axis, length, diameters: [a, b] } => {
                 let [p, q] = [point[(axis + 1) % 3], point[(axis + 2) % 3]];
                 let [a, b] = [a / 2.0 + CONTACT, b / 2.0 + CONTACT];
                 within(point[axis], length) && (p / a).powi(2) + (q / b).powi(2) <= 1.0
             }
-            Self::Ball(diameter) => point.length() <= diameter / 2.0 + CONTACT,
+            Self::Ellipsoid(diameters) => (point / (diameters / 2.0 + CONTACT)).length() <= 1.0,
         }
     }
+}
+
+/// Returns the luminous faces of a box that are seen from `direction`.
+fn box_faces(size: DVec3, heights: [f64; 4], direction: DVec3) -> Vec<Face> {
+    let face = |axis: usize| {
+        let towards = DVec3::AXES[axis] * direction[axis].signum();
+        let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
+        let mut extent = size;
+        let mut centre = towards * size[axis] / 2.0;
+        if axis < 2 {
+            // The luminous part of a side begins at the face towards γ = 0.
+            extent.z = heights[axis + if direction[axis] < 0.0 { 2 } else { 0 }];
+            centre.z = (size.z - extent.z) / 2.0;
+        }
+        let sides = [DVec3::AXES[next] * extent[next], DVec3::AXES[last] * extent[last]];
+        Face { centre, sides, is_round: false }
+    };
+    (0..3).map(face).filter(|face| face.projected_area(direction) > 0.0).collect()
 }
 
 /// Returns the end of a cylinder that faces `direction`, and a rectangle with the same projected area as the
@@ -146,7 +185,10 @@ mod tests {
     fn seen(size: [f64; 3], c: f64, gamma: f64) -> f64 {
         let (c, gamma) = (c.to_radians(), gamma.to_radians());
         let direction = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
-        Opening::new(size).unwrap().projected_area(direction)
+        let opening = Opening::new(size, None).unwrap();
+        let of_faces: f64 = opening.faces(direction).iter().map(|face| face.projected_area(direction)).sum();
+        near(opening.projected_area(direction), of_faces);
+        of_faces
     }
 
     fn disc(diameter: f64) -> f64 {
@@ -171,13 +213,38 @@ mod tests {
         near(seen([1.2, -0.026, -0.026], 0.0, 90.0), disc(0.026));
         near(seen([1.2, -0.026, -0.026], 90.0, 90.0), 1.2 * 0.026);
         near(seen([1.2, -0.026, -0.026], 90.0, 0.0), 1.2 * 0.026);
+        near(seen([1.2, 0.0, -0.026], 0.0, 90.0), disc(0.026));
+        near(seen([0.0, 1.2, -0.026], 0.0, 90.0), 1.2 * 0.026);
         near(seen([-0.6, 0.2, 0.0], 0.0, 0.0), FRAC_PI_4 * 0.6 * 0.2);
+        // An ellipsoid shows ellipses along its axes.
+        near(seen([-0.6, -0.2, -0.3], 0.0, 0.0), FRAC_PI_4 * 0.6 * 0.2);
+        near(seen([-0.6, -0.2, -0.3], 90.0, 90.0), FRAC_PI_4 * 0.6 * 0.3);
+        seen([-0.6, -0.2, -0.3], 25.0, 70.0);
+    }
+
+    /// A box of 1.2 × 0.3 × 0.1 m of which one long side is luminous on half of its height, and one short side is dark.
+    #[test]
+    fn sides_of_a_box_have_heights_of_their_own() {
+        let opening = Opening::new([1.2, 0.3, 0.1], Some([0.0, 0.05, 0.1, 0.1])).unwrap();
+        for (direction, area) in [
+            (DVec3::X, 0.0),
+            (DVec3::Y, 1.2 * 0.05),
+            (-DVec3::X, 0.3 * 0.1),
+            (-DVec3::Y, 1.2 * 0.1),
+            (DVec3::new(0.6, 0.48, 0.64), 0.48 * 1.2 * 0.05 + 0.64 * 0.36),
+        ] {
+            let of_faces: f64 = opening.faces(direction).iter().map(|face| face.projected_area(direction)).sum();
+            near(opening.projected_area(direction), area);
+            near(of_faces, area);
+        }
+        let [side] = opening.faces(DVec3::Y)[..] else { panic!("one side is seen") };
+        assert_eq!((side.centre.y, side.centre.z), (0.15, 0.025));
     }
 
     #[test]
     fn luminaires_without_area_are_points() {
-        for size in [[0.0; 3], [0.0, 0.0, 0.3], [1.2, 0.0, 0.0], [f64::NAN, 1.0, 0.0]] {
-            assert_eq!(Opening::new(size), None, "{size:?}");
+        for size in [[0.0; 3], [0.0, 0.0, 0.3], [1.2, 0.0, 0.0], [f64::NAN, 1.0, 0.0], [5e-4; 3], [-1e-3, -1e-3, 0.0]] {
+            assert_eq!(Opening::new(size, None), None, "{size:?}");
         }
     }
 
@@ -185,7 +252,7 @@ mod tests {
     fn points_of_faces_lie_on_their_opening() {
         let direction = DVec3::new(0.3, -0.5, 0.8).normalize();
         for size in [[1.2, 0.3, 0.1], [-0.4, -0.4, 0.0], [-0.4, -0.4, 0.5]] {
-            let opening = Opening::new(size).unwrap();
+            let opening = Opening::new(size, None).unwrap();
             for face in opening.faces(direction) {
                 for uv in [[0.5, 0.5], [0.01, 0.02], [0.99, 0.4], [0.3, 0.98]] {
                     assert!(size[2] > 0.0 || opening.contains(face.point(uv)), "{size:?} {face:?} {uv:?}");
@@ -193,7 +260,7 @@ mod tests {
             }
             assert!(opening.contains(DVec3::ZERO) && !opening.contains(DVec3::splat(1.0)));
         }
-        let disc = Opening::new([-2.0, -2.0, 0.0]).unwrap();
+        let disc = Opening::new([-2.0, -2.0, 0.0], None).unwrap();
         assert!(disc.contains(DVec3::new(0.7, 0.7, 5e-4)) && !disc.contains(DVec3::new(0.8, 0.8, 0.0)));
     }
 }

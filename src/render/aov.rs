@@ -26,9 +26,10 @@ pub enum Aov {
     GeometricNormal,
     /// Reflectance plus transmittance at normal incidence.
     Albedo,
-    /// Index of the mesh plus 1; 0 for the background.
+    /// Index of the mesh plus 1; 0 for the background. The faces of a luminaire have the number of meshes plus the
+    /// index of the light plus 1.
     Object,
-    /// Index of the material plus 1; 0 for the background.
+    /// Index of the material plus 1; 0 for the background. The faces of luminaires have the number of materials plus 1.
     Material,
     /// Share of the pixel's samples that hit a surface, in `[0, 1]`.
     Alpha,
@@ -150,7 +151,7 @@ pub struct Surfaces {
 impl Surfaces {
     /// Adds a primary hit at distance `depth` along the viewing direction, in metres.
     pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
-        let material = world.scene().meshes[seen.mesh as usize].material;
+        let material = world.mesh(seen.mesh).material;
         self.hits += 1;
         self.depth += f64::from(depth);
         self.distance += f64::from(seen.distance);

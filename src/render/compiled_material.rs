@@ -22,6 +22,23 @@ pub struct CompiledMaterial {
 }
 
 impl CompiledMaterial {
+    /// The material of the faces of luminaires, which reflect no light.
+    pub const BLACK: Self = Self {
+        bsdf_params: BsdfParams {
+            diffuse: Vec3::ZERO,
+            f0: Vec3::ZERO,
+            f90: 0.0,
+            roughness: 1.0,
+            transmission: Vec3::ZERO,
+            dielectric_f0: 0.0,
+        },
+        is_textured: false,
+        layered: false,
+        has_normal_map: false,
+        has_alpha: false,
+        lets_light_through: false,
+    };
+
     /// Returns a copy with all flags set, so that tracing evaluates every shading feature.
     pub fn without_analysis(&self) -> Self {
         Self {

@@ -179,13 +179,16 @@ impl Lamp {
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
+        // The luminaire does not hide itself.
+        let own = world.faces_of(self.light);
         for face in self.opening.faces(u) {
             let weight = face.projected_area(u);
             for i in 0..RAYS * RAYS {
                 let uv = [i % RAYS, i / RAYS].map(|k| (k as f64 + 0.5) / RAYS as f64);
                 let path = (self.in_scene(face.point(uv)) - eye) * NEARLY;
                 let ray = Ray { t_max: 1.0, ..world.ray(eye.as_vec3(), path.as_vec3()) };
-                let share = f64::from(colour::luminance(world.transmittance(&ray, [NONE; 2], None)));
+                let light = world.transmittance_without(&ray, |triangle| own.contains(&triangle), None);
+                let share = f64::from(colour::luminance(light));
                 total += weight;
                 visible += if share > 0.0 { weight } else { 0.0 };
                 squares += weight * share * share;
@@ -199,8 +202,8 @@ impl Lamp {
 fn lamps(world: &World) -> Vec<Lamp> {
     let scene = world.scene();
     let lamp = |(light, kind): (usize, &PunctualLight)| {
-        let PunctualLight::Luminaire { position, axis, c0, colour, distribution } = *kind else { return None };
-        let opening = Opening::new(scene.distributions[distribution].size)?;
+        let PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } = *kind else { return None };
+        let opening = scene.distributions[distribution].opening()?;
         let factor = f64::from(colour::luminance(colour));
         let frame = [c0, c90(axis, c0), axis].map(|v| v.as_dvec3());
         let lamp = Lamp { light, position: position.as_dvec3(), frame, opening, distribution, factor };

@@ -10,7 +10,7 @@
 //!
 //! - `sampler` draws its random numbers.
 //! - `path` traces it: `vertex` describes a hit, `bsdf` and `ggx` scatter, and `light` samples one of the lights from
-//!   `emissive` and `environment`.
+//!   `emissive` (surfaces and the faces of `luminaires`) and `environment`.
 //! - A [`PathSink`] receives its contributions.
 //! - `film` keeps means and errors, and decides which pixels get more paths.
 //!
@@ -40,6 +40,8 @@ pub mod illuminance;
 mod layers;
 mod light;
 pub mod lpe;
+mod luminaires;
+mod measured;
 mod output;
 mod params;
 pub mod parts;

@@ -26,8 +26,8 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of point lights, spot lights and luminaires that emit. They have no surface, so the image cannot show
-    /// them.
+    /// Number of point lights, spot lights and luminaires without faces that emit. They have no surface, so the image
+    /// cannot show them.
     pub unseen_lights: usize,
     /// How many lamps cannot reach the surfaces in view; `None` if the render found too few of them to treat them
     /// differently.

@@ -336,7 +336,7 @@ fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vert
     if !emitter.faces(direction) {
         return;
     }
-    let (emission, uv) = emitter.emission(world.scene(), vertex.barycentric);
+    let (emission, uv) = lights.emitters.emission(world.scene(), index, vertex.barycentric, -direction);
     if emission == Vec3::ZERO {
         return;
     }
@@ -345,8 +345,7 @@ fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vert
         let light_pdf = lights.surface_pdf(&receiver, index, (emission, uv), direction, distance);
         power_heuristic(pdf, light_pdf)
     });
-    let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };
-    observer.add(source, segment.throughput * weight, emission, Strategy::BsdfSample);
+    observer.add(lights.emitters.source(index, uv), segment.throughput * weight, emission, Strategy::BsdfSample);
 }
 
 /// Adds the environment's radiance along a BSDF sample, with the MIS weight against light sampling.

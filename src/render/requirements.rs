@@ -264,7 +264,10 @@ impl Requirements {
                 PunctualLight::Point { intensity, .. } => (&mut self.points, intensity),
                 PunctualLight::Spot { intensity, .. } => (&mut self.spots, intensity),
                 PunctualLight::Directional { illuminance, .. } => (&mut self.directional, illuminance),
-                PunctualLight::Luminaire { colour, .. } => (&mut self.points, colour),
+                PunctualLight::Luminaire { colour, .. } => {
+                    let has_faces = light.opening(&scene.distributions).is_some();
+                    (if has_faces { &mut self.surfaces } else { &mut self.points }, colour)
+                }
             };
             *kind |= strength.max_element() > 0.0;
         }

@@ -5,6 +5,7 @@ use super::emissive::Emitters;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::light::{Lights, Reach};
+use super::luminaires::{Luminaires, Source};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
 use super::vicinity::Vicinity;
@@ -15,6 +16,7 @@ use crate::rng;
 use crate::scene::accel::{Accel, Hit, Ray};
 use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
 use glam::{DVec3, Vec2, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A scene prepared for path tracing: acceleration structure, triangle data and light distributions. Triangles have
@@ -31,8 +33,11 @@ pub struct World {
     /// Whether renders may build the structure `vicinity`.
     has_vicinity: bool,
     centre: DVec3,
-    /// Id of the first triangle of each mesh, followed by the total number of triangles.
+    /// Id of the first triangle of each mesh, followed by the total number of triangles. If a luminaire has faces, the
+    /// meshes of the scene are followed by one mesh per light ([`Luminaires::meshes`]).
     first: Arc<Vec<u32>>,
+    /// The faces of the scene's lights; empty if no light has faces.
+    faces: Arc<Vec<Mesh>>,
     facets: Arc<Vec<Facet>>,
     compiled_materials: Arc<Vec<CompiledMaterial>>,
     lights: Lights,
@@ -67,29 +72,14 @@ impl World {
     /// cancelled.
     pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
         check(&scene)?;
-        let count: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();
-        if count >= 1 << 31 {
-            return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
-        }
-        // Number the triangles of all meshes, and make their coordinates relative to the centre.
         let centre = facet::centre(&scene.meshes);
-        let mut first = Vec::with_capacity(scene.meshes.len() + 1);
-        let mut facets = try_vec(count, Facet::EMPTY)?;
-        let mut triangles = try_vec(count, [Vec3::ZERO; 3])?;
-        let mut next = 0;
-        for (index, mesh) in scene.meshes.iter().enumerate() {
-            job.check()?;
-            first.push(next as u32);
-            for triangle in 0..mesh.triangles.len() {
-                triangles[next] = mesh.corners(triangle).map(|p| (p.as_dvec3() - centre).as_vec3());
-                facets[next] = Facet::new(triangles[next], index as u32, mesh, triangle);
-                next += 1;
-            }
-        }
-        first.push(next as u32);
-        let accel = Accel::build(&triangles, job.part(0.0, 0.8))?;
+        let Luminaires { meshes: faces, sources } = Luminaires::new(&scene, centre, scene.materials.len())?;
+        let Triangles { first, mut facets, corners } = Triangles::number(&scene, &faces, &sources, centre, job)?;
+        let accel = Accel::build(&corners, job.part(0.0, 0.8))?;
         // Build the light distributions.
-        let (emitters, pieces) = Emitters::build(&scene, &facets, &first)?;
+        let own = first[scene.meshes.len()] as usize;
+        let (mut emitters, mut pieces) = Emitters::build(&scene, &facets[..own], &first)?;
+        emitters.add_luminaires(sources, &facets, scene.meshes.len(), &first, &mut pieces)?;
         emitters.emitters.iter().enumerate().for_each(|(i, e)| facets[e.id as usize].emitter = i as u32);
         job.check()?;
         let (low, high) = accel.bounds();
@@ -97,7 +87,8 @@ impl World {
         // Find out which shading features the scene requires.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
-        let (mut requirements, compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
+        let (mut requirements, mut compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
+        compiled_materials.push(CompiledMaterial::BLACK);
         requirements.flat_triangles = accel.dropped();
         requirements.keep_surfaces_that_emit(lights.pieces());
         let any_see_through = requirements.glass || requirements.alpha;
@@ -109,6 +100,7 @@ impl World {
             has_vicinity: true,
             centre,
             first: Arc::new(first),
+            faces: Arc::new(faces),
             facets: Arc::new(facets),
             compiled_materials: Arc::new(compiled_materials),
             lights,
@@ -126,9 +118,14 @@ impl World {
     /// Discards the scene analysis, so that every hit evaluates every shading feature. This changes estimates only by
     /// rounding. Benchmarks use this function to measure how much time the analysis saves.
     pub fn discard_analysis(&mut self) {
-        let general = self.compiled_materials.iter().map(CompiledMaterial::without_analysis).collect();
+        // Leave the faces of luminaires as they are, because they have neither textures nor vertex normals.
+        let own = [self.scene.materials.len(), self.first[self.scene.meshes.len()] as usize];
+        let mut general: Vec<_> = self.compiled_materials.iter().map(CompiledMaterial::without_analysis).collect();
+        general[own[0]..].copy_from_slice(&self.compiled_materials[own[0]..]);
         self.compiled_materials = Arc::new(general);
-        self.facets = Arc::new(self.facets.iter().map(Facet::without_analysis).collect());
+        let mut general: Vec<_> = self.facets.iter().map(Facet::without_analysis).collect();
+        general[own[1]..].copy_from_slice(&self.facets[own[1]..]);
+        self.facets = Arc::new(general);
         self.any_see_through = true;
     }
 
@@ -209,12 +206,36 @@ impl World {
         (position.as_dvec3() + self.centre).as_vec3()
     }
 
+    /// Returns the meshes of the scene, followed by the faces of its lights: one mesh per light, without triangles for
+    /// a light that shines from a point, or no meshes if no light has faces.
+    pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
+        self.scene.meshes.iter().chain(&*self.faces)
+    }
+
+    /// Returns a mesh by its number in [`World::meshes`].
+    pub fn mesh(&self, number: u32) -> &Mesh {
+        let number = number as usize;
+        self.scene.meshes.get(number).unwrap_or_else(|| &self.faces[number - self.scene.meshes.len()])
+    }
+
+    /// Whether a triangle belongs to a mesh of the scene, and not to the faces of a luminaire.
+    #[inline]
+    pub fn is_of_scene(&self, id: u32) -> bool {
+        id < self.first[self.scene.meshes.len()]
+    }
+
+    /// Returns the ids of the triangles of a light's faces.
+    pub(super) fn faces_of(&self, light: usize) -> Range<u32> {
+        let mesh = self.scene.meshes.len() + light;
+        if self.faces.is_empty() { 0..0 } else { self.first[mesh]..self.first[mesh + 1] }
+    }
+
     /// Returns the id of a triangle, from its index in the mesh.
     pub fn id(&self, mesh: u32, triangle: u32) -> u32 {
         self.first[mesh as usize] + triangle
     }
 
-    /// Returns the mesh of a triangle, and the index of the triangle in the mesh.
+    /// Returns the number of a triangle's mesh in [`World::meshes`], and the index of the triangle in the mesh.
     pub fn locate(&self, id: u32) -> (u32, u32) {
         let mesh = self.facets[id as usize].mesh;
         (mesh, id - self.first(mesh))
@@ -324,18 +345,29 @@ impl World {
     /// Returns the transmittance per channel between the ends of a ray. Partly transparent surfaces and clear panes
     /// attenuate the light; `panes` receives them in arbitrary order. The triangles in `ends`, at the two ends of the
     /// ray, do not count.
-    pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
+    pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], panes: Option<&mut Vec<Pane>>) -> Vec3 {
+        self.transmittance_without(ray, |triangle| ends.contains(&triangle), panes)
+    }
+
+    /// Returns the transmittance like [`World::transmittance`]; triangles for which `is_end` is true do not count.
+    #[inline]
+    pub(super) fn transmittance_without(
+        &self,
+        ray: &Ray,
+        is_end: impl Fn(u32) -> bool,
+        mut panes: Option<&mut Vec<Pane>>,
+    ) -> Vec3 {
         if let Some(panes) = &mut panes {
             panes.clear();
         }
         if !self.any_see_through {
-            let blocked = self.is_blocked(ray, |hit| !ends.contains(&hit.triangle));
+            let blocked = self.is_blocked(ray, |hit| !is_end(hit.triangle));
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
         }
         // Multiply in f64, so that the order of the hits does not affect the rounded result.
         let mut share = DVec3::ONE;
         let blocked = self.accel_between(ray).occluded(ray, |hit| {
-            if ends.contains(&hit.triangle) {
+            if is_end(hit.triangle) {
                 return false;
             }
             let pane = self.pane(hit, ray.direction);
@@ -384,6 +416,52 @@ impl World {
 
     fn context(&self, facet: &Facet, hit: &Hit) -> TextureContext<'_> {
         TextureContext::new(&self.scene, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
+    }
+}
+
+/// The triangles of a scene and of the faces of its luminaires.
+struct Triangles {
+    /// Id of the first triangle of each mesh, followed by the total number of triangles.
+    first: Vec<u32>,
+    facets: Vec<Facet>,
+    /// Corners in world coordinates.
+    corners: Vec<[Vec3; 3]>,
+}
+
+impl Triangles {
+    /// Numbers the triangles of all meshes, and makes their coordinates relative to the centre.
+    fn number(scene: &Scene, faces: &[Mesh], sources: &[Source], centre: DVec3, job: Job) -> Result<Self> {
+        let count: usize = scene.meshes.iter().chain(faces).map(|m| m.triangles.len()).sum();
+        if count >= 1 << 31 {
+            return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
+        }
+        let mut first = Vec::with_capacity(scene.meshes.len() + faces.len() + 1);
+        let mut facets = try_vec(count, Facet::EMPTY)?;
+        let mut corners = try_vec(count, [Vec3::ZERO; 3])?;
+        let mut next = 0;
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            job.check()?;
+            first.push(next as u32);
+            for triangle in 0..mesh.triangles.len() {
+                corners[next] = mesh.corners(triangle).map(|p| (p.as_dvec3() - centre).as_vec3());
+                facets[next] = Facet::new(corners[next], index as u32, mesh, triangle);
+                next += 1;
+            }
+        }
+        let mut sources = sources.iter().peekable();
+        for (light, mesh) in faces.iter().enumerate() {
+            job.check()?;
+            first.push(next as u32);
+            let Some(source) = sources.next_if(|source| source.light == light) else { continue };
+            let index = (scene.meshes.len() + light) as u32;
+            for (triangle, placed) in source.triangles().enumerate() {
+                corners[next] = placed;
+                facets[next] = Facet::new(placed, index, mesh, triangle);
+                next += 1;
+            }
+        }
+        first.push(next as u32);
+        Ok(Self { first, facets, corners })
     }
 }
 

@@ -45,7 +45,14 @@ impl Scene {
             PunctualLight::Luminaire { colour, distribution, .. } => {
                 let candela = self.distributions.get(distribution).map_or(&[][..], |d| &d.candela);
                 let peak = candela.iter().copied().fold(0.0, f64::max);
-                check_light("intensity (colour times the distribution)", colour * peak as f32)
+                check_light("intensity (colour times the distribution)", colour * peak as f32)?;
+                match light.opening(&self.distributions) {
+                    None => Ok(()),
+                    Some(opening) => {
+                        let luminance = colour * (peak / opening.largest_area()) as f32;
+                        check_light("luminance (intensity divided by the luminous area)", luminance)
+                    }
+                }
             }
         }
     }

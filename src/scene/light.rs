@@ -2,7 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::image::Image;
+use crate::photometry::Luminaire;
+use crate::photometry::opening::Opening;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. The square of this
 /// value, and the squares of its multiples that occur in pixels near a lamp, do not overflow `f32`. For comparison,
@@ -31,15 +34,28 @@ pub enum PunctualLight {
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },
-    /// A measured luminaire in the far field: it is treated as a point, which assumes that the lit surfaces are far
-    /// away compared with its size.
+    /// A measured luminaire. It shines from the faces of its luminous opening ([`PunctualLight::opening`]), whose
+    /// centre is `position`.
     ///
     /// - `axis` is the unit direction of γ = 0, which points down for a hanging luminaire.
     /// - `c0` is the unit direction of C = 0, perpendicular to `axis`. C increases anticlockwise as seen by a viewer
     ///   who looks along `axis`, that is, from above for a hanging luminaire.
     /// - The intensity in cd is the product of `colour` and the value of the measured distribution. `distribution` is
     ///   the index of this distribution in the scene.
-    Luminaire { position: Vec3, axis: Vec3, c0: Vec3, colour: Vec3, distribution: usize },
+    /// - If `is_point` is true, the luminaire shines from its position even if it has an opening. This assumes that the
+    ///   lit surfaces are far away compared with its size.
+    Luminaire { position: Vec3, axis: Vec3, c0: Vec3, colour: Vec3, distribution: usize, is_point: bool },
+}
+
+impl PunctualLight {
+    /// Returns the luminous opening from whose faces the light shines; `None` if it shines from a point or from far
+    /// away.
+    pub fn opening(&self, distributions: &[Arc<Luminaire>]) -> Option<Opening> {
+        match *self {
+            Self::Luminaire { distribution, is_point: false, .. } => distributions.get(distribution)?.opening(),
+            _ => None,
+        }
+    }
 }
 
 /// Returns the direction with C = 90° and γ = 90° of a luminaire.

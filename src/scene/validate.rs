@@ -117,7 +117,7 @@ impl Scene {
                 check_unit("direction", direction)?;
                 check_light("illuminance", illuminance)
             }
-            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point: _ } => {
                 check_place(|| "position", position)?;
                 check_unit("axis", axis)?;
                 check_unit("c0", c0)?;
@@ -280,7 +280,7 @@ mod tests {
         type Defect = (&'static str, fn(&mut Scene));
         let hang = |axis, c0, distribution| {
             let (position, colour) = (Vec3::ZERO, Vec3::ONE);
-            PunctualLight::Luminaire { position, axis, c0, colour, distribution }
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point: false }
         };
         assert_eq!(hang_in(hang(Vec3::NEG_Y, Vec3::X, 0)).validate(), Ok(()));
         for light in [hang(Vec3::NEG_Y, Vec3::X, 1), hang(Vec3::ONE, Vec3::X, 0), hang(Vec3::X, Vec3::X, 0)] {

@@ -81,24 +81,31 @@ impl Scene {
         )
     }
 
-    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so they are invisible in
-    /// renderings.
+    /// Number of point lights, spot lights and luminaires without faces that emit. They shine from points, so they are
+    /// invisible in renderings.
     pub fn unseen_lights(&self) -> usize {
         let is_unseen = |light: &&PunctualLight| match light {
             PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
                 intensity.max_element() > 0.0
             }
-            PunctualLight::Luminaire { colour, .. } => colour.max_element() > 0.0,
+            PunctualLight::Luminaire { colour, .. } => {
+                colour.max_element() > 0.0 && light.opening(&self.distributions).is_none()
+            }
             PunctualLight::Directional { .. } => false,
         };
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// Warns if the scene has luminaires: they shine from points, so they are invisible in renderings. Point and spot
-    /// lights raise no warning, because nobody expects to see them in a rendering.
+    /// Warns if the scene has luminaires that shine from points, because their files state no luminous size or because
+    /// the caller wants it: they are invisible in renderings. Point and spot lights raise no warning, because nobody
+    /// expects to see them in a rendering.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
-            PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),
+            PunctualLight::Luminaire { position, colour, .. }
+                if colour.max_element() > 0.0 && light.opening(&self.distributions).is_none() =>
+            {
+                Some((index, position))
+            }
             _ => None,
         };
         let luminaires: Vec<_> = self.lights.iter().enumerate().filter_map(luminaire).collect();
@@ -106,8 +113,9 @@ impl Scene {
         let describe = |(index, p): &(usize, Vec3)| format!("light {index}, a luminaire at {p}");
         let mut listed: Vec<String> = luminaires.iter().take(MAX_LISTED).map(describe).collect();
         listed.extend((count > MAX_LISTED).then(|| format!("and {} more", count - MAX_LISTED)));
-        let message = format!("pictures do not show luminaires, which shine from points: {}", listed.join("; "));
-        let advice = "rate their glare with luxfer_scene_get_glare; luxfer_image_get_glare leaves them out";
+        let message = format!("pictures do not show luminaires that shine from points: {}", listed.join("; "));
+        let advice = "state their luminous size in their files, and let them shine from their faces; \
+                      luxfer_scene_get_glare rates luminaires with a size";
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
@@ -164,6 +172,7 @@ fn significant(length: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::photometry::Luminaire;
     use crate::scene::Mesh;
     use crate::scene::unrendered::note;
 
@@ -238,8 +247,18 @@ mod tests {
         assert_eq!(scene.warnings(), []);
         scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ONE });
         assert_eq!((scene.warnings(), scene.unseen_lights()), (Vec::new(), 1));
-        let (axis, c0, colour) = (Vec3::NEG_Y, Vec3::X, Vec3::ONE);
-        scene.lights.extend([PunctualLight::Luminaire { position, axis, c0, colour, distribution: 0 }; 5]);
+        let luminaire = |distribution, is_point| {
+            let (axis, c0, colour) = (Vec3::NEG_Y, Vec3::X, Vec3::ONE);
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point }
+        };
+        // A luminaire with faces is in the picture, unless it is to be a point.
+        let sizes = [[0.0; 3], [0.6, 0.6, 0.0]];
+        scene.distributions = sizes.map(|size| Luminaire::lambertian("", 1000.0, size).into()).into();
+        scene.lights.push(luminaire(1, false));
+        assert_eq!((scene.warnings(), scene.unseen_lights()), (Vec::new(), 1));
+        scene.lights.pop();
+        scene.lights.extend([luminaire(0, false), luminaire(1, true)]);
+        scene.lights.extend([luminaire(0, false); 3]);
         let warnings = scene.warnings();
         assert_eq!((warnings[0].code, warnings[0].severity, warnings.len()), (Code::NotInPicture, 5.0, 1));
         let message = &warnings[0].message;

@@ -323,6 +323,7 @@ def photometry() -> Scenario:
     s.call("distribution_get_name", lamp, ROOM, 50, ROOM)
     s.call("distribution_get_intensity", lamp, 0.0, 30.0, ROOM)
     s.call("scene_add_luminaire", s.room(), lamp, struct("luminaire_params", flux=900.0), ROOM)
+    s.call("scene_add_luminaire", s.room(), lamp, struct("luminaire_params", shape=1), ROOM)
     return s
 
 

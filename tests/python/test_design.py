@@ -171,11 +171,13 @@ class Grids(Case):
 
 
 class Direct(Case):
-    """A black box under one luminaire, whose illuminance is intensity times cosine over squared distance."""
+    """A black box under one luminaire without size, whose illuminance is intensity times cosine over squared distance."""
 
     def setUp(self):
         super().setUp()
-        self.project = project(0.0, 1)
+        whole = project(0.0, 1)
+        point = design.Product.panel(context(), 0, 0, 3000.0, watts=30, rendering=80)
+        self.project = replace(whole, luminaires=design.layout(whole.room, point, 1, 1))
         self.field = measure(self.project.lit(), self.project.areas[0], 16)
 
     def expected(self, normal=(0, 1, 0)):

@@ -69,6 +69,8 @@ LUXFER_FILE_COLOUR_UNCONVERTED = 4
 LUXFER_FILE_COLOUR_DATA = 5
 LUXFER_PHASE_PLANE = 0
 LUXFER_PHASE_LIGHTS = 1
+LUXFER_LUMINAIRE_FACES = 0
+LUXFER_LUMINAIRE_POINT = 1
 LUXFER_ALPHA_OPAQUE = 0
 LUXFER_ALPHA_MASK = 1
 LUXFER_ALPHA_BLEND = 2
@@ -483,8 +485,9 @@ class luxfer_scene_load_params(Structure):
         ("allow_external_files", c_uint32),
         ("unit", c_double),
         ("keep_origin", c_uint32),
-        ("reserved", c_uint32),
+        ("luminaire_shape", c_int32),
     ]
+    enumerations: dict[str, type] = {"luminaire_shape": types.LuminaireShape}
     struct_type = LUXFER_STRUCT_SCENE_LOAD_PARAMS
 
 
@@ -596,17 +599,18 @@ class luxfer_light_params(Structure):
 
 
 class luxfer_luminaire_params(Structure):
-    """Flux, position, orientation and colour of a luminaire."""
+    """Flux, position, orientation, colour and shape of a luminaire."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("shape", c_int32),
         ("flux", c_double),
         ("position", c_float * 3),
         ("axis", c_float * 3),
         ("c0", c_float * 3),
         ("colour", c_float * 3),
     ]
+    enumerations: dict[str, type] = {"shape": types.LuminaireShape}
     struct_type = LUXFER_STRUCT_LUMINAIRE_PARAMS
 
 

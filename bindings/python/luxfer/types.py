@@ -99,6 +99,20 @@ class Phase(IntEnum):
     them."""
 
 
+class LuminaireShape(IntEnum):
+    """From where a luminaire shines."""
+
+    FACES = 0
+    """A luminaire shines from the faces of its luminous opening, with the size that its file states: a
+    rectangle, a disc, a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in
+    each direction, the intensity divided by the projected area of the faces. So the light is right at any
+    distance, and renderings show the faces. A luminaire whose file states no size, or one below 1 mm², shines
+    from a point."""
+    POINT = 1
+    """A luminaire shines from its position as from a point, and is invisible in renderings. The light is right
+    only at distances of at least five times its size."""
+
+
 class AlphaMode(IntEnum):
     """How a surface uses its alpha."""
 
@@ -600,7 +614,7 @@ class WarningCode(IntEnum):
     is 0. Otherwise coordinates of vertices are so large that floats round them; the severity is the step of the
     rounding in metres."""
     NOT_IN_PICTURE = 26
-    """A scene has luminaires, which shine from points: they are invisible in renderings, and
+    """A scene has luminaires that shine from points: they are invisible in renderings, and
     luxfer_image_get_glare does not rate them. The severity is their number; the message lists the first ones
     with their positions."""
     NO_COUNTERPART = 27
@@ -1027,6 +1041,9 @@ class SceneLoadParams(TypedDict, total=False):
     """0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
     made relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative
     to the origin of the file, and rounding to floats moves them."""
+    luminaire_shape: LuminaireShape | str | int
+    """From where the luminaires of the file (EXT_lights_ies) shine: LuminaireShape; default
+    LuminaireShape.FACES."""
 
 
 class MaterialParams(TypedDict, total=False):
@@ -1169,12 +1186,16 @@ class LightParams(TypedDict, total=False):
 
 
 class LuminaireParams(TypedDict, total=False):
-    """Flux, position, orientation and colour of a luminaire."""
+    """Flux, position, orientation, colour and shape of a luminaire."""
 
+    shape: LuminaireShape | str | int
+    """From where the luminaire shines: LuminaireShape; default LuminaireShape.FACES."""
     flux: float
     """Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution."""
     position: Sequence[float]
-    """Position in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0,
+    0, 0). A flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not
+    hidden."""
     axis: Sequence[float]
     """Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines
     down."""
@@ -2060,10 +2081,10 @@ class GlareReport:
     solid_angle: float
     """Solid angle of all sources in steradians."""
     unseen_lights: int
-    """Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the
-    image, and ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of
-    luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires,
-    the scene has WarningCode.NOT_IN_PICTURE."""
+    """Number of point lights, spot lights and luminaires of the rendered scene that shine from points. They are
+    invisible in the image, and ugr leaves them out. Known only for images of luxfer_render_get_image and
+    luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
+    WarningCode.NOT_IN_PICTURE."""
 
 
 @dataclass(frozen=True)

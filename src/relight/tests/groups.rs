@@ -305,6 +305,7 @@ fn luminaires_are_lamps() {
         c0: Vec3::X,
         colour: Vec3::ONE,
         distribution: 0,
+        is_point: false,
     };
     let mut scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     scene.lights = places.map(hang).to_vec();

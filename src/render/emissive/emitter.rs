@@ -1,6 +1,6 @@
 //! An emissive triangle, with the geometry and the texture look-up that sampling its emission needs.
 
-use crate::render::facet::Facet;
+use crate::render::facet::{Facet, NONE};
 use crate::scene::{Scene, Texture};
 use glam::{DVec2, Vec2, Vec3, Vec4};
 
@@ -14,6 +14,8 @@ pub struct Emitter {
     pub normal: Vec3,
     pub area: f32,
     pub double_sided: bool,
+    /// Index of the patch of a luminaire that the triangle belongs to; `NONE` for a triangle of a mesh.
+    pub(super) patch: u32,
     pub(super) factor: Vec3,
     pub(super) texture: Option<usize>,
     /// Texture coordinates of the corners in the emission texture, after the material's texture transform.
@@ -51,13 +53,28 @@ impl Emitter {
             normal: doubled.normalize().as_vec3(),
             area,
             double_sided: material.double_sided,
+            patch: NONE,
             factor: material.emission.max(Vec3::ZERO),
             texture: material.emission_texture.as_ref().map(|t| t.texture),
             uv,
         })
     }
 
-    /// Returns the emission at a point in cd/m² per channel, and the texture coordinates of the look-up.
+    /// Returns a triangle of a luminaire's patch; `None` if it has no area. `mesh` is the number of the luminaire's
+    /// mesh, and `triangle` the index of the triangle within it.
+    pub(super) fn of_patch(facet: &Facet, [mesh, triangle, id]: [u32; 3], patch: u32) -> Option<Self> {
+        let corners = facet.corners();
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let area = ((b - a).cross(c - a).length() / 2.0) as f32;
+        let (factor, uv) = (Vec3::ZERO, [Vec2::ZERO; 3]);
+        let normal = facet.normal;
+        let this =
+            Self { mesh, triangle, id, corners, normal, area, double_sided: false, patch, factor, texture: None, uv };
+        (area.is_finite() && area > 0.0).then_some(this)
+    }
+
+    /// Returns the emission of a triangle of a mesh at a point, in cd/m² per channel, and the texture coordinates of
+    /// the look-up.
     pub fn emission(&self, scene: &Scene, barycentric: Vec2) -> (Vec3, Vec2) {
         let b = barycentric;
         let uv = self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y;

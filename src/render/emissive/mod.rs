@@ -6,19 +6,26 @@
 //! divided by the intensity of the piece. So thousands of small lamps in one texture cost as much as one lamp, and no
 //! sample falls on a dark texel. For this reason, emission textures are looked up without interpolation. A triangle
 //! whose texture coordinates have no area or span too many texels is one piece and is sampled uniformly.
+//!
+//! The faces of luminaires ([`super::luminaires`]) are emitters, too. A patch of a face is one piece: each of its
+//! triangles is sampled with the same probability, and uniformly. Their emission depends on the direction.
 
 mod emitter;
+mod patches;
 mod polygon;
 mod tiles;
 
 pub use emitter::{Emitter, mean_channel};
 
+use super::contribution::LightSource;
 use super::facet::Facet;
 use super::light::bounds::Bounds;
+use super::luminaires::Source;
 use crate::error::Result;
 use crate::image::{make_room, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
+use patches::Patches;
 use polygon::uniform_in_triangle;
 use rayon::prelude::*;
 use tiles::{Tile, Tiling};
@@ -36,6 +43,8 @@ pub struct Emitters {
     /// All pieces. Piece indices count the undivided triangles (`uniform`) first, then the emissive tiles.
     uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
+    /// The faces of luminaires; the indices of their pieces follow those of the tiles.
+    patches: Patches,
     /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
 }
@@ -46,6 +55,8 @@ enum Division {
     Uniform(u32),
     /// A tiling, by its index; its tiles are listed in `piece_of_tile` from index `first` on.
     Tiled { tiling: u32, first: usize },
+    /// The triangle belongs to a patch of a luminaire, given by its index.
+    Patch(u32),
 }
 
 /// A triangle that is not divided, but sampled uniformly as one piece.
@@ -68,6 +79,7 @@ impl Emitters {
             piece_of_tile: Vec::new(),
             uniform: Vec::new(),
             tiles: Vec::new(),
+            patches: Patches::default(),
             power: 0.0,
         };
         let mut bounds = Vec::new();
@@ -143,23 +155,87 @@ impl Emitters {
         Ok(())
     }
 
-    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). Points of a tile are
-    /// sampled in proportion to the emission at the point, points of an undivided triangle uniformly. Returns the
-    /// index of the emitter and the barycentric coordinates of the point.
+    /// Adds the faces of luminaires. `meshes` is the number of the scene's own meshes, which those of its lights
+    /// follow; `first` holds the id of each mesh's first triangle. Appends the bounds of every patch to `bounds`.
+    pub fn add_luminaires(
+        &mut self,
+        sources: Vec<Source>,
+        facets: &[Facet],
+        meshes: usize,
+        first: &[u32],
+        bounds: &mut Vec<Bounds>,
+    ) -> Result<()> {
+        for source in sources {
+            let mesh = meshes + source.light;
+            for (triangles, bound) in source.patches(mean_channel(source.emission.colour())) {
+                let (patch, start) = (self.patches.count(), self.emitters.len());
+                make_room(&mut self.emitters, triangles.len())?;
+                make_room(&mut self.divisions, triangles.len())?;
+                for triangle in triangles {
+                    let id = first[mesh] + triangle as u32;
+                    let numbers = [mesh as u32, triangle as u32, id];
+                    self.emitters.extend(Emitter::of_patch(&facets[id as usize], numbers, patch));
+                }
+                if self.emitters.len() > start {
+                    self.divisions.resize(self.emitters.len(), Division::Patch(patch));
+                    self.patches.add_patch(start..self.emitters.len());
+                    bounds.push(bound);
+                }
+            }
+            self.power += source.flux();
+            self.patches.add_luminaire(source.light, source.emission);
+        }
+        Ok(())
+    }
+
+    /// Samples a point of a piece (an undivided triangle, a tile of a textured triangle, or a patch of a luminaire).
+    /// Points of a tile are sampled in proportion to the emission at the point, points of a triangle uniformly.
+    /// Returns the index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
-        let Some(tile) = piece.checked_sub(self.uniform.len()).map(|t| &self.tiles[t]) else {
+        let Some(tile) = piece.checked_sub(self.uniform.len()) else {
             return Some((self.uniform[piece].emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v))));
+        };
+        let Some(tile) = self.tiles.get(tile) else {
+            return Some(self.patches.sample(tile - self.tiles.len(), (u, v)));
         };
         let emitter = tile.emitter as usize;
         let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
-    /// Returns the index of the emitter that a piece belongs to.
+    /// Returns the emission of an emitter at a point in a unit direction, in cd/m² per channel, and the texture
+    /// coordinates of the look-up.
+    #[inline]
+    pub fn emission(&self, scene: &Scene, emitter: usize, barycentric: Vec2, direction: Vec3) -> (Vec3, Vec2) {
+        let emitter = &self.emitters[emitter];
+        match emitter.patch {
+            NONE => emitter.emission(scene, barycentric),
+            patch => (self.patches.radiance(patch, direction), Vec2::ZERO),
+        }
+    }
+
+    /// Returns the light source that an emitter is; `uv` are the texture coordinates of the look-up of its emission.
+    #[inline]
+    pub fn source(&self, emitter: usize, uv: Vec2) -> LightSource {
+        let emitter = &self.emitters[emitter];
+        match emitter.patch {
+            NONE => LightSource::Surface { mesh: emitter.mesh, triangle: emitter.triangle, uv },
+            patch => LightSource::Punctual(self.patches.light(patch)),
+        }
+    }
+
+    /// Whether two emitters belong to the faces of the same luminaire.
+    pub fn are_of_one_luminaire(&self, pair: [usize; 2]) -> bool {
+        let [a, b] = pair.map(|emitter| self.emitters[emitter].patch);
+        a != NONE && b != NONE && self.patches.light(a) == self.patches.light(b)
+    }
+
+    /// Returns the index of the first emitter of a piece.
     pub fn emitter_of(&self, piece: usize) -> usize {
         match piece.checked_sub(self.uniform.len()) {
-            Some(tile) => self.tiles[tile].emitter as usize,
+            Some(tile) if tile < self.tiles.len() => self.tiles[tile].emitter as usize,
+            Some(patch) => self.patches.first_emitter(patch - self.tiles.len()),
             None => self.uniform[piece].emitter as usize,
         }
     }
@@ -170,15 +246,18 @@ impl Emitters {
         let piece = match self.divisions[emitter] {
             Division::Uniform(piece) => piece,
             Division::Tiled { tiling, first } => self.piece_of_tile[first + self.tilings[tiling as usize].tile_at(uv)],
+            Division::Patch(patch) => (self.uniform.len() + self.tiles.len()) as u32 + patch,
         };
         (piece != NONE).then_some(piece as usize)
     }
 
     /// Returns the area pdf (per m²) with which [`Emitters::sample`] draws a point of the given piece. It does not
-    /// include the probability of choosing the piece. `brightness` is the emission at the point, mean of the channels.
-    pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
+    /// include the probability of choosing the piece. `emitter` is the emitter at the point, and `brightness` the
+    /// emission there, mean of the channels.
+    pub fn area_pdf(&self, piece: usize, emitter: usize, brightness: f32) -> f32 {
         match piece.checked_sub(self.uniform.len()) {
-            Some(tile) => brightness / self.tiles[tile].intensity,
+            Some(tile) if tile < self.tiles.len() => brightness / self.tiles[tile].intensity,
+            Some(patch) => self.patches.share(patch - self.tiles.len()) / self.emitters[emitter].area,
             None => 1.0 / self.emitters[self.uniform[piece].emitter as usize].area,
         }
     }

@@ -73,7 +73,7 @@ fn points_are_as_dense_as_the_light_they_emit() {
                 assert!(b.min_element() >= 0.0 && b.element_sum() < 1.0 + 1e-5);
                 let (emission, uv) = emitters.emitters[emitter].emission(&scene, b);
                 // Emission / pdf equals the intensity of the piece, so a single sample has no variance.
-                let estimate = mean_channel(emission) / emitters.area_pdf(piece, mean_channel(emission));
+                let estimate = mean_channel(emission) / emitters.area_pdf(piece, emitter, mean_channel(emission));
                 let agrees = (estimate / pieces[piece].1 - 1.0).abs() < 1e-5;
                 disagreed += usize::from(!agrees || emitters.piece_at(emitter, uv) != Some(piece));
             }
@@ -122,7 +122,7 @@ fn sampled_points_follow_the_stated_pdf() {
             let uv = emitters.emitters[0].emission(&scene, b).1;
             if let Some(piece) = emitters.piece_at(0, uv) {
                 let chosen = own.iter().position(|&p| p == piece).map_or(0.0, |i| table.pmf(i));
-                let pdf = chosen * f64::from(emitters.area_pdf(piece, brightness(&emitters, &scene, 0, b)) * area);
+                let pdf = chosen * f64::from(emitters.area_pdf(piece, 0, brightness(&emitters, &scene, 0, b)) * area);
                 expected[bin(b)] += pdf * f64::from(samples) / (cells * cells) as f64;
             }
         }
@@ -161,7 +161,7 @@ fn densities_of_a_piece_integrate_to_one() {
             let b = uniform_in_triangle(Vec2::new(rng.next_f32(), rng.next_f32()));
             let uv = emitter.emission(&scene, b).1;
             if let Some(piece) = emitters.piece_at(index, uv) {
-                let pdf = emitters.area_pdf(piece, brightness(&emitters, &scene, index, b));
+                let pdf = emitters.area_pdf(piece, index, brightness(&emitters, &scene, index, b));
                 sums[piece] += f64::from(pdf * emitter.area) / f64::from(n);
             }
         }

@@ -15,8 +15,8 @@ pub struct Lamps {
 }
 
 impl Lamps {
-    /// Finds the lamps: emissive triangles that share a corner belong to one lamp. `pieces` is the number of pieces
-    /// into which the triangles are divided.
+    /// Finds the lamps: emissive triangles that share a corner belong to one lamp, and so do all faces of a luminaire.
+    /// `pieces` is the number of pieces into which the triangles are divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
         let count = emitters.emitters.len();
         let mut corners = try_with_capacity(3 * count)?;
@@ -25,8 +25,10 @@ impl Lamps {
         }
         corners.sort_unstable();
         let mut parents = try_collect(0..count as u32)?;
-        for pair in corners.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            let (a, b) = (root(&mut parents, pair[0].1), root(&mut parents, pair[1].1));
+        let touching = corners.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+        let of_one_luminaire = (1..count).filter(|&i| emitters.are_of_one_luminaire([i - 1, i]));
+        for pair in touching.chain(of_one_luminaire.map(|i| [i as u32 - 1, i as u32])) {
+            let [a, b] = pair.map(|emitter| root(&mut parents, emitter));
             parents[a.max(b) as usize] = a.min(b);
         }
         // Number the lamps that have pieces, and skip the others.

@@ -1,9 +1,10 @@
 //! Light sampling: selects one of a scene's lights, samples a point on it, and computes the pdf.
 //!
-//! A [`LightTree`] selects among the lights at a finite distance (pieces of emissive surfaces, points, spots and
-//! luminaires) by their importance for the receiver. The directional lights form a second group, and the environment a
-//! third. Half of the probability is divided among the groups in proportion to their power, and half is divided
-//! equally. Power alone would ignore occlusion by walls and could leave a group with too few samples.
+//! A [`LightTree`] selects among the lights at a finite distance (pieces of emissive surfaces and of the faces of
+//! luminaires, points, spots and luminaires without faces) by their importance for the receiver. The directional
+//! lights form a second group, and the environment a third. Half of the probability is divided among the groups in
+//! proportion to their power, and half is divided equally. Power alone would ignore occlusion by walls and could leave
+//! a group with too few samples.
 
 pub(super) mod bounds;
 mod lamps;
@@ -232,14 +233,14 @@ impl Lights {
         if !(receiver.normal.dot(direction) > 0.0 && emitter.faces(direction)) {
             return None;
         }
-        let (emission, uv) = emitter.emission(scene, barycentric);
-        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        let (emission, uv) = self.emitters.emission(scene, index, barycentric, -direction);
+        let pdf = pmf * self.emitters.area_pdf(piece, index, mean_channel(emission));
         let pdf = to_solid_angle(pdf, emitter.normal.dot(direction), distance);
         if !(pdf.is_finite() && pdf > 0.0) {
             return None;
         }
         Some(LightSample {
-            source: LightSource::Surface { mesh: emitter.mesh, triangle: emitter.triangle, uv },
+            source: self.emitters.source(index, uv),
             surveyed,
             direction,
             end: Some(LightEnd::Emitter(index, barycentric)),
@@ -274,7 +275,7 @@ impl Lights {
 
     /// Returns the solid-angle pdf with which [`Lights::sample`] draws a point of an emitter. The point lies along the
     /// unit vector `direction` at `distance`; its emission and texture coordinates are those that
-    /// [`super::emissive::Emitter::emission`] returns.
+    /// [`Emitters::emission`] returns.
     pub fn surface_pdf(
         &self,
         receiver: &Receiver,
@@ -288,7 +289,7 @@ impl Lights {
             None => self.all.tree.pmf(receiver, piece) * self.all.groups[0] as f32,
             Some(split) => split.pmf(receiver, piece),
         };
-        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        let pdf = pmf * self.emitters.area_pdf(piece, emitter, mean_channel(emission));
         to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
     }
 

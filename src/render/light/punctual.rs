@@ -4,7 +4,8 @@
 use super::bounds::Bounds;
 use crate::photometry::Luminaire;
 use crate::render::emissive::mean_channel;
-use crate::scene::{PunctualLight, c90};
+use crate::render::measured::Measured;
+use crate::scene::PunctualLight;
 use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -28,14 +29,6 @@ pub enum Shape {
     Isotropic,
     Cone(Cone),
     Measured(Measured),
-}
-
-/// A measured luminous intensity distribution with the axes of the luminaire.
-pub struct Measured {
-    axis: Vec3,
-    c0: Vec3,
-    c90: Vec3,
-    luminaire: Arc<Luminaire>,
 }
 
 /// The spot cone of glTF. The intensity is multiplied by the square of a factor: `(cosine - outer) * scale`, clamped
@@ -63,16 +56,19 @@ impl Punctual {
             PunctualLight::Directional { direction, illuminance } => {
                 Self::Far { towards: -direction.normalize_or_zero(), illuminance }
             }
-            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
-                let luminaire = distributions[distribution].clone();
-                let shape = Shape::Measured(Measured { axis, c0, c90: c90(axis, c0), luminaire });
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } => {
+                let shape = Shape::Measured(Measured::new(axis, c0, distributions[distribution].clone()));
                 Self::Near { position, intensity: colour, shape }
             }
         }
     }
 
-    /// Returns the bounds of a light at a finite distance; `None` if the light is directional or dark.
+    /// Returns the bounds of a light at a finite distance; `None` if the light is directional or dark, and for
+    /// luminaires with faces, which are emitters ([`crate::render::emissive`]).
     pub fn bounds(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Option<Bounds> {
+        if light.opening(distributions).is_some() {
+            return None;
+        }
         let bounds = match *light {
             PunctualLight::Point { position, intensity } => {
                 Bounds::of_point(position, mean_channel(intensity.max(Vec3::ZERO)))
@@ -134,17 +130,8 @@ impl Shape {
         match self {
             Self::Isotropic => 1.0,
             Self::Cone(cone) => cone.share(direction),
-            Self::Measured(measured) => measured.candela(direction),
+            Self::Measured(measured) => measured.candela(measured.local(direction)) as f32,
         }
-    }
-}
-
-impl Measured {
-    fn candela(&self, direction: Vec3) -> f32 {
-        let along = |axis: Vec3| f64::from(direction.dot(axis));
-        let (x, y, z) = (along(self.c0), along(self.c90), along(self.axis));
-        let gamma = x.hypot(y).atan2(z);
-        self.luminaire.intensity(y.atan2(x).to_degrees(), gamma.to_degrees()) as f32
     }
 }
 

@@ -114,13 +114,10 @@ fn every_light() -> Scene {
     let place = |i: usize| Vec3::new(i as f32 - 2.0, 1.5, 0.3);
     scene.lights = (0..6)
         .map(|i| match i % 3 {
-            0 if i > 0 => PunctualLight::Luminaire {
-                position: place(i),
-                axis: Vec3::NEG_Y,
-                c0: Vec3::X,
-                colour: intensity(i),
-                distribution: 0,
-            },
+            0 if i > 0 => {
+                let (position, axis, c0, colour) = (place(i), Vec3::NEG_Y, Vec3::X, intensity(i));
+                PunctualLight::Luminaire { position, axis, c0, colour, distribution: 0, is_point: false }
+            }
             0 => PunctualLight::Point { position: place(i), intensity: intensity(i) },
             1 => PunctualLight::Spot {
                 position: place(i),
@@ -530,7 +527,7 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
                 surfaces += 1;
                 let emitter = &world.lights().emitters.emitters[index];
                 let distance = emitter.point(b).distance(receiver.position);
-                let emission = emitter.emission(world.scene(), b);
+                let emission = world.lights().emitters.emission(world.scene(), index, b, -sample.direction);
                 world.lights().surface_pdf(&receiver, index, emission, sample.direction, distance)
             }
             _ => world.lights().environment_pdf(sample.direction),

@@ -8,7 +8,7 @@ use crate::rng;
 use std::f64::consts::PI;
 
 fn luminaire(position: Vec3, axis: Vec3, c0: Vec3) -> PunctualLight {
-    PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0 }
+    PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0, is_point: false }
 }
 
 /// A room of 6 × 3 × 8 m with a corner at the origin. Luminaires with the given distribution hang at the given
@@ -103,6 +103,12 @@ fn twenty_rooms_agree_with_independent_geometry() {
         }
         let direction = Vec3::new(random(91) - 0.5, 0.0, random(92) - 0.5);
         let eye = Eye { position: Vec3::new(1.0 + 4.0 * random(93), 1.2, 1.0 + 6.0 * random(94)), direction };
+        // Points do not hide each other.
+        for light in &mut scene.lights {
+            if let PunctualLight::Luminaire { is_point, .. } = light {
+                *is_point = true;
+            }
+        }
         let lights = scene.lights.clone();
         let rating = rated(scene, eye, 64);
         let expected = independent(eye, &lights, rating.background);
@@ -126,8 +132,12 @@ fn the_background_is_the_indirect_illuminance() {
     let place = CalculationPoints::Grid { origin: EYE.position, across, down, normal: EYE.direction };
     let params = illuminance::Params { columns: 1, rows: 1, samples: 1 << 15, seed: 9 };
     let total = illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap();
-    // The intensity is 3000 / π × cos γ. The cosine of γ is 1.5 / r, and the cosine of incidence is 3 / r.
-    let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
+    // The panel has the luminance 3000 / π / A. At a point of it, the cosines are 1.5 / r and z / r.
+    let of_cell = |i: usize| {
+        let (x, z) = ((i % 120) as f64 / 100.0 - 0.595, 3.0 - (i / 120) as f64 / 100.0 + 0.145);
+        3000.0 / PI / 3600.0 * 1.5 * z / (x * x + z * z + 1.5 * 1.5).powi(2)
+    };
+    let direct: f64 = (0..120 * 30).map(of_cell).sum();
     let error = (PI * rating.background_error).hypot(total.mean_error);
     let off = total.mean - direct - PI * rating.background;
     assert!(off.abs() < 4.0 * error + 2e-3 * direct && error < 0.02 * total.mean, "{off} ± {error}");
@@ -150,6 +160,15 @@ fn hidden_parts_do_not_glare() {
     assert_eq!(half.luminance, whole.luminance);
     let none = screened(1.0, 4.0);
     assert!(none.sources.is_empty() && none.ugr == f64::NEG_INFINITY, "{none:?}");
+    // A luminaire may hide another one.
+    let cube = Luminaire::lambertian("cube", 10.0, [0.3; 3]);
+    let mut hiding = room(panel(), &[at, Vec3::new(3.0, 1.95, 6.0)]);
+    hiding.distributions.push(Arc::new(cube));
+    if let PunctualLight::Luminaire { distribution, .. } = &mut hiding.lights[1] {
+        *distribution = 1;
+    }
+    let partly = rated(hiding, EYE, 16).sources[0];
+    assert!(partly.light == 0 && partly.solid_angle < 0.8 * whole.solid_angle, "{partly:?} {whole:?}");
     // A panel in the plane of the ceiling is visible as a whole.
     let flush = rated(room(panel(), &[Vec3::new(3.0, 3.0, 4.5)]), EYE, 16).sources[0];
     let distance_squared = 9.0 + 1.8f64 * 1.8;
@@ -185,5 +204,36 @@ fn limits_have_clear_answers() {
     assert!(inside.contains("observer 1") && inside.contains("opening of light 0"), "{inside}");
     for direction in [Vec3::Y, Vec3::ZERO, Vec3::splat(f32::NAN)] {
         assert!(refused(Eye { direction, ..EYE }).contains("direction"), "{direction}");
+    }
+}
+
+/// The picture of a room shows its luminaires, so the rating of the picture agrees with that of the luminaires.
+#[test]
+fn pictures_rate_as_the_luminaires_in_them() {
+    use crate::photometry::glare;
+    let disc = Luminaire::lambertian("disc", 2500.0, [-0.5, -0.5, 0.0]);
+    let globe = Luminaire {
+        gammas: vec![0.0, 180.0],
+        candela: vec![300.0; 2],
+        ..Luminaire::lambertian("globe", 0.0, [-0.35, -0.35, -0.35])
+    };
+    let places = [[2.0, 2.8, 5.0], [4.0, 2.8, 5.0], [3.0, 2.6, 2.5]].map(Vec3::from);
+    for (name, luminaire) in [("panel", panel()), ("disc", disc), ("globe", globe)] {
+        let scene = room(luminaire, &places);
+        let rating = rated(scene.clone(), EYE, 1 << 13);
+        let camera = Camera { position: EYE.position, ..Camera::look_at(Vec3::ZERO, EYE.direction, 2.4) };
+        let params = crate::render::Params { width: 1000, height: 1000, samples: 4, ..Default::default() };
+        let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
+        let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0 }).unwrap();
+        // Single bright pixels of noise count as sources; the luminaires are larger.
+        let large = seen.sources.iter().filter(|s| s.solid_angle > 1e-3).count();
+        assert_eq!((large, rating.sources.len(), film.unseen_lights), (3, 3, 0), "{name}");
+        assert!((seen.ugr - rating.ugr).abs() < 0.5, "{name}: {seen:?} {rating:?}");
+        // Compare the sources alone.
+        let sums = [
+            seen.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position.powi(2)).sum::<f64>(),
+            rating.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum(),
+        ];
+        assert!((8.0 * (sums[0] / sums[1]).log10()).abs() < 0.25, "{name}: {sums:?}");
     }
 }

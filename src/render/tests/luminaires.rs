@@ -1,4 +1,4 @@
-//! Tests of light from measured luminaires, against closed forms.
+//! Tests of light from measured luminaires that shine from points, against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -12,7 +12,14 @@ fn hung(luminaire: Luminaire, axis: Vec3, c0: Vec3) -> Scene {
     Scene {
         meshes: vec![Mesh::parallelogram(Vec3::splat(-90.0), Vec3::X, Vec3::Z, 0)],
         materials: vec![matt(0.0, 0.0)],
-        lights: vec![PunctualLight::Luminaire { position: POSITION, axis, c0, colour: Vec3::ONE, distribution: 0 }],
+        lights: vec![PunctualLight::Luminaire {
+            position: POSITION,
+            axis,
+            c0,
+            colour: Vec3::ONE,
+            distribution: 0,
+            is_point: true,
+        }],
         distributions: vec![Arc::new(luminaire)],
         ..Scene::default()
     }

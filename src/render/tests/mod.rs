@@ -5,6 +5,7 @@ pub(super) mod chi2;
 mod denoise;
 mod energy;
 mod extremes;
+mod faces;
 mod far;
 mod film;
 mod glare;

@@ -69,11 +69,15 @@ fn check_version(document: &Value) -> Result<()> {
     }
 }
 
-/// Removes `extras`, which may have any type, and turns whole numbers that are written as floats into integers.
+/// Removes `extras`, which may have any type, and turns whole numbers that are written as floats into integers. The extra
+/// property [`features::IS_POINT`] becomes a property of the object itself.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(members) => {
-            members.remove("extras");
+            let extras = members.remove("extras");
+            if extras.is_some_and(|extras| extras.get(features::IS_POINT) == Some(&Value::Bool(true))) {
+                members.insert(features::IS_POINT.into(), Value::Bool(true));
+            }
             members.values_mut().for_each(tidy);
         }
         Value::Array(items) => items.iter_mut().for_each(tidy),

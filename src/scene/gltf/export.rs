@@ -1,6 +1,6 @@
 //! Writes a scene as a single GLB file.
 
-use super::features::IES;
+use super::features::{IES, IS_POINT};
 use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;
@@ -164,8 +164,8 @@ impl Writer {
             PunctualLight::Directional { direction, illuminance } => {
                 ("directional", illuminance, Vec3::ZERO, direction)
             }
-            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
-                return self.luminaire(scene, index, [position, axis, c0, colour], distribution);
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point } => {
+                return self.luminaire(scene, index, [position, axis, c0, colour], distribution, is_point);
             }
         };
         self.uses("KHR_lights_punctual");
@@ -191,6 +191,7 @@ impl Writer {
         index: usize,
         [position, axis, c0, colour]: [Vec3; 4],
         distribution: usize,
+        is_point: bool,
     ) -> Result<()> {
         self.uses(IES);
         let profile = match self.profile_keys.iter().position(|k| *k == distribution) {
@@ -206,13 +207,15 @@ impl Writer {
         };
         let (colour, multiplier) = split_peak(colour);
         let rotation = Quat::from_mat3(&Mat3::from_cols(c0, c90(axis, c0), -axis)).normalize();
+        let mut reference = json!({ "light": profile, "multiplier": multiplier, "color": colour.to_array() });
+        if is_point {
+            reference["extras"] = json!({ IS_POINT: true });
+        }
         self.nodes.push(json!({
             "name": format!("Light {index}"),
             "translation": position.to_array(),
             "rotation": rotation.to_array(),
-            "extensions": { IES: {
-                "light": profile, "multiplier": multiplier, "color": colour.to_array()
-            } },
+            "extensions": { IES: reference },
         }));
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Converts the nodes, meshes, cameras and lights of a parsed glTF file to a [`Scene`] in world space.
 
 use super::container::{File, Folder, missing};
-use super::features::{IES, READ};
+use super::features::{IES, IS_POINT, READ};
 use super::instances::{instances, local_transform};
 use super::material::Materials;
 use super::nodes::roots;
@@ -51,7 +51,7 @@ pub fn import(bytes: &[u8], base: Option<&Path>, options: Options) -> Result<Sce
     scene.ok_or_else(|| Error::new(ErrorKind::Internal, "the budget ran no work"))
 }
 
-fn convert(file: &mut File, Options { budget, unit, keep_origin, .. }: Options) -> Result<Scene> {
+fn convert(file: &mut File, Options { budget, unit, keep_origin, point_luminaires, .. }: Options) -> Result<Scene> {
     let mut scene = Scene { unrendered: std::mem::take(&mut file.unrendered), ..Scene::default() };
     let file = &*file;
     let mut materials = Materials::new(file, budget);
@@ -66,6 +66,7 @@ fn convert(file: &mut File, Options { budget, unit, keep_origin, .. }: Options) 
         default_material: None,
         tinted: Vec::new(),
         profiles: Vec::new(),
+        point_luminaires,
         nodes: Vec::new(),
         vertices: 0,
         triangles: 0,
@@ -95,6 +96,8 @@ struct Importer<'a> {
     tinted: Vec<(usize, [f32; 4], usize)>,
     /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
+    /// Whether all luminaires shine from points.
+    point_luminaires: bool,
     /// The world transform of each node. Filled only if the file has skins, whose joints are nodes.
     nodes: Vec<Option<DMat4>>,
     vertices: u64,
@@ -208,6 +211,7 @@ impl Importer<'_> {
             c0: c0.as_vec3(),
             colour: multiplier * Vec3::from_array(std::array::from_fn(channel)),
             distribution,
+            is_point: self.point_luminaires || reference.get(IS_POINT).is_some(),
         });
         Ok(())
     }

@@ -85,11 +85,13 @@ pub struct Options<'a> {
     pub is_open: bool,
     /// Whether positions stay relative to the file's origin even if the scene lies far from it.
     pub keep_origin: bool,
+    /// Whether all luminaires shine from points, even if their files state a luminous size.
+    pub point_luminaires: bool,
 }
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { budget: UNLIMITED, unit: 1.0, is_open: false, keep_origin: false }
+        Self { budget: UNLIMITED, unit: 1.0, is_open: false, keep_origin: false, point_luminaires: false }
     }
 }
 

@@ -163,6 +163,7 @@ fn luminaires_are_unchanged_by_export_and_import() {
         c0: axis.any_orthonormal_vector(),
         colour: Vec3::new(2.0, 1.5, 1.0),
         distribution,
+        is_point: axis == Vec3::Z,
     };
     let before = Scene {
         lights: vec![hang(Vec3::NEG_Y, 1), hang(Vec3::new(0.6, -0.8, 0.0), 0), hang(Vec3::Z, 1)],
@@ -175,8 +176,8 @@ fn luminaires_are_unchanged_by_export_and_import() {
     assert_eq!(after.lights.len(), 3);
     for (a, b) in after.lights.iter().zip(&before.lights) {
         let parts = |light: &PunctualLight, scene: &Scene| match *light {
-            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
-                ([position, axis, c0, colour], scene.distributions[distribution].clone())
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point } => {
+                ([position, axis, c0, colour], (scene.distributions[distribution].clone(), is_point))
             }
             _ => unreachable!(),
         };
@@ -184,6 +185,10 @@ fn luminaires_are_unchanged_by_export_and_import() {
         assert!(a.iter().zip(b).all(|(a, b)| near(*a, b)), "{a:?} {b:?}");
         assert_eq!(measured_a, measured_b);
     }
+    // A caller may make points of all luminaires.
+    let options = super::Options { point_luminaires: true, ..super::Options::default() };
+    let points = super::import(&glb, None, options).unwrap().lights;
+    assert!(points.iter().all(|light| matches!(light, PunctualLight::Luminaire { is_point: true, .. })));
     // Inconsistent files give an error.
     let broken = |from: &str, to: &str| {
         let at = glb.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();

@@ -39,7 +39,7 @@ def is_scene(name: str) -> bool:
     return name.removeprefix(DEMO) in DEMO_SCENES if name.startswith(DEMO) else name.lower().endswith(USD + GLTF)
 
 
-def load_scene(context: Context, name: str, units: str | None = None) -> Scene:
+def load_scene(context: Context, name: str, units: str | None = None, luminaires: str = "faces") -> Scene:
     """The scene of a file or of a demo: name."""
     from ..errors import Error
     from ..scene import Scene
@@ -49,7 +49,7 @@ def load_scene(context: Context, name: str, units: str | None = None) -> Scene:
     if name.lower().endswith(USD):
         return _load_usd(context, name, units)
     try:
-        return Scene.load(context, name, unit=values.UNITS[units or "m"])
+        return Scene.load(context, name, unit=values.UNITS[units or "m"], luminaire_shape=luminaires)
     except Error as error:
         raise unreadable(name, error) from None
 

@@ -60,6 +60,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the paths"
     )
     options.add_units(parser)
+    options.add_luminaires(parser)
     options.add_common(parser)
 
 
@@ -71,7 +72,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     inputs = files.shared_input(args.scene)
     picture = files.check_file("--out", args.out, inputs, (".png",)) if args.out else None
     table = files.check_file("--csv", args.csv, inputs, (".csv",)) if args.csv else None
-    scene = files.load_scene(files.context_of(args), args.scene, args.units)
+    scene = files.load_scene(files.context_of(args), args.scene, args.units, args.luminaires)
     if args.sky is not None:
         scene.set_environment((args.sky,) * 3)
     plane, warnings = plane_of(scene, args)

@@ -44,6 +44,17 @@ def add_units(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_luminaires(parser: argparse.ArgumentParser) -> None:
+    """--luminaires of a scene's file."""
+    parser.add_argument(
+        "--luminaires",
+        choices=["faces", "point"],
+        default="faces",
+        help="from where the luminaires of a glTF file shine: from the faces of their openings, which are in the picture, "
+        "if they state a size, or from points; default faces",
+    )
+
+
 def add_camera(parser: argparse.ArgumentParser) -> None:
     """--camera and --size."""
     parser.add_argument(

@@ -40,6 +40,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     options.add_camera(parser)
     options.add_units(parser)
+    options.add_luminaires(parser)
     options.add_white(parser, "luminance shown as white in the PNG, in cd/m²; default: by the picture")
     parser.add_argument(
         "--sky",
@@ -80,7 +81,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         raise usage("--layers needs an .exr among --out: a PNG has no layers")
 
     context = files.context_of(args)
-    scene = files.load_scene(context, args.scene, args.units)
+    scene = files.load_scene(context, args.scene, args.units, args.luminaires)
     return render_scene(args, console, scene, outputs, began)
 
 

@@ -14,7 +14,7 @@ from ..photometry import colour_temperature
 from . import fingerprint, plans
 from .check import Checked, Finding, percent
 from .drawing import Drawing
-from .luminaires import near_field
+from .luminaires import points
 from .measure import mean_with_bias
 from .units import shown
 
@@ -338,9 +338,6 @@ def _glare(project: Project, checked: Checked) -> list[Block]:
 
 
 def _basis(project: Project, checked: Checked) -> list[Block]:
-    heights = [
-        project.room.origin[1] + a.height for a in project.areas if a.kind in ("task", "surrounding", "background")
-    ]
     s = checked.settings
     said = [
         "Light is computed by path tracing of the whole scene with furniture, all reflections included; without "
@@ -355,10 +352,11 @@ def _basis(project: Project, checked: Checked) -> list[Block]:
         "interval includes.",
         "Rows of the standard are an excerpt: check them against its text. Ra is the manufacturer's statement.",
     ]
-    said += [
-        f"Luminaires shine as points with their measured distribution. {n}."
-        for n in near_field(project.luminaires, heights)
-    ]
+    said.append(
+        "Luminaires shine from the faces of their luminous openings, with their measured distribution; the faces "
+        "reflect no light."
+    )
+    said += points(project.luminaires)
     return [Paragraph(text) for text in said]
 
 

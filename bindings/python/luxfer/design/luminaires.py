@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..transfer import Transfer
     from .rooms import Room
 
-#: A luminaire may be taken for a point from a distance of this many times its size. [convention: five-times rule]
-FAR_FIELD = 5.0
 #: Steps in degrees of the made distribution of a flat panel. [convention]
 PANEL_STEP = 5
 
@@ -204,21 +202,14 @@ def from_transfer(
     return out
 
 
-def near_field(luminaires: Sequence[Luminaire], heights: Sequence[float]) -> list[str]:
-    """Sentences about luminaires that are too large for their distance to a horizontal area at one of these heights of
-    the scene to count as points."""
-    out = []
-    for product in {lamp.product.name: lamp.product for lamp in luminaires}.values():
-        largest = max(abs(v) for v in product.size)
-        lowest = min(lamp.position[1] for lamp in luminaires if lamp.product is product or lamp.product == product)
-        gap = min((lowest - h for h in heights if h < lowest), default=math.inf)
-        if gap < FAR_FIELD * largest:
-            out.append(
-                f"{product.name}: its opening of {largest:.2f} m counts as a point, which the five-times rule "
-                f"allows from "
-                f"{FAR_FIELD * largest:.2f} m on; the nearest area lies {gap:.2f} m below it"
-            )
-    return out
+def points(luminaires: Sequence[Luminaire]) -> list[str]:
+    """Sentences about luminaires whose photometry states no size, which therefore shine from points."""
+    names = {lamp.product.name: None for lamp in luminaires if sum(v != 0 for v in lamp.product.size) < 2}
+    return [
+        f"{name}: its photometry states no size of the opening, so it shines from a point, which is right at distances "
+        f"of at least five times its size."
+        for name in names
+    ]
 
 
 def _three(values: Sequence[float] | np.ndarray) -> tuple[float, float, float]:

@@ -41,9 +41,7 @@ def views(
         lit.context, picture, scale="logarithmic", maximum=float(np.percentile(luminance, 99.5)) or 1.0
     )
     return {
-        "The room with the luminaires of this design, initial luminance. Luminaires shine from points, so their "
-        "openings are not "
-        "in the picture.": _png(shown),
+        "The room with the luminaires of this design, initial luminance.": _png(shown),
         "Initial luminance in cd/m² in false colours.": _png(falsely),
     }
 

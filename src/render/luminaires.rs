@@ -1,0 +1,272 @@
+//! Luminaires that shine from the faces of their luminous openings.
+//!
+//! A face has the same luminance at all of its points: in direction ω it is `L(ω) = I(ω) / A(ω)`, with the measured
+//! intensity I and the projected area A of all faces. So the intensity at a distance is exactly the measured one, and
+//! the near field is that of a uniform surface. Faces reflect no light: the measured intensity contains all light that
+//! leaves them in a dark room.
+
+use super::facet;
+use super::light::bounds::Bounds;
+use super::measured::Measured;
+use crate::error::Result;
+use crate::image::{try_collect, try_with_capacity};
+use crate::photometry::faces::{Emits, Faces, Patch};
+use crate::photometry::opening::Opening;
+use crate::scene::{MAX_LIGHT, Mesh, PunctualLight, Scene, c90};
+use glam::{DVec3, Vec3};
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies before it.
+/// [convention]
+const GAP: f64 = 2e-4;
+/// The gap is at least this multiple of the offset of rays that start at the largest coordinates, so that rounding does
+/// not close it. [rounding]
+const GAP_OFFSETS: f64 = 8.0;
+/// The projected area counts as at least this share of its largest value along an axis of the luminaire: an opening
+/// without height that emits along its plane would have an infinite luminance there. [rounding]
+const EDGE_ON: f64 = 1e-6;
+/// Steps in degrees of C and γ in which luminances are compared to bound the intensities of patches. [convention]
+const STEP: [usize; 2] = [15, 5];
+/// A patch counts for light sampling with at least this share of the intensity of the brightest patch. [convention]
+const MIN_SHARE: f64 = 0.01;
+/// The cosine law describes a flat patch if its largest luminance, times its area, is at most this multiple of its
+/// largest intensity. [convention]
+const MAX_PEAK: f64 = 2.0;
+/// A flat patch that emits only up to this angle in degrees is bounded by a cone, not by the cosine law. [convention]
+const NARROW: f64 = 60.0;
+
+/// The faces of the luminaires of a scene.
+#[derive(Default)]
+pub struct Luminaires {
+    /// For each light of the scene, a mesh of its faces in scene coordinates, without triangles for lights that shine
+    /// from points. Empty if no light has faces.
+    pub meshes: Vec<Mesh>,
+    /// The luminaires with faces.
+    pub sources: Vec<Source>,
+}
+
+/// A luminaire with faces.
+pub struct Source {
+    /// Index of the luminaire among the lights of the scene.
+    pub light: usize,
+    pub emission: FaceEmission,
+    shape: Arc<Shape>,
+    /// Position of the luminaire in world coordinates.
+    position: DVec3,
+    /// Unit directions in the scene: of C = 0°, of C = 90° and of the luminaire's axis (γ = 0°).
+    frame: [DVec3; 3],
+}
+
+/// What luminaires of equal distribution have in common.
+struct Shape {
+    faces: Faces,
+    /// For each patch, bounds on its intensity; `None` for patches that do not emit.
+    profiles: Vec<Option<Profile>>,
+    /// Luminous flux in lumens of a luminaire of colour 1.
+    flux: f64,
+}
+
+/// Bounds on the intensity of a patch in candela, for a luminaire of colour 1.
+#[derive(Clone, Copy)]
+enum Profile {
+    /// The intensity is at most the value times the cosine to the normal of each triangle.
+    Cosine(f64),
+    /// The intensity of a flat patch is at most `peak` up to `angle` (radians) from its normal, and 0 beyond.
+    Cone { peak: f64, angle: f64 },
+}
+
+/// The luminance of the faces of a luminaire.
+pub struct FaceEmission {
+    measured: Measured,
+    opening: Opening,
+    least_area: f64,
+    colour: Vec3,
+}
+
+impl FaceEmission {
+    /// Returns the luminance per channel, in cd/m², of all faces that are seen from a direction.
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
+        let local = self.measured.local(direction);
+        let area = self.opening.projected_area(local).max(self.least_area);
+        (self.colour * (self.measured.candela(local) / area) as f32).min(Vec3::splat(MAX_LIGHT))
+    }
+
+    pub fn colour(&self) -> Vec3 {
+        self.colour
+    }
+}
+
+impl Luminaires {
+    /// Builds the faces of all luminaires. `centre` is the origin of world coordinates, and `material` the index of the
+    /// material of the faces.
+    pub fn new(scene: &Scene, centre: DVec3, material: usize) -> Result<Self> {
+        let mut this = Self::default();
+        let (mut shapes, mut known_gap): (Vec<Option<Arc<Shape>>>, _) = (Vec::new(), None);
+        for (light, kind) in scene.lights.iter().enumerate() {
+            let PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } = *kind else { continue };
+            let Some(opening) = kind.opening(&scene.distributions) else { continue };
+            let measured = Measured::new(axis, c0, scene.distributions[distribution].clone());
+            let least_area = opening.largest_area() * EDGE_ON;
+            let emission = FaceEmission { measured, opening, least_area, colour };
+            let position = position.as_dvec3() - centre;
+            let gap = *known_gap.get_or_insert_with(|| gap(scene, centre));
+            shapes.resize(scene.distributions.len(), None);
+            let shape = match &shapes[distribution] {
+                Some(shape) => shape.clone(),
+                None => Arc::new(Shape::new(scene, distribution, &opening, gap)),
+            };
+            shapes[distribution] = Some(shape.clone());
+            let frame = [c0, c90(axis, c0), axis].map(|v| v.as_dvec3());
+            this.sources.push(Source { light, emission, shape, position, frame });
+        }
+        if !this.sources.is_empty() {
+            this.meshes = try_with_capacity(scene.lights.len())?;
+            this.meshes.resize(scene.lights.len(), Mesh::default());
+            for source in &this.sources {
+                this.meshes[source.light] = source.mesh(centre, material)?;
+            }
+        }
+        Ok(this)
+    }
+}
+
+/// Returns the distance by which flat faces are moved outwards.
+fn gap(scene: &Scene, centre: DVec3) -> f64 {
+    let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+    let largest = points.map(|p| (p.as_dvec3() - centre).abs().max_element()).fold(0.0, f64::max);
+    GAP.max(largest.min(f64::from(facet::MAX_FREE_COORDINATE)) * GAP_OFFSETS * f64::from(facet::OFFSET))
+}
+
+impl Source {
+    fn in_world(&self, local: DVec3) -> DVec3 {
+        self.position + self.frame[0] * local.x + self.frame[1] * local.y + self.frame[2] * local.z
+    }
+
+    /// Returns the luminous flux in lumens, mean of the channels.
+    pub fn flux(&self) -> f64 {
+        self.shape.flux * f64::from(self.emission.colour.element_sum() / 3.0)
+    }
+
+    /// Returns the corners of the triangles in world coordinates. The axes of a luminaire are left-handed, so the
+    /// corners change their order: triangles are wound anticlockwise as seen from outside.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        let Faces { points, triangles, .. } = &self.shape.faces;
+        triangles.iter().map(|&[a, b, c]| [a, c, b].map(|i| self.in_world(points[i as usize]).as_vec3()))
+    }
+
+    /// Returns the mesh of the faces in scene coordinates.
+    fn mesh(&self, centre: DVec3, material: usize) -> Result<Mesh> {
+        let Faces { points, triangles, .. } = &self.shape.faces;
+        Ok(Mesh {
+            name: format!("light{}", self.light),
+            material,
+            positions: try_collect(points.iter().map(|p| (self.in_world(*p) + centre).as_vec3()))?,
+            triangles: try_collect(triangles.iter().map(|&[a, b, c]| [a, c, b]))?,
+            ..Mesh::default()
+        })
+    }
+
+    /// Returns the patches that emit: the range of their triangles, and their bounds for light sampling. A dark
+    /// luminaire has none. `strength` is the colour of the luminaire, mean of the channels.
+    pub fn patches(&self, strength: f32) -> impl Iterator<Item = (Range<usize>, Bounds)> {
+        let patches = self.shape.faces.patches.iter().zip(&self.shape.profiles);
+        patches.filter_map(move |(patch, profile)| {
+            let bounds = self.bounds(patch, (*profile)?, strength);
+            (bounds.intensity > 0.0).then_some((patch.triangles.clone(), bounds))
+        })
+    }
+
+    fn bounds(&self, patch: &Patch, profile: Profile, strength: f32) -> Bounds {
+        let Faces { points, triangles, .. } = &self.shape.faces;
+        let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area(t).length()).sum();
+        let of_triangle = |t: usize| {
+            let normal = self.shape.faces.area(t);
+            let corners = triangles[t].map(|i| self.in_world(points[i as usize]).as_vec3());
+            let direction = (self.in_world(normal) - self.position).normalize_or_zero().as_vec3();
+            let peak = match profile {
+                Profile::Cosine(peak) | Profile::Cone { peak, .. } => peak,
+            };
+            Bounds::of_surface(corners, direction, false, (peak * normal.length() / area) as f32 * strength)
+        };
+        let parts: Vec<Bounds> = patch.triangles.clone().map(of_triangle).collect();
+        let whole = Bounds::union(&parts);
+        match profile {
+            Profile::Cosine(_) => whole,
+            // The bounds have full intensity up to `cone_angle` - 90°.
+            Profile::Cone { angle, .. } => Bounds { cone_angle: (angle + FRAC_PI_2) as f32, ..whole },
+        }
+    }
+}
+
+impl Shape {
+    fn new(scene: &Scene, distribution: usize, opening: &Opening, gap: f64) -> Self {
+        let luminaire = &scene.distributions[distribution];
+        let (low, high) = (luminaire.narrowest(), luminaire.widest());
+        let is_dark = luminaire.candela.iter().all(|v| *v == 0.0);
+        let emits = Emits { forwards: !is_dark && low < 90.0, backwards: !is_dark && high > 90.0 };
+        let faces = Faces::new(opening, emits, gap);
+        // Compare the luminance in directions all around.
+        let measured = Measured::new(Vec3::Z, Vec3::X, luminaire.clone());
+        let least = opening.largest_area() * EDGE_ON;
+        let directions =
+            (0..=180).step_by(STEP[1]).flat_map(|gamma| (0..360).step_by(STEP[0]).map(move |c| [c, gamma]));
+        let samples: Vec<(DVec3, f64)> = directions
+            .map(|angles| {
+                let [c, gamma] = angles.map(|degrees| f64::from(degrees as u32).to_radians());
+                let local = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
+                (local, measured.candela(local) / opening.projected_area(local).max(least))
+            })
+            .collect();
+        let mut profiles: Vec<_> = faces
+            .patches
+            .iter()
+            .map(|patch| patch.is_luminous.then(|| Profile::new(&faces, patch, &samples, [low, high])))
+            .collect();
+        // Give patches that seem dark in the sampled directions a share of the samples.
+        let brightest = profiles.iter().flatten().map(Profile::peak).fold(0.0, f64::max);
+        profiles.iter_mut().flatten().for_each(|profile| profile.raise(brightest * MIN_SHARE));
+        Self { faces, profiles, flux: luminaire.flux() }
+    }
+}
+
+impl Profile {
+    /// `samples` are luminances by direction; no light goes to γ below or above the `limits` in degrees.
+    fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
+        let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area(t)).collect();
+        let area: f64 = normals.iter().map(|n| n.length()).sum();
+        let whole: DVec3 = normals.iter().sum();
+        let is_flat = whole.length() > area * (1.0 - 1e-9);
+        let (mut luminance, mut peak) = (0.0f64, 0.0f64);
+        for (direction, sample) in samples {
+            let seen: f64 = normals.iter().map(|n| n.dot(*direction).max(0.0)).sum();
+            if seen > 0.0 {
+                (luminance, peak) = (luminance.max(*sample), peak.max(sample * seen));
+            }
+        }
+        let widest = match whole.normalize_or_zero().z {
+            z if z > 1.0 - 1e-9 => limits[1].min(90.0),
+            z if z < 1e-9 - 1.0 => (180.0 - limits[0]).min(90.0),
+            _ => 90.0,
+        };
+        if is_flat && (luminance * area > MAX_PEAK * peak || widest < NARROW) {
+            // Widen the cone slightly, to allow for rounding.
+            Self::Cone { peak, angle: widest.to_radians() + 0.01 }
+        } else {
+            Self::Cosine(luminance * area)
+        }
+    }
+
+    fn peak(&self) -> f64 {
+        match *self {
+            Self::Cosine(peak) | Self::Cone { peak, .. } => peak,
+        }
+    }
+
+    fn raise(&mut self, least: f64) {
+        match self {
+            Self::Cosine(peak) | Self::Cone { peak, .. } => *peak = peak.max(least),
+        }
+    }
+}
