@@ -792,7 +792,8 @@ typedef struct luxfer_emission_report {
     double regularity;
     /**
      * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
-     * many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts.
+     * many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they are
+     * completed to rectangles if clean_lamps is 1.
      */
     uint32_t exemplar_lamps;
     /**

@@ -1592,7 +1592,8 @@ class EmissionReport:
     lattice."""
     exemplar_lamps: int
     """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
-    cuts many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts."""
+    cuts many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they
+    are completed to rectangles if clean_lamps is 1."""
     sampling_error: float
     """Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
     ceiling: the root mean square difference of the statistics between the whole texture and parts of it that
