@@ -56,7 +56,7 @@ mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
-pub use memory::{Agreement, Memory};
+pub use memory::Memory;
 pub use output::{IntermediateResult, Output, Publish};
 pub use params::{Finder, Input, Mode, Params};
 pub use pilot::{PilotRuns, Prediction};
