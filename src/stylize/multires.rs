@@ -8,7 +8,7 @@ use super::level::{Level, Problem};
 use super::memory::Memory;
 use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
-use super::picture::{DecodeInput, decode, decode_into, paint, restore_known};
+use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, whole};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
 use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
@@ -222,6 +222,7 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     let report = Report {
         levels,
         usage,
+        whole: whole(&picture, &field, problem, job)?,
         guide_error: guide_error(&field, problem, job)?,
         sources: sources(&field, problem, setup.halved, job)?,
         halvings: setup.halved,

@@ -38,6 +38,9 @@ pub struct Report {
     /// Reports of the levels, coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
+    /// Of the pixels painted by a vote, the share that are whole exemplar pixels, in `[0, 1]`; the others are blends of
+    /// exemplar pixels.
+    pub whole: f64,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
     /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
     /// 17).
