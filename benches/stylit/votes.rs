@@ -35,12 +35,16 @@ const ASIDE: [(&str, &str); 2] = [
     ("photographed", "stylit/dcharata_extra_styles/source_style_4.png"),
 ];
 
-const VOTES: [(&str, VoteMode); 3] =
-    [("most", VoteMode::Majority), ("weighted", VoteMode::Weighted), ("adaptive", VoteMode::Adaptive)];
+const VOTES: [(&str, VoteMode); 4] = [
+    ("most", VoteMode::Majority),
+    ("plain", VoteMode::Plain),
+    ("weighted", VoteMode::Weighted),
+    ("adaptive", VoteMode::Adaptive),
+];
 
 /// Size of the pictures of the demonstration scenes, and paths per pixel of their guides.
 const SIZE: [usize; 2] = [600, 456];
-const SAMPLES: u32 = 256;
+const SAMPLES: u32 = 32;
 
 struct Set {
     name: &'static str,
@@ -60,7 +64,7 @@ struct Truth {
 /// Measures the votes on the drawn styles and on the sets with a truth.
 pub fn compare(pair: &Pair, pool: &Pool) {
     let drawn = DRAWN.iter().filter_map(|style| drawn(pair, style));
-    let sets = drawn.chain([rendered(pair)]).chain(demonstrated(pool));
+    let sets = drawn.chain([rendered(pair)]).chain(std::iter::once_with(|| demonstrated(pool)).flatten());
     measure(sets, pool, "votes");
 }
 

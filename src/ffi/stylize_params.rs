@@ -57,7 +57,7 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
 /// each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
-/// A blend of LUXFER_STYLIZE_VOTE_WEIGHTED and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
+/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
 /// picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
 /// transitions in smooth paint, and edges as sharp as those of the artwork. luxfer_stylize_report.whole is the share of
 /// whole pixels.

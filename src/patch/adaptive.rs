@@ -142,7 +142,7 @@ impl Votes {
             let mean = &mut votes.mean[range.clone()];
             let mut is_agreed = true;
             let offset = common_offset(ballot.field, ballot.patch, at).or_else(|| {
-                ballot.collect(&mut candidates, at, true);
+                ballot.collect(&mut candidates, at, false);
                 if candidates.len() > 1 {
                     (votes.is_contested, is_agreed) = (true, false);
                     ballot.mean(&candidates, at, mean);
@@ -252,12 +252,13 @@ mod tests {
         out
     }
 
-    /// Power of fine detail: mean square of the Laplacian.
+    /// Power of fine detail near the line where the pieces meet: mean square of the Laplacian.
     fn detail(image: &Image) -> f64 {
         let at = |x: usize, y: usize| f64::from(image.pixel(x, y)[0]);
+        let is_near = |x: usize, y: usize| (3 * x as isize - 2 * y as isize - 66).abs() < 12;
         let inside = (1..image.height - 1).flat_map(|y| (1..image.width - 1).map(move |x| (x, y)));
         let laplacian = |(x, y)| at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1) - 4.0 * at(x, y);
-        let squares: Vec<f64> = inside.map(|p| laplacian(p).powi(2)).collect();
+        let squares: Vec<f64> = inside.filter(|(x, y)| is_near(*x, *y)).map(|p| laplacian(p).powi(2)).collect();
         squares.iter().sum::<f64>() / squares.len() as f64
     }
 
@@ -312,10 +313,10 @@ mod tests {
         let noise: Vec<f32> = (0..140 * 60).map(|_| 0.3 + 0.4 * rng.next_f32()).collect();
         let style = Image::from_fn(140, 60, |x, y| [noise[y * 140 + x]]).unwrap();
         let fine = |mode| detail(&two_pieces(&style, mode));
-        let [mean, adaptive] = [VoteMode::Weighted, VoteMode::Adaptive].map(fine);
-        let exemplar = detail(&style);
-        assert!(mean < 0.93 * exemplar, "{mean} {exemplar}");
-        assert!((adaptive / exemplar - 1.0).abs() < 0.04, "{adaptive} {exemplar}");
+        // In noise, the choice has no steps: its detail is that of the exemplar.
+        let [choice, mean, adaptive] = [VoteMode::Majority, VoteMode::Weighted, VoteMode::Adaptive].map(fine);
+        assert!(mean < 0.75 * choice, "{mean} {choice}");
+        assert!((adaptive / choice - 1.0).abs() < 0.1, "{adaptive} {choice}");
         // Pixels on which all patches agree stay whole.
         let image = two_pieces(&style, VoteMode::Adaptive);
         assert_eq!(image.pixel(3, 3), style.pixel(3, 23));

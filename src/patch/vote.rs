@@ -22,7 +22,7 @@ pub enum VoteMode {
     /// The pixel placed most often (ties: the one closest to the mean). Where two pieces of the exemplar meet, each
     /// stays intact up to the seam.
     Majority,
-    /// A blend of `Weighted` and `Majority` that has as much fine detail as the exemplar: see the module `adaptive`.
+    /// A blend of `Plain` and `Majority` that has as much fine detail as the exemplar: see the module `adaptive`.
     Adaptive,
 }
 
