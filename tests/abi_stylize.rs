@@ -124,6 +124,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         let all = report(stylize);
         assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
+        assert!(all.whole > 0.0 && all.whole <= 1.0);
 
         // Read the rounds of the only level, and the passes of its first round, whose coverage rises.
         let (mut width, mut rounds) = (0, 0);

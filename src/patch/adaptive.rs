@@ -315,7 +315,8 @@ mod tests {
         let fine = |mode| detail(&two_pieces(&style, mode));
         // In noise, the choice has no steps: its detail is that of the exemplar.
         let [choice, mean, adaptive] = [VoteMode::Majority, VoteMode::Weighted, VoteMode::Adaptive].map(fine);
-        assert!(mean < 0.75 * choice, "{mean} {choice}");
+        // Blends of two independent pixels have 0.6 of the detail on average, on about half of these pixels.
+        assert!(mean < 0.85 * choice, "{mean} {choice}");
         assert!((adaptive / choice - 1.0).abs() < 0.1, "{adaptive} {choice}");
         // Pixels on which all patches agree stay whole.
         let image = two_pieces(&style, VoteMode::Adaptive);
