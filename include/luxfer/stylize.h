@@ -528,9 +528,8 @@ typedef struct luxfer_stylize_report {
     /** Number of target pixels with a guide value that is not finite and was taken as 0. */
     uint64_t broken_target;
     /**
-     * Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. It says what
-     * the final_vote LUXFER_STYLIZE_VOTE_ADAPTIVE has chosen: 1 for rough paint, less for smooth paint. An update
-     * does not change it.
+     * Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
+     * LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
      */
     double whole;
 } luxfer_stylize_report;

@@ -2289,9 +2289,8 @@ class StylizeReport:
     broken_target: int
     """Number of target pixels with a guide value that is not finite and was taken as 0."""
     whole: float
-    """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. It
-    says what the final_vote StylizeVote.ADAPTIVE has chosen: 1 for rough paint, less for smooth paint. An
-    update does not change it."""
+    """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
+    StylizeVote.ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it."""
 
 
 @dataclass(frozen=True)
