@@ -1,5 +1,6 @@
 //! Benchmark of stylised sequences: six frames of the still life, in which the camera moves, the vase slides, or the
-//! lamp moves. Arguments select sequences (`camera`, `object`, `light`).
+//! lamp moves. Arguments select sequences (`camera`, `object`, `light`); `most` paints with the final vote
+//! `VoteMode::Majority` instead of the default.
 //!
 //! For each sequence, the bench prints these figures, and writes film strips to `out/bench/`:
 //!
@@ -23,6 +24,7 @@ use luxfer::image::Image;
 use luxfer::image::colour::{linear_to_srgb, luminance};
 use luxfer::image::io::encode_png;
 use luxfer::job::Monitor;
+use luxfer::patch::VoteMode;
 use luxfer::render::World;
 use luxfer::scene::Scene;
 use luxfer::stylize::{self, Guide, Input, Output, Params, Range};
@@ -40,6 +42,7 @@ struct Bench {
     pool: Pool,
     exemplar: Guides,
     artwork: Image,
+    params: Params,
 }
 
 /// The frames of a sequence: guides, and the true motion since the frame before.
@@ -50,11 +53,17 @@ struct Frames {
 }
 
 fn main() {
-    let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let mut chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let count = chosen.len();
+    chosen.retain(|a| a != "most");
+    let mut params = Params::default();
+    if chosen.len() < count {
+        params.final_vote = VoteMode::Majority;
+    }
     let pool = Pool::new(2).expect("two threads");
     let exemplar = rendered(&pool, demo::sphere_on_table().expect("a scene"));
     let artwork = artwork::draw(artwork::Style::Paint, &exemplar).expect("an artwork");
-    let bench = Bench { pool, exemplar, artwork };
+    let bench = Bench { pool, exemplar, artwork, params };
     for (name, change) in SEQUENCES.iter().filter(|s| chosen.is_empty() || chosen.iter().any(|c| c == s.0)) {
         bench.measure(&Frames::new(name, *change, &bench.pool));
     }
@@ -146,7 +155,7 @@ impl Bench {
             motion: before.map(|b| b.1),
             ..Input::new(&self.artwork, &guides)
         };
-        let params = Params { seed, ..Params::default() };
+        let params = Params { seed, ..self.params.clone() };
         let monitor = Monitor::default();
         self.pool.run(|| stylize::run(&input, &params, monitor.job())).expect("valid input")
     }

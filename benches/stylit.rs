@@ -1,7 +1,8 @@
 //! Benchmark of stylisation on the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides).
 //! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
 //! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`rivals`); other methods in the same
-//! engine (`methods`); quality against time for every setting (`knobs`).
+//! engine (`methods`); quality against time for every setting (`knobs`); the final votes on drawn styles and on pairs
+//! with a known truth (`votes`), and on sets that were set aside (`aside`).
 //!
 //! Pictures are scored by two judges: `harness/judge.rs`, and `tools/stylit_judge.py` beside the test data, which sees
 //! images only. The script runs with `LUXFER_PYTHON`, `target/peers/judge` or `python3`, if it has numpy, scipy and
@@ -12,7 +13,11 @@
 //! otherwise on fewer, so no picture reaches 45 %. `guide` has a standard error of 13 and consists mostly of similar
 //! patches under different light: see `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
+#[path = "stylit/fidelity.rs"]
+mod fidelity;
 mod harness;
+#[path = "stylit/votes.rs"]
+mod votes;
 
 use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, scenes, time};
@@ -61,6 +66,12 @@ fn main() {
     }
     if wants("rivals") {
         rivals(&pair, &pool);
+    }
+    if wants("votes") {
+        votes::compare(&pair, &pool);
+    }
+    if wants("aside") {
+        votes::compare_aside(&pair, &pool);
     }
     // Try methods and settings at half size, where a run takes a quarter of the time.
     let half = Pair::load(2).expect("it was there before");
@@ -514,7 +525,7 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
     knob("patch", &[3, 5, 7], |p, v| p.patch = v);
-    let votes = [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority];
+    let votes = [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority, VoteMode::Adaptive];
     let last = |&final_vote: &VoteMode| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
     knobs.push(("last vote", votes.iter().map(last).collect()));
 

@@ -124,6 +124,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         let all = report(stylize);
         assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
+        assert!(all.whole > 0.0 && all.whole <= 1.0);
 
         // Read the rounds of the only level, and the passes of its first round, whose coverage rises.
         let (mut width, mut rounds) = (0, 0);
@@ -145,16 +146,27 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round, size_of_val(&round)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
-        // Every pixel is copied from the artwork, and the image `sources` states from which place.
+        // The whole pixels are copied from the artwork, and the image `sources` states from which place.
         let art = artwork(context, 60, 44);
         let (_, _, paint) = pixels(art);
         let images = [get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE), get(stylize, LUXFER_STYLIZE_IMAGE_SOURCES)];
         let [(w, h, picture), (_, _, sources)] = images.map(pixels);
         assert_eq!((w, h), (70, 50));
-        let palette: std::collections::HashSet<[u32; 3]> =
-            paint.chunks_exact(3).map(|p| [0, 1, 2].map(|c| (p[c] * 1e4).round() as u32)).collect();
-        assert!(picture.chunks_exact(3).all(|p| palette.contains(&[0, 1, 2].map(|c| (p[c] * 1e4).round() as u32))));
+        let colour = |p: &[f32]| [0, 1, 2].map(|c| (p[c] * 1e4).round() as u32);
+        let palette: std::collections::HashSet<[u32; 3]> = paint.chunks_exact(3).map(colour).collect();
+        let copied = |picture: &[f32]| {
+            let count = picture.chunks_exact(3).filter(|p| palette.contains(&colour(p))).count();
+            count as f64 / (picture.len() / 3) as f64
+        };
+        assert!(copied(&picture) >= all.whole, "{} {}", copied(&picture), all.whole);
         assert!(sources.chunks_exact(2).all(|s| s[0] > 0.0 && s[0] < 60.0 && s[1] > 0.0 && s[1] < 44.0));
+
+        // The vote for most makes no blends.
+        let most = luxfer_stylize_params { final_vote: LUXFER_STYLIZE_VOTE_MOST, ..params() };
+        assert_eq!(run(stylize, &most), LUXFER_OK);
+        let unblended = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
+        assert_eq!((report(stylize).whole, copied(&pixels(unblended).2)), (1.0, 1.0));
+        assert_eq!(luxfer_release(unblended.cast()), LUXFER_OK);
 
         // The preview preset makes a picture of half the size.
         let mut preview = params();
@@ -344,7 +356,8 @@ fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
             luxfer_stylize_params { levels: 17, ..good },
             luxfer_stylize_params { iterations: 0, ..good },
             luxfer_stylize_params { coverage: 1.5, ..good },
-            luxfer_stylize_params { vote: 4, ..good },
+            luxfer_stylize_params { vote: 5, ..good },
+            luxfer_stylize_params { final_vote: 5, ..good },
             luxfer_stylize_params { preview: 2, ..good },
             luxfer_stylize_params { keep_for_update: 7, ..good },
             luxfer_stylize_params { occurrence: f32::NAN, ..good },

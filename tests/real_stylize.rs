@@ -96,4 +96,5 @@ fn the_exemplars_own_guides_give_the_artwork_back() {
     let output = stylise(&pair, &Params::default());
     assert!(output.image == pair.artwork);
     assert_eq!(output.report.usage.max_uses, 1);
+    assert_eq!(output.report.whole, 1.0);
 }

@@ -112,8 +112,8 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
  * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
  * equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
  * correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
- * luxfer_get_warnings of guides has a warning. What is seen in a mirror or through a pane moves like the mirror or
- * pane.
+ * luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane itself,
+ * not of the objects that are seen in it.
  * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
@@ -192,7 +192,7 @@ typedef struct luxfer_stylize_params {
      * LUXFER_STYLIZE_VOTE_WEIGHTED.
      */
     luxfer_stylize_vote vote;
-    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST. */
+    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_ADAPTIVE. */
     luxfer_stylize_vote final_vote;
     /**
      * 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
@@ -303,6 +303,14 @@ typedef int32_t luxfer_stylize_preset;
  * each stays whole up to the seam.
  */
 #define LUXFER_STYLIZE_VOTE_MOST 3
+
+/**
+ * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
+ * picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
+ * transitions in smooth paint, and edges as sharp as those of the artwork. luxfer_stylize_report.whole is the share of
+ * whole pixels.
+ */
+#define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 
 /**
  * Fills *params with a preset: LUXFER_STYLIZE_FULL, LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or
@@ -519,6 +527,11 @@ typedef struct luxfer_stylize_report {
     uint64_t broken_source;
     /** Number of target pixels with a guide value that is not finite and was taken as 0. */
     uint64_t broken_target;
+    /**
+     * Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
+     * LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
+     */
+    double whole;
 } luxfer_stylize_report;
 
 /** One round (EM iteration) on a level: matching, then voting. */

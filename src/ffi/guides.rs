@@ -207,8 +207,8 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 /// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
 /// equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
 /// correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
-/// luxfer_get_warnings of guides has a warning. What is seen in a mirror or through a pane moves like the mirror or
-/// pane.
+/// luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane itself,
+/// not of the objects that are seen in it.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

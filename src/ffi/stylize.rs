@@ -350,11 +350,8 @@ pub unsafe extern "C" fn luxfer_stylize_start(
                 } else {
                     (None, stylize::run_and_publish(&input, &params, &publish, job)?)
                 };
-                let agreement = output.report.agreement;
-                let [compared, wrong] =
-                    deviation.map_or([agreement.compared, agreement.wrong], |d| [d.compared, d.wrong]);
-                let place = deviation.map_or(agreement.place, |d| d.place);
-                let warnings = stylize::motion_disagrees(compared, wrong, place).into_iter().collect();
+                let comparison = deviation.unwrap_or(output.report.agreement);
+                let warnings = stylize::motion_disagrees(comparison).into_iter().collect();
                 Ok(Stylised::finished(output, surfaces, warnings, updater))
             })
         })

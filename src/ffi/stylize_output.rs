@@ -26,6 +26,8 @@ pub(super) struct Finished {
     /// Root mean square of the guide error.
     pub guide_rms: f64,
     pub usage: Usage,
+    /// Share of whole exemplar pixels.
+    pub whole: f64,
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
@@ -70,6 +72,7 @@ impl Stylised {
                 sources: Arc::new(report.sources),
                 guide_rms,
                 usage: report.usage,
+                whole: report.whole,
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
                 warnings,

@@ -57,6 +57,11 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
 /// each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
+/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
+/// picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
+/// transitions in smooth paint, and edges as sharp as those of the artwork. luxfer_stylize_report.whole is the share of
+/// whole pixels.
+pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
 /// stated here belong to LUXFER_STYLIZE_FULL.
@@ -100,7 +105,7 @@ pub struct luxfer_stylize_params {
     /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
     /// LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
-    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST.
+    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_ADAPTIVE.
     pub final_vote: luxfer_stylize_vote,
     /// 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
     /// default: full resolution.
@@ -134,7 +139,8 @@ versioned!(luxfer_stylize_params, [104], { Self::of(&stylize::Params::default())
 
 const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::KdTree];
-const VOTES: [VoteMode; 4] = [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority];
+const VOTES: [VoteMode; 5] =
+    [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority, VoteMode::Adaptive];
 
 /// Returns the setting at `index`, an integer of the C interface, in `values`; an error if `index` is out of range.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {

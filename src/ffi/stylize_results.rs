@@ -61,11 +61,14 @@ pub struct luxfer_stylize_report {
     pub broken_source: u64,
     /// Number of target pixels with a guide value that is not finite and was taken as 0.
     pub broken_target: u64,
+    /// Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
+    /// LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
+    pub whole: f64,
 }
 
-versioned!(luxfer_stylize_report, [72], {
+versioned!(luxfer_stylize_report, [72, 80], {
     Self {
-        struct_size: 72,
+        struct_size: 80,
         is_complete: 0,
         levels: 0,
         halvings: 0,
@@ -77,6 +80,7 @@ versioned!(luxfer_stylize_report, [72], {
         guide_error: 0.0,
         broken_source: 0,
         broken_target: 0,
+        whole: 0.0,
     }
 });
 
@@ -92,6 +96,7 @@ impl luxfer_stylize_report {
             guide_error: finished.guide_rms,
             broken_source: finished.broken[0] as u64,
             broken_target: finished.broken[1] as u64,
+            whole: finished.whole,
             ..Self::defaults()
         }
     }

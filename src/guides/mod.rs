@@ -23,7 +23,7 @@ mod warnings;
 #[cfg(test)]
 mod tests;
 
-pub use motion::{Deviation, Motion, Unmatched, deviation, motion};
+pub use motion::{Motion, Unmatched, deviation, motion};
 pub use surfaces::{Point, Shape, Surfaces};
 
 use crate::error::{Result, check_range};

@@ -8,7 +8,7 @@
 use super::surfaces::{Point, Surfaces};
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::image::{Image, try_vec};
+use crate::image::{Comparison, Image, neighbourhood, try_vec};
 use crate::job::Job;
 use crate::scene::Camera;
 use glam::Vec3;
@@ -59,66 +59,39 @@ pub fn motion(now: &Surfaces, before: &Surfaces, job: Job) -> Result<Motion> {
     Ok(Motion { image, unmatched: frames.unmatched()? })
 }
 
-/// The deviation of a given motion from the true motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Deviation {
-    /// Number of pixels whose motion was compared, and number of those whose motion is wrong.
-    pub compared: usize,
-    pub wrong: usize,
-    /// The pixel with the largest error, if any is wrong.
-    pub place: Option<[usize; 2]>,
-}
-
 /// A motion is wrong if it differs by more than this number of pixels from the true motion of the pixel and of its
 /// neighbours. At silhouettes, renderers choose either surface. [convention]
 const MAX_ERROR: f32 = 1.0;
 
 /// Compares a given motion with the true motion of the surfaces, where both are known.
-pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> Result<Deviation> {
+pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> Result<Comparison> {
     if given.channels != 2 {
         return Err(Error::argument(format!("motion has {} channels; it must have 2", given.channels)));
     }
     let exact = motion(now, before, job)?.image;
     exact.check_same_size("the guides", given, "the motion")?;
-    let (width, height) = (exact.width, exact.height);
-    let rows = exec::map(height, job, |y| {
-        let (mut found, mut largest) = (Deviation::default(), MAX_ERROR);
+    let size = [exact.width, exact.height];
+    Comparison::of(size, MAX_ERROR, job, |x, y| {
         // Leave out pixels that the previous frame does not show: no true motion is known there.
-        for x in (0..width).filter(|&x| exact.pixel(x, y)[0].is_finite()) {
-            let around = (y.saturating_sub(1)..(y + 2).min(height))
-                .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));
-            let given = given.pixel(x, y);
-            let error = |(x, y)| {
-                let exact = exact.pixel(x, y);
-                (given[0] - exact[0]).hypot(given[1] - exact[1])
-            };
-            // The minimum ignores NaN. It is infinite if the given motion is NaN.
-            let least = around.map(error).fold(f32::INFINITY, f32::min);
-            found.compared += usize::from(least.is_finite());
-            if least.is_finite() && least > MAX_ERROR {
-                found.wrong += 1;
-                if least > largest {
-                    (found.place, largest) = (Some([x, y]), least);
-                }
-            }
+        if !exact.pixel(x, y)[0].is_finite() {
+            return None;
         }
-        (found, largest)
-    })?;
-    let mut all = (Deviation::default(), MAX_ERROR);
-    for (found, largest) in rows {
-        all.0.compared += found.compared;
-        all.0.wrong += found.wrong;
-        if largest > all.1 {
-            (all.0.place, all.1) = (found.place, largest);
-        }
-    }
-    Ok(all.0)
+        let given = given.pixel(x, y);
+        let error = |(x, y)| {
+            let exact = exact.pixel(x, y);
+            (given[0] - exact[0]).hypot(given[1] - exact[1])
+        };
+        // The minimum ignores NaN. It is infinite if the given motion is NaN.
+        let least = neighbourhood([x, y], size).map(error).fold(f32::INFINITY, f32::min);
+        least.is_finite().then_some(least)
+    })
 }
 
-/// A frame, its previous frame, and the meshes of the previous frame that correspond to those of the frame.
+/// Two consecutive frames of a sequence.
 struct Frames<'a> {
     now: &'a Surfaces,
     before: &'a Surfaces,
+    /// For each mesh of `now`, the index of the same mesh in `before`; `None` if `before` lacks it.
     counterparts: Vec<Option<u32>>,
 }
 

@@ -6,6 +6,7 @@
 
 mod buffer;
 pub mod colour;
+mod comparison;
 mod containers;
 pub mod file_colour;
 mod files;
@@ -30,5 +31,6 @@ mod working;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{make_room, no_memory};
+pub use comparison::{Comparison, neighbourhood};
 pub use memory::check as check_memory;
 pub use planes::{deinterleave, deinterleave_of, interleave};

@@ -18,6 +18,8 @@
 //!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 
+mod adaptive;
+mod ballot;
 mod domain;
 mod field;
 mod kd_tree;
@@ -38,7 +40,7 @@ pub use position::{NONE, pack, unpack};
 pub use pyramid::{halve, halve_mask, level_count, level_size};
 pub use quantised::{QuantisedImage, Quantiser};
 pub use search::{Search, Sweep};
-pub use vote::{VoteMode, origin, vote};
+pub use vote::{VoteMode, origin, vote, whole_share};
 
 /// Maximum side in pixels of an image in which patches are matched: a coordinate fits into half of a `u32`.
 pub const MAX_SIDE: usize = 32_768;

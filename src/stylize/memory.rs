@@ -4,7 +4,7 @@
 use super::guides::Channels;
 use crate::error::Result;
 use crate::exec;
-use crate::image::{Image, try_collect, try_vec};
+use crate::image::{Comparison, Image, neighbourhood, try_collect, try_vec};
 use crate::job::Job;
 
 /// Number of steps into which the range `[0, 1]` of a guide is divided: values are stored in 8 bits. [rounding]
@@ -23,19 +23,9 @@ pub struct Memory {
     light: Vec<u8>,
     /// Weight of each channel of light; the weights sum to 1, or to 0 if there is no light.
     weights: Vec<f32>,
-    /// For each pixel, the channels of the other guides, as multiples of 1/255; empty if there are none.
+    /// The guides of data (`Range::Data`), such as normals: for each pixel, the value of each channel, as a multiple of
+    /// 1/255. Empty without such guides.
     data: Vec<u8>,
-}
-
-/// How the motion of a frame agrees with the guides of both frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Agreement {
-    /// Number of pixels whose motion was compared, and number of those that show another surface at the end of their
-    /// motion.
-    pub compared: usize,
-    pub wrong: usize,
-    /// One of the wrong pixels: the one with the largest difference.
-    pub place: Option<[usize; 2]>,
 }
 
 impl Memory {
@@ -87,47 +77,27 @@ impl Memory {
         self.light[patch * n..(patch + 1) * n].copy_from_slice(&other.light[other_patch * n..(other_patch + 1) * n]);
     }
 
-    /// Compares the data of each pixel with the data of the previous frame at the end of the pixel's motion. A pixel
-    /// counts as wrong if its data differ from those of all pixels within one pixel of this place.
-    pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Agreement> {
+    /// Follows the motion of each pixel into the previous frame, and compares the data of the pixel with the data
+    /// there. The error of a pixel is the smallest difference to a pixel of the previous frame that lies within one
+    /// pixel of the end of the motion.
+    pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Comparison> {
         let [width, height] = self.size;
-        let channels = self.data.len() / (width * height);
+        let channels = self.data.len().checked_div(width * height).unwrap_or(0);
         if channels == 0 || [motion.width, motion.height] != self.size {
-            return Ok(Agreement::default());
+            return Ok(Comparison::default());
         }
         let at = |x: usize, y: usize| (y * width + x) * channels..(y * width + x + 1) * channels;
-        let row = |y: usize| {
-            let (mut found, mut largest) = (Agreement::default(), DATA_TOLERANCE);
-            for x in 0..width {
-                let step = motion.pixel(x, y);
-                let (u, v) = ((x as f32 + 0.5 + step[0]).floor(), (y as f32 + 0.5 + step[1]).floor());
-                if !(u >= 0.0 && v >= 0.0 && u < width as f32 && v < height as f32) {
-                    continue;
-                }
-                let (u, v) = (u as usize, v as usize);
-                let own = &self.data[at(x, y)];
-                let around = (v.saturating_sub(1)..(v + 2).min(height))
-                    .flat_map(|v| (u.saturating_sub(1)..(u + 2).min(width)).map(move |u| (u, v)));
-                let differences = around.map(|(u, v)| difference(own, &before.data[at(u, v)]));
-                let least = differences.fold(f32::INFINITY, f32::min);
-                found.compared += 1;
-                found.wrong += usize::from(least > DATA_TOLERANCE);
-                if least > largest {
-                    (found.place, largest) = (Some([x, y]), least);
-                }
+        Comparison::of(self.size, DATA_TOLERANCE, job, |x, y| {
+            let step = motion.pixel(x, y);
+            let (u, v) = ((x as f32 + 0.5 + step[0]).floor(), (y as f32 + 0.5 + step[1]).floor());
+            if !(u >= 0.0 && v >= 0.0 && u < width as f32 && v < height as f32) {
+                return None;
             }
-            (found, largest)
-        };
-        let rows = exec::map(height, job, row)?;
-        let mut all = (Agreement::default(), DATA_TOLERANCE);
-        for (found, largest) in rows {
-            all.0.compared += found.compared;
-            all.0.wrong += found.wrong;
-            if largest > all.1 {
-                (all.0.place, all.1) = (found.place, largest);
-            }
-        }
-        Ok(all.0)
+            let own = &self.data[at(x, y)];
+            let around = neighbourhood([u as usize, v as usize], self.size);
+            let differences = around.map(|(u, v)| difference(own, &before.data[at(u, v)]));
+            Some(differences.fold(f32::INFINITY, f32::min))
+        })
     }
 }
 

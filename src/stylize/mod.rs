@@ -14,6 +14,9 @@
 //! Hertzmann's algorithm for comparison. `report` measures the result, and `pilot` predicts time and energy from runs
 //! at low resolution.
 //!
+//! The final picture is a blend of the mean and of whole exemplar pixels, with as much fine detail as the exemplar
+//! (`VoteMode::Adaptive`, not in the paper).
+//!
 //! Colours are compared and averaged as encoded for display (sRGB), which approximates how paint is perceived.
 //!
 //! The defaults depart from the paper where measurements favour it. `Params::paper` holds the paper's settings;
@@ -56,7 +59,7 @@ mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
-pub use memory::{Agreement, Memory};
+pub use memory::Memory;
 pub use output::{IntermediateResult, Output, Publish};
 pub use params::{Finder, Input, Mode, Params};
 pub use pilot::{PilotRuns, Prediction};

@@ -5,14 +5,14 @@ use super::animate::{Moved, keep, moved};
 use super::finder::Nearest;
 use super::greedy;
 use super::level::{Level, Problem};
-use super::memory::{Agreement, Memory};
+use super::memory::Memory;
 use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
-use super::picture::{DecodeInput, decode, decode_into, paint, restore_known};
+use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, whole};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
 use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
-use crate::image::{Image, try_collect};
+use crate::image::{Comparison, Image, try_collect};
 use crate::job::Job;
 use crate::patch::{Field, NONE, Occurrence, Search, Sweep, VoteMode, level_count, unpack};
 use crate::rng::hash;
@@ -222,6 +222,7 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     let report = Report {
         levels,
         usage,
+        whole: whole(&picture, &field, problem, job)?,
         guide_error: guide_error(&field, problem, job)?,
         sources: sources(&field, problem, setup.halved, job)?,
         halvings: setup.halved,
@@ -235,10 +236,10 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
 
 /// Compares the motion, if any, with the guides of this frame and the previous one. A preview compares nothing: at half
 /// the resolution, motion and guides are averages over silhouettes.
-fn agreement(memory: &Memory, input: &Input, halved: usize, job: Job) -> Result<Agreement> {
+fn agreement(memory: &Memory, input: &Input, halved: usize, job: Job) -> Result<Comparison> {
     match (input.motion, input.memory) {
         (Some(motion), Some(before)) if halved == 0 && memory.is_like(before) => memory.agreement(before, motion, job),
-        _ => Ok(Agreement::default()),
+        _ => Ok(Comparison::default()),
     }
 }
 

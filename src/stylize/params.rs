@@ -152,7 +152,7 @@ impl Default for Params {
             settle: 2,
             seam: 0.2,
             vote: VoteMode::Weighted,
-            final_vote: VoteMode::Majority,
+            final_vote: VoteMode::Adaptive,
             coherence: 1.0,
             match_appearance: 0.0,
             occurrence: 0.1,

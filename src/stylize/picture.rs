@@ -6,7 +6,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
-use crate::patch::{Field, VoteMode, origin, vote};
+use crate::patch::{Field, VoteMode, origin, vote, whole_share};
 
 /// Paints the pixels for which `wanted` holds by a vote of the patches that cover them, and restores the known pixels.
 pub(super) fn paint(
@@ -20,6 +20,12 @@ pub(super) fn paint(
     vote(picture, field, &problem.style, problem.patch, mode, job, wanted)?;
     restore_known(picture, problem);
     Ok(())
+}
+
+/// Returns the share of whole exemplar pixels in a picture: see `Report::whole`.
+pub(super) fn whole(picture: &Image, field: &Field, problem: &Problem, job: Job) -> Result<f64> {
+    let is_made = |i: usize| problem.target_mask.as_ref().is_none_or(|mask| mask[i]);
+    whole_share(picture, field, &problem.style, problem.patch, job, is_made)
 }
 
 /// Restores the known pixels outside the target mask.

@@ -1,11 +1,10 @@
 //! Measures a run: energy, coverage, patch usage, guide error.
 
 use super::level::{Level, Problem};
-use super::memory::Agreement;
 use super::retrieve::PassReport;
 use crate::error::Result;
 use crate::exec;
-use crate::image::{Image, try_vec};
+use crate::image::{Comparison, Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, unpack};
 
@@ -39,6 +38,9 @@ pub struct Report {
     /// Reports of the levels, coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
+    /// Of the pixels painted by a vote, the share that are whole exemplar pixels, in `[0, 1]`; the others are blends of
+    /// exemplar pixels.
+    pub whole: f64,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
     /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
     /// 17).
@@ -54,8 +56,9 @@ pub struct Report {
     /// guide pixels set to 0 for the same reason (`broken_target`).
     pub broken_source: usize,
     pub broken_target: usize,
-    /// How the motion agrees with the guides of both frames; zeros without motion.
-    pub agreement: Agreement,
+    /// How the motion agrees with the guides of both frames. A pixel is wrong if its motion leads to another surface in
+    /// the previous frame. Zeros without motion.
+    pub agreement: Comparison,
 }
 
 impl Usage {

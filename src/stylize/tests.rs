@@ -66,6 +66,7 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
         assert!(output.image == art);
+        assert_eq!(output.report.whole, 1.0);
     }
 }
 
@@ -88,6 +89,25 @@ fn results_do_not_depend_on_the_number_of_threads() {
         assert!(one.image == three.image && one.field == three.field, "{params:?}");
         assert_eq!(one.report.levels, three.report.levels);
     }
+}
+
+#[test]
+fn rough_paint_stays_whole_and_smooth_paint_is_blended() {
+    let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(101, 83, 60.0, 45.0, 30.0));
+    // The light as paint without grain, with a slow change of colour from left to right.
+    let smooth = Image::from_fn(90, 70, |x, y| {
+        let light = a.pixel(x, y)[0];
+        [0.6 * light, 0.2 + 0.5 * light, 0.3 + 0.3 * x as f32 / 90.0]
+    })
+    .unwrap();
+    let whole = |art: &Image, final_vote| {
+        let params = Params { final_vote, ..Params::default() };
+        stylise(&input(art, &[guide(&a, &b)]), &params).unwrap().report.whole
+    };
+    let rough = artwork(&a);
+    let [kept, blended] = [&rough, &smooth].map(|art| whole(art, VoteMode::Adaptive));
+    assert!(kept > blended + 0.2 && kept < 1.0, "{kept} {blended}");
+    assert_eq!(whole(&smooth, VoteMode::Majority), 1.0);
 }
 
 /// The wash-out that §2 of StyLit describes: where guides are equal, smooth patches are close to all others, so

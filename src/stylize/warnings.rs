@@ -1,5 +1,6 @@
 //! Warnings about the motion of a sequence.
 
+use crate::image::Comparison;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
@@ -7,9 +8,9 @@ use glam::DVec2;
 /// has next to none, apart from errors of a pixel, which do not count. [judged on 1 scene]
 pub const MAX_DISAGREEMENT: f64 = 0.001;
 
-/// Warns if the motion disagrees with the guides: if of `compared` pixels, `wrong` ones lead to another surface.
-/// `place` is one of them.
-pub fn motion_disagrees(compared: usize, wrong: usize, place: Option<[usize; 2]>) -> Option<Warning> {
+/// Warns if the motion disagrees with the guides: if it leads too many pixels to another surface.
+pub fn motion_disagrees(comparison: Comparison) -> Option<Warning> {
+    let Comparison { compared, wrong, place } = comparison;
     let share = wrong as f64 / compared.max(1) as f64;
     let message = || {
         let share = percent(share);

@@ -491,9 +491,13 @@ class Stylisation(Case):
         stylize = luxfer.Stylize(context(), artwork)
         stylize.add_guides(self.ball, self.still, "materials")
         stylize.run()
+        self.assertGreater(stylize.report.whole, 0.1)
+        self.assertLess(stylize.report.whole, 1)
+        stylize.run(final_vote="most")
+        self.assertEqual(stylize.report.whole, 1)
         picture, sources = stylize.image().numpy(), stylize.image("sources").numpy().astype(int)
         self.assertEqual(picture.shape, (48, 64, 3))
-        # The final vote copies pixels, so every colour of the picture occurs in the artwork.
+        # This final vote copies pixels, so every colour of the picture occurs in the artwork.
         colours, copied = artwork.numpy().reshape(-1, 3), picture.reshape(-1, 3)
         strangest = max(np.abs(colours - colour).max(1).min() for colour in copied)
         self.assertLess(strangest, 1e-6)

@@ -276,6 +276,7 @@ LUXFER_STYLIZE_VOTE_PLAIN = 0
 LUXFER_STYLIZE_VOTE_WEIGHTED = 1
 LUXFER_STYLIZE_VOTE_NEAREST = 2
 LUXFER_STYLIZE_VOTE_MOST = 3
+LUXFER_STYLIZE_VOTE_ADAPTIVE = 4
 LUXFER_GUIDES_WITH_NORMALS = 1
 LUXFER_GUIDES_WITH_EDGES = 2
 LUXFER_GUIDES_WITH_MATERIALS = 4
@@ -1392,6 +1393,7 @@ class luxfer_stylize_report(Structure):
         ("guide_error", c_double),
         ("broken_source", c_uint64),
         ("broken_target", c_uint64),
+        ("whole", c_double),
     ]
     result = types.StylizeReport
 

@@ -1,6 +1,7 @@
 //! Frames of sequences: patches astride silhouettes, light that changes, and motion that is wrong.
 
 use super::*;
+use crate::image::Comparison;
 use crate::patch::NONE;
 
 /// The frame in which the ball has its centre at `x`: the guide of light, and a guide that marks the ball.
@@ -118,9 +119,9 @@ fn wrong_motion_is_noticed_by_guides_of_data() {
         });
         assert_eq!(right.wrong, 0, "{right:?}");
         assert_eq!(right.place, None);
-        assert!(motion_disagrees(right.compared, right.wrong, right.place).is_none());
+        assert!(motion_disagrees(right).is_none());
         if preview {
-            assert_eq!(right, Agreement::default());
+            assert_eq!(right, Comparison::default());
             continue;
         }
         // Without its motion, the ball's front edge was background before, and the places behind it were ball.
@@ -128,7 +129,7 @@ fn wrong_motion_is_noticed_by_guides_of_data() {
         assert!(wrong.compared == 90 * 70 && wrong.wrong > 0, "{wrong:?}");
         let [x, y] = wrong.place.unwrap();
         assert_ne!(before.1.pixel(x, y), now.1.pixel(x, y));
-        let warning = motion_disagrees(wrong.compared, wrong.wrong, wrong.place).unwrap();
+        let warning = motion_disagrees(wrong).unwrap();
         assert!(warning.severity == wrong.wrong as f64 / wrong.compared as f64 && warning.place.is_some());
     }
 }
