@@ -10,7 +10,7 @@ use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::instances::{self, Rules};
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::rim_colour::RimColours;
-use crate::emission::lamps::{lattice_fill, luminaires, sharpest, stretched};
+use crate::emission::lamps::{cut, lattice_fill, luminaires, sharpest, stretched};
 use crate::emission::lattice::law::Law;
 use crate::emission::lattice::{border_sites, centring, extent};
 use crate::emission::params::{Input, Params, working_side};
@@ -94,7 +94,10 @@ impl Layer {
         let has_pieces = inside.is_none() && params.whole_lamps;
         let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
         let designs = match has_pieces && params.clean_lamps && input.photo.is_some() {
-            true => Designs::find(&exemplar, &outlines(&exemplar, input, job.part(0.9, 0.92))?),
+            true => {
+                let outlines = outlines(&exemplar, input, job.part(0.9, 0.92))?;
+                cut::complete(Designs::find(&exemplar, &outlines), &exemplar)
+            }
             false => Designs::default(),
         };
         let instances = match has_pieces {

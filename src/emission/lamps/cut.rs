@@ -4,19 +4,31 @@
 //! triangle or a wedge where the border runs obliquely, and nobody builds such lamps. So the lamp becomes its bounding
 //! rectangle, unless the photo shows a place in this rectangle that is not light.
 
-use super::design::{Design, Fitted, Shape};
+use super::design::{Design, Designs, Fitted, Shape};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use crate::emission::exemplar::foreshortening::LocalMap;
+use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
 /// Of the pixels of the rectangle that the photo shows, at least this share must be light. The quarter of a disc that
 /// an oblique border cuts off at its corner fills its bounding rectangle to 0.79. [convention]
 const MIN_LIT: f64 = 0.92;
 
+/// Adds the designs of the lamps that the border cuts.
+pub fn complete(mut designs: Designs, exemplar: &Exemplar) -> Designs {
+    for component in (0..exemplar.roles.len()).filter(|&k| exemplar.roles[k] == Role::Partial) {
+        if let Some((design, fitted)) = rectangle(exemplar, component, designs.kinds.len()) {
+            designs.kinds.push(design);
+            designs.lamps[component] = Some(fitted);
+        }
+    }
+    designs
+}
+
 /// The design of a lamp that the border cuts, and its fit as the only lamp of `kind`. `None` if the visible part shows
 /// that the lamp is not a rectangle along the axes.
-pub fn complete(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Design, Fitted)> {
+fn rectangle(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Design, Fitted)> {
     let lamp = &exemplar.components.list[component];
     if (lamp.area as f64) < MIN_LIT * shown_in_box(exemplar, lamp) as f64 {
         return None;

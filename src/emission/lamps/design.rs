@@ -11,11 +11,8 @@
 //!
 //! The resulting outline is exact at any resolution. Lamps of another shape keep their own outline.
 //!
-//! Lamps that the border of the photo cuts become whole rectangles ([`super::cut`]).
-//!
 //! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
-use super::cut;
 use super::luminaire::Luminaire;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::foreshortening::LocalMap;
@@ -114,8 +111,8 @@ pub struct Designs {
 }
 
 impl Designs {
-    /// Finds the kinds among the whole lamps, and the design of each kind and of each lamp that the border cuts.
-    /// `outlines` holds the outline of every component.
+    /// Finds the kinds among the whole lamps, and the design of each kind. `outlines` holds the outline of every
+    /// component.
     pub fn find(exemplar: &Exemplar, outlines: &[Luminaire]) -> Self {
         let mut designs = Self { kinds: Vec::new(), lamps: vec![None; outlines.len()] };
         for kind in MeasuredLamp::kinds(&exemplar.measured_lamps(Role::is_whole)) {
@@ -123,12 +120,6 @@ impl Designs {
             if let Some((design, fitted)) = fit(&members, designs.kinds.len()) {
                 designs.kinds.push(design);
                 fitted.into_iter().for_each(|(component, fitted)| designs.lamps[component] = Some(fitted));
-            }
-        }
-        for component in (0..outlines.len()).filter(|&k| exemplar.roles[k] == Role::Partial) {
-            if let Some((design, fitted)) = cut::complete(exemplar, component, designs.kinds.len()) {
-                designs.kinds.push(design);
-                designs.lamps[component] = Some(fitted);
             }
         }
         designs
