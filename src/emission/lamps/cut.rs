@@ -1,7 +1,7 @@
 //! Completes the lamps that the border of the photo cuts.
 //!
 //! The texture shows a cut lamp only if the photo shows no whole lamp like it. The visible part of a rectangle is a
-//! triangle or a wedge where the border runs obliquely, and nobody builds such lamps. So the lamp becomes its bounding
+//! triangle or a wedge where the border runs obliquely, and few lamps have such shapes. So the lamp becomes its bounding
 //! rectangle, unless the photo shows a place in this rectangle that is not light.
 
 use super::design::{Design, Designs, Fitted, Shape};
@@ -11,8 +11,8 @@ use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Of the pixels of the rectangle that the photo shows, at least this share must be light. The quarter of a disc that
-/// an oblique border cuts off at its corner fills its bounding rectangle to 0.79. [convention]
+/// Of the pixels of the rectangle that the photo shows, at least this share must be light. A half or a quarter of a disc
+/// fills the rectangle around it to 0.79. [convention]
 const MIN_LIT: f64 = 0.92;
 
 /// Adds the designs of the lamps that the border cuts.
