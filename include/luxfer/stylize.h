@@ -307,8 +307,8 @@ typedef int32_t luxfer_stylize_preset;
 /**
  * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
  * picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
- * transitions in smooth paint, and edges as sharp as those of the artwork. luxfer_stylize_report.whole is the share of
- * whole pixels.
+ * transitions in smooth paint, and edges as sharp as in the artwork. luxfer_stylize_report.whole is the share of whole
+ * pixels.
  */
 #define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 

@@ -59,8 +59,8 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 /// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
 /// picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
-/// transitions in smooth paint, and edges as sharp as those of the artwork. luxfer_stylize_report.whole is the share of
-/// whole pixels.
+/// transitions in smooth paint, and edges as sharp as in the artwork. luxfer_stylize_report.whole is the share of whole
+/// pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults

@@ -1,9 +1,9 @@
 //! The luminous faces of an opening as triangles, for renderings: rectangles, discs, and the sides of boxes, cylinders
 //! and ellipsoids.
 //!
-//! Curved faces consist of flat ones, whose size is chosen such that projected areas agree with those of
-//! [`Opening::projected_area`]: exactly for flat faces, and on average over all directions for curved ones. Points are
-//! in the coordinates of the luminaire, as in [`super::opening`].
+//! Polyhedra approximate curved faces. Their size is chosen so that their mean projected area over all directions equals
+//! the mean of [`Opening::projected_area`]; flat faces have exactly that area in every direction. Points are in the
+//! coordinates of the luminaire, as in [`super::opening`].
 
 use super::opening::Opening;
 use glam::DVec3;
@@ -271,7 +271,7 @@ mod tests {
         })
     }
 
-    /// The projected areas are those of the closed forms: exactly for flat faces, on average for curved ones. The least
+    /// Flat faces have exactly the projected areas of the closed forms, and curved faces have them on average. The least
     /// width of a polygon of 64 sides is (π / 64)² / 3 = 8.03e-4 smaller than that of a circle of equal mean width.
     #[test]
     fn faces_have_the_projected_areas_of_their_opening() {

@@ -757,8 +757,8 @@ class StylizeVote(IntEnum):
     ADAPTIVE = 4
     """A blend of StylizeVote.PLAIN and StylizeVote.MOST, in the proportion that gives each place of the picture
     as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
-    transitions in smooth paint, and edges as sharp as those of the artwork. StylizeReport.whole is the share of
-    whole pixels."""
+    transitions in smooth paint, and edges as sharp as in the artwork. StylizeReport.whole is the share of whole
+    pixels."""
 
 
 class StylizePreset(IntEnum):

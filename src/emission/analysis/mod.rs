@@ -236,8 +236,8 @@ impl Analysis {
         Ok(proposals)
     }
 
-    /// Chooses the lattice with the highest score if `mode` is [`LawMode::Lattice`], or else the row with the highest
-    /// score. Errors: `Degenerate` if there is none.
+    /// Chooses the law with the highest score: among the rows if `mode` is [`LawMode::Row`], else among the lattices.
+    /// Errors: `Degenerate` if none was proposed.
     fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Law| match mode {
             LawMode::Row => matches!(c, Law::Row(_)),

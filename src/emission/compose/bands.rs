@@ -33,17 +33,13 @@ impl Bands {
 /// The texels `[x0, y0, x1, y1)` that a lamp may touch; `None` if it lies outside the texture.
 fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
     let shift = layer.rounded(instance.shift);
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let (first, last) = match layer.designs.of(instance.component) {
         Some((design, fitted)) => (fitted.centre - design.half_box(), fitted.centre + design.half_box()),
-        None => {
-            let lamp = &layer.exemplar.components.list[instance.component];
-            (point(lamp.min), point(lamp.max) + 1.0)
-        }
+        None => layer.exemplar.components.list[instance.component].bounds(),
     };
     let low = ((first + shift) / layer.scale).floor() - 1.0;
     let high = ((last + shift) / layer.scale).ceil() + 1.0;
     let low = low.max(DVec2::ZERO);
-    let high = high.min(point([width, height]));
+    let high = high.min(DVec2::new(width as f64, height as f64));
     (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
 }

@@ -114,10 +114,9 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
 
 /// The bounding box of a lamp in texels.
 fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
-    let lamp = &layer.exemplar.components.list[instance.component];
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-    let low = (point(lamp.min) + instance.shift) / layer.scale;
-    Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
+    let (low, high) = layer.exemplar.components.list[instance.component].bounds();
+    let to_texels = |corner: DVec2| (corner + instance.shift) / layer.scale;
+    Lamp { low: to_texels(low), high: to_texels(high), draw: 0.0 }
 }
 
 /// A hash grid that finds lamps by the square that holds their centre. The squares are as long as the longest lamp, so

@@ -20,6 +20,13 @@ impl Component {
     pub fn size(&self) -> [usize; 2] {
         [self.max[0] - self.min[0] + 1, self.max[1] - self.min[1] + 1]
     }
+
+    /// The corners of the bounding box with the smallest and the largest coordinates. A pixel reaches from its indices
+    /// to the next ones.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let corner = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);
+        (corner(self.min), corner(self.max) + 1.0)
+    }
 }
 
 pub struct Components {

@@ -8,7 +8,7 @@
 //!
 //! Fragments count as light in the pattern, but the texture does not show them.
 
-use super::components::{Component, Components};
+use super::components::Components;
 use super::foreshortening::LocalMap;
 use super::measured_lamp::MeasuredLamp;
 use super::roles::Role;
@@ -60,13 +60,9 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
 
 /// Whether another component's bounding box lies within `reach` of the bounding box of component `own`.
 fn has_neighbour(components: &Components, own: usize, reach: f64) -> bool {
-    let corners = |c: &Component| {
-        let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-        (point(c.min), point(c.max) + 1.0)
-    };
-    let (low, high) = corners(&components.list[own]);
+    let (low, high) = components.list[own].bounds();
     components.list.iter().enumerate().filter(|(k, _)| *k != own).any(|(_, other)| {
-        let (from, to) = corners(other);
+        let (from, to) = other.bounds();
         (from - high).max(low - to).max(DVec2::ZERO).length() <= reach
     })
 }

@@ -33,8 +33,7 @@ fn rectangle(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Desi
     if (lamp.area as f64) < MIN_LIT * shown_in_box(exemplar, lamp) as f64 {
         return None;
     }
-    let corner = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);
-    let (low, high) = (corner(lamp.min), corner(lamp.max) + 1.0);
+    let (low, high) = lamp.bounds();
     let (centre, size) = ((low + high) / 2.0, high - low);
     let photo_pixel = LocalMap::new(exemplar.to_photo, lamp.centre).photo_pixel();
     Some((Design { shape: Shape::Rectangle, size, axis: DVec2::X }, Fitted { kind, centre, size, photo_pixel }))

@@ -120,12 +120,12 @@ impl PatchLamps<'_> {
 /// whose origin lies in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
         // Find the range of shifts for which the lamp lies at least partly in the texture, then the lattice vectors in
         // this range.
-        let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
+        let (first, last) = lamp.bounds();
+        let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-last, size - first) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
             // In a tileable texture, a cell that begins exactly on the far border equals the cell that begins on the

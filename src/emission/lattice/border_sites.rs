@@ -25,10 +25,9 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, width, height)?;
 
     let size = DVec2::new(width as f64, height as f64);
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut dark: Vec<[usize; 4]> = Vec::new();
     for lamp in one_of_each_place(exemplar, inverse) {
-        let (low, high) = (point(lamp.min), point(lamp.max) + 1.0);
+        let (low, high) = lamp.bounds();
         let (mut whole, mut filled) = (0u32, 0u32);
         let mut cut = Vec::new();
         for [i, j] in cells::between(inverse, -high, size - low) {

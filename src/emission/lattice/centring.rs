@@ -18,8 +18,8 @@ struct Bounds {
 
 impl Bounds {
     fn of(lamp: &Component) -> Self {
-        let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-        Self { low: point(lamp.min), high: point(lamp.max) + 1.0 }
+        let (low, high) = lamp.bounds();
+        Self { low, high }
     }
 
     fn centre(self) -> DVec2 {

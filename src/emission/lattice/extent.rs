@@ -3,6 +3,7 @@
 use super::law::Law;
 use crate::emission::agreement::statistics;
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::components::Component;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
@@ -66,10 +67,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
         return extent;
     }
     // Keep a gap between the lamps of adjacent repetitions.
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-    let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
-        (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
-    });
+    let (low, high) = bounds_of(exemplar.pieces().map(|(_, lamp)| lamp));
     let least = if low.x <= high.x { (high - low + CELL_GAP) / extent } else { DVec2::ZERO };
     if is_framed && least.max_element() <= 1.0 {
         return DVec2::splat((share * extent.element_product()).sqrt()).max(least * extent);
@@ -78,14 +76,19 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
+/// The bounding box of lamps; the first corner exceeds the second if there are none.
+fn bounds_of<'a>(lamps: impl Iterator<Item = &'a Component>) -> (DVec2, DVec2) {
+    lamps
+        .map(Component::bounds)
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (first, last)| (low.min(first), high.max(last)))
+}
+
 /// Whether the lamps lie close together and far from the border, so that they are one object, such as a chandelier.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
     let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
     let farthest = statistics::nearest_distances(&centres).into_iter().fold(0.0, f64::max);
-    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-    let low = lamps.iter().map(|lamp| point(lamp.min)).fold(DVec2::INFINITY, DVec2::min);
-    let high = lamps.iter().map(|lamp| point(lamp.max) + 1.0).fold(DVec2::NEG_INFINITY, DVec2::max);
+    let (low, high) = bounds_of(lamps.iter());
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 

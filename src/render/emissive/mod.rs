@@ -43,7 +43,7 @@ pub struct Emitters {
     /// All pieces. Piece indices count the undivided triangles (`uniform`) first, then the emissive tiles.
     uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
-    /// The faces of luminaires; the indices of their pieces follow those of the tiles.
+    /// The patches of luminaires' faces. Their piece indices follow the indices of the tiles.
     patches: Patches,
     /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
@@ -57,6 +57,14 @@ enum Division {
     Tiled { tiling: u32, first: usize },
     /// The triangle belongs to a patch of a luminaire, given by its index.
     Patch(u32),
+}
+
+/// A piece: what light sampling chooses.
+enum Piece<'a> {
+    Uniform(&'a UniformTriangle),
+    Tile(&'a Tile),
+    /// A patch of a luminaire, by its index.
+    Patch(usize),
 }
 
 /// A triangle that is not divided, but sampled uniformly as one piece.
@@ -155,8 +163,8 @@ impl Emitters {
         Ok(())
     }
 
-    /// Adds the faces of luminaires. `meshes` is the number of the scene's own meshes, which those of its lights
-    /// follow; `first` holds the id of each mesh's first triangle. Appends the bounds of every patch to `bounds`.
+    /// Adds the faces of luminaires. `meshes` is the number of the scene's own meshes; the meshes of its lights follow
+    /// them. `first` holds the id of each mesh's first triangle. Appends the bounds of every patch to `bounds`.
     pub fn add_luminaires(
         &mut self,
         sources: Vec<Source>,
@@ -193,15 +201,22 @@ impl Emitters {
     /// Returns the index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
-        let Some(tile) = piece.checked_sub(self.uniform.len()) else {
-            return Some((self.uniform[piece].emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v))));
-        };
-        let Some(tile) = self.tiles.get(tile) else {
-            return Some(self.patches.sample(tile - self.tiles.len(), (u, v)));
-        };
-        let emitter = tile.emitter as usize;
-        let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
-        Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
+        match self.piece(piece) {
+            Piece::Uniform(triangle) => Some((triangle.emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v)))),
+            Piece::Tile(tile) => {
+                let emitter = tile.emitter as usize;
+                let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
+                Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
+            }
+            Piece::Patch(patch) => Some(self.patches.sample(patch, (u, v))),
+        }
+    }
+
+    /// Returns a piece by its index.
+    #[inline]
+    fn piece(&self, index: usize) -> Piece<'_> {
+        let Some(tile) = index.checked_sub(self.uniform.len()) else { return Piece::Uniform(&self.uniform[index]) };
+        self.tiles.get(tile).map_or_else(|| Piece::Patch(tile - self.tiles.len()), Piece::Tile)
     }
 
     /// Returns the emission of an emitter at a point in a unit direction, in cd/m² per channel, and the texture
@@ -233,10 +248,10 @@ impl Emitters {
 
     /// Returns the index of the first emitter of a piece.
     pub fn emitter_of(&self, piece: usize) -> usize {
-        match piece.checked_sub(self.uniform.len()) {
-            Some(tile) if tile < self.tiles.len() => self.tiles[tile].emitter as usize,
-            Some(patch) => self.patches.first_emitter(patch - self.tiles.len()),
-            None => self.uniform[piece].emitter as usize,
+        match self.piece(piece) {
+            Piece::Uniform(triangle) => triangle.emitter as usize,
+            Piece::Tile(tile) => tile.emitter as usize,
+            Piece::Patch(patch) => self.patches.first_emitter(patch),
         }
     }
 
@@ -255,10 +270,10 @@ impl Emitters {
     /// include the probability of choosing the piece. `emitter` is the emitter at the point, and `brightness` the
     /// emission there, mean of the channels.
     pub fn area_pdf(&self, piece: usize, emitter: usize, brightness: f32) -> f32 {
-        match piece.checked_sub(self.uniform.len()) {
-            Some(tile) if tile < self.tiles.len() => brightness / self.tiles[tile].intensity,
-            Some(patch) => self.patches.share(patch - self.tiles.len()) / self.emitters[emitter].area,
-            None => 1.0 / self.emitters[self.uniform[piece].emitter as usize].area,
+        match self.piece(piece) {
+            Piece::Uniform(triangle) => 1.0 / self.emitters[triangle.emitter as usize].area,
+            Piece::Tile(tile) => brightness / tile.intensity,
+            Piece::Patch(patch) => self.patches.share(patch) / self.emitters[emitter].area,
         }
     }
 }
