@@ -10,6 +10,8 @@
 //! - `made` runs 200 generated photos of the evaluation seeds; `made:40` runs the first 40 of them and prints no
 //!   figures. Generated photos are kept under `target/photolab`, so that each is made only once.
 //! - `tune` runs generated photos of the tuning seeds: `tune`, `tune:COUNT`, `tune:SEED`, `tune:FIRST:COUNT`.
+//! - `masks` or `masks:COUNT` finds only the masks of the photos of `real` and of 24 (`COUNT`) tuning photos, with and
+//!   without strokes, and compares them with the truth.
 //! - `contact` makes a contact sheet of 40 tuning photos with their strokes, and one of their true lamps.
 //! - `perfect` tests the judges: perfect answers must be judged right, spoilt answers must not. It also shows how well
 //!   the library does with perfect masks.
@@ -72,6 +74,8 @@ mod judge;
 mod letters;
 #[path = "photos/made.rs"]
 mod made;
+#[path = "photos/mask_check.rs"]
+mod mask_check;
 #[path = "photos/masks.rs"]
 mod masks;
 #[path = "photos/outcome.rs"]
@@ -115,6 +119,7 @@ fn main() {
             "held" => real::held(),
             "made" => generated::evaluate(words),
             "tune" => generated::tune(words),
+            "masks" => mask_check::mask_check(words),
             "contact" => generated::contact(words),
             "perfect" => perfect::perfect(words),
             "export" => export::export(words),

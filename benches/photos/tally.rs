@@ -158,6 +158,34 @@ impl Tally {
         );
     }
 
+    /// Prints how well the masks of each run agree with the truth, and the means over all runs.
+    pub fn masks(&self, section: &str) {
+        let mut table = Table::new(["photo", "precise %", "found %", "lights IoU", "plane IoU", "CPU s"]);
+        for line in &self.lines {
+            let j = &line.judgement;
+            let shares = [j.precision, j.found, j.lights_iou, j.plane_iou].map(percent);
+            table.row([line.name.clone()].into_iter().chain(shares).chain([format!("{:.2}", line.cpu_seconds)]));
+        }
+        table.print(&format!("Masks: {section}"));
+        let mean = |of: fn(&Judgement) -> Option<f64>| {
+            let values = self.values(|line| of(&line.judgement));
+            100.0 * values.iter().sum::<f64>() / values.len() as f64
+        };
+        let shares: [fn(&Judgement) -> Option<f64>; 4] =
+            [|j| j.precision, |j| j.found, |j| j.lights_iou, |j| j.plane_iou];
+        let [precision, found, lights, plane] = shares.map(mean);
+        let good = |line: &Line| {
+            let (precision, found) = (line.judgement.precision?, line.judgement.found?);
+            (precision > 0.8 && found >= 0.9).then_some(())
+        };
+        let good = self.values(good).len();
+        println!(
+            "# {section}: precise {precision:.1} %, found {found:.1} %, IoU of lights {lights:.1} %, of the plane \
+             {plane:.1} %; {good} of {} photos precise and complete",
+            self.lines.len()
+        );
+    }
+
     /// Prints figures on the estimated distance of the camera from the plane. Only textures that are not wrong count,
     /// because a wrong lamp says nothing about the distance.
     pub fn distances(&self, section: &str) {
