@@ -19,6 +19,9 @@ const MAX_DISTORTION: f64 = 0.02;
 /// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
 /// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
+/// An angle that deviates by more than this, in radians, is no property of a room: one of the two vanishing points is
+/// wrong, and says nothing about the other axes. [judged on 28 photos]
+const MAX_PLAUSIBLE_SKEW: f64 = 0.35;
 /// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
 /// [convention]
 const SIGNIFICANT: f64 = 3.0;
@@ -81,6 +84,7 @@ impl View {
 
     fn not_square(&self) -> Option<Warning> {
         let significant = self.squareness.iter().flatten().filter(|s| s.angle.abs() > SIGNIFICANT * s.error);
+        let significant = significant.filter(|s| s.angle.abs() <= MAX_PLAUSIBLE_SKEW);
         let skew = significant.map(|s| s.angle.abs()).fold(0.0, f64::max);
         Warning::above(
             Code::NotSquare,

@@ -79,6 +79,8 @@ fn uncertain_axes_bent_lines_and_oblique_walls_raise_warnings() {
     assert_eq!(codes(&skewed(-0.1, 0.01).warnings()), [Code::NotSquare]);
     assert_eq!(codes(&skewed(0.02, 0.001).warnings()), []);
     assert_eq!(codes(&skewed(0.1, 0.05).warnings()), []);
+    // No room is 30 degrees off right angles: one of the two vanishing points is wrong.
+    assert_eq!(codes(&skewed(0.52, 0.01).warnings()), []);
 }
 
 /// An unwarped plane of 100 x 80 pixels with the given homography to the photo.
