@@ -211,13 +211,12 @@ impl Analysis {
             parts.extend(Correlated::new(exemplar, |i| limit.contains(centre(i)), job.part(0.0, 0.0)).ok());
         }
         let mut proposals = Vec::new();
-        let extent = extent::of(exemplar);
         for correlated in std::iter::once(whole).chain(&parts) {
             let (law, regularity) = lattice::find_law(exemplar, correlated, self.min_regularity);
             proposals.push(Proposal { law, regularity, score: 0.0 });
             let shifts = lattice::shifts(exemplar, correlated, MIN_CORRELATION, MIN_RELATIVE_CORRELATION, MAX_SHIFTS);
             for (n, &(a, goodness)) in shifts.iter().enumerate() {
-                let row = lattice::row(exemplar, a, extent);
+                let row = lattice::row(exemplar, a);
                 proposals.push(Proposal { law: row, regularity: goodness, score: 0.0 });
                 for &(b, other) in shifts[n + 1..].iter().filter(|(b, _)| !lattice::is_parallel(a, *b)) {
                     let law = Law::Lattice(basis::refine(exemplar, [a, b], 2));
@@ -230,7 +229,7 @@ impl Analysis {
             let periods = neighbours::periods(lamps);
             let lattices = neighbours::lattices(&periods).into_iter();
             let lattices = lattices.map(|basis| Law::Lattice(basis::refine(exemplar, basis, 2)));
-            let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period, extent));
+            let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period));
             proposals.extend(lattices.chain(rows).map(|law| Proposal { law, regularity: 0.0, score: 0.0 }));
         }
         Ok(proposals)

@@ -27,20 +27,38 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
 /// Width and height of the box around the panes of a luminous ceiling and one of the widest bars between them, in
 /// unwarped pixels.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
-    let along = |axis: usize| {
-        let mut spans: Vec<[usize; 2]> =
-            exemplar.components.list.iter().map(|pane| [pane.min[axis], pane.max[axis] + 1]).collect();
-        spans.sort_unstable();
-        let first = spans.first().map_or(0, |span| span[0]);
-        let (end, widest) = spans
-            .iter()
-            .fold((first, 0), |(end, widest), span| (end.max(span[1]), widest.max(span[0].saturating_sub(end))));
-        [(end - first) as f64, widest as f64]
-    };
-    let [[width, column], [height, row]] = [along(0), along(1)];
+    let [[width, column], [height, row]] = [spread(exemplar, 0, usize::max), spread(exemplar, 1, usize::max)];
     // A single column or row of panes shows the bars of the other direction only.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
     DVec2::new(width + bar(column, row), height + bar(row, column))
+}
+
+/// The length of the box around all lamps along an axis, and one of the gaps that no lamp reaches into along this axis,
+/// chosen by `choose` from two gaps at a time; 0 without a gap.
+fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
+    let mut spans: Vec<[usize; 2]> =
+        exemplar.components.list.iter().map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
+    spans.sort_unstable();
+    let first = spans.first().map_or(0, |span| span[0]);
+    let (mut end, mut gap) = (first, None);
+    for span in spans {
+        if span[0] > end {
+            gap = Some(gap.map_or(span[0] - end, |gap| choose(gap, span[0] - end)));
+        }
+        end = end.max(span[1]);
+    }
+    [(end - first) as f64, gap.unwrap_or(0) as f64]
+}
+
+/// Width and height with which the rows of an exemplar repeat. Along an axis on which the lamps lie in several groups,
+/// it is at least so long that the gap between the groups of adjacent repetitions equals the shortest gap in the photo.
+/// Otherwise, groups at both borders of the photo would come in pairs.
+pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
+    let spaced = |axis: usize| {
+        let [length, gap] = spread(exemplar, axis, usize::min);
+        if gap > 0.0 { length + gap } else { 0.0 }
+    };
+    of(exemplar).max(DVec2::new(spaced(0), spaced(1)))
 }
 
 /// The law by which the exemplar repeats as a whole.

@@ -49,15 +49,18 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
     let extent = extent::of(exemplar);
     match periods[..] {
         [(a, _), (b, _)] => (Law::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
-        [(a, _)] => (row(exemplar, a, extent), goodness),
+        [(a, _)] => (row(exemplar, a), goodness),
         _ => (without_period(exemplar, extent), 0.0),
     }
 }
 
 /// A row with the given period; the extent of the exemplar serves as its second period. Panes of a luminous ceiling that
-/// fill the exemplar continue beyond a bar.
-pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Law {
-    let extent = if exemplar.is_luminous_ceiling() { extent.max(extent::of_panes(exemplar)) } else { extent };
+/// fill the exemplar continue beyond a bar, and rows at both borders continue at the distance of neighbouring rows.
+pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
+    let extent = match exemplar.is_luminous_ceiling() {
+        true => extent::of(exemplar).max(extent::of_panes(exemplar)),
+        false => extent::of_rows(exemplar),
+    };
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
     Law::Row([basis::straight(period), across])

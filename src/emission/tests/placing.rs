@@ -192,3 +192,19 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
     let is_whole = |l: &&Luminaire| [800.0, 1440.0].iter().any(|area| (l.area / area - 1.0).abs() < 0.01);
     assert!(inner(&result.luminaires, 250, 960).iter().all(is_whole));
 }
+
+#[test]
+fn rows_at_both_borders_go_on_at_their_own_distance() {
+    // Two columns of lamps, 76 pixels apart, at the left and the right border: copies beside each other would put the
+    // right column of one copy 4 pixels beside the left column of the next.
+    let exemplar = Design::new(100, 480, |x, y| {
+        ((2.0..12.0).contains(&x) || (88.0..98.0).contains(&x)) && (y - 7.0).rem_euclid(50.0) < 30.0
+    });
+    let result = exemplar.run(&Params { width: 600, height: 480, ..Params::default() }).unwrap();
+    let Law::Row([period, across]) = result.law else { panic!("{:?}", result.law) };
+    assert!((period - DVec2::Y * 50.0).length() < 0.5 && across == DVec2::X * 172.0, "{period} {across}");
+    let mut columns: Vec<f64> = inner(&result.luminaires, 600, 480).iter().map(|l| l.centre.x).collect();
+    columns.sort_by(f64::total_cmp);
+    columns.dedup_by(|a, b| (*a - *b).abs() < 5.0);
+    assert!(columns.len() > 5 && columns.windows(2).all(|pair| (pair[1] - pair[0] - 86.0).abs() < 2.0), "{columns:?}");
+}
