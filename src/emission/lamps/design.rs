@@ -256,9 +256,10 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
 /// The diameter of lamps that are discs, without their bloom; `None` if they are not discs.
 ///
 /// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. If this
-/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Lamps without a clear
-/// shape are discs if two conditions hold: at least half of them, by weight, are elongated along their blur; and they
-/// are small in the photo, or not all elongated in the same direction.
+/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Otherwise lamps are
+/// discs if at least half of them, by weight, are elongated along their blur, and one of three conditions holds: an
+/// ellipse fits them better than a rectangle, because lamps are rarely oval, while bloom and lenses below the ceiling
+/// make discs oval; or they are small in the photo; or they are not all elongated in the same direction.
 fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
     let pixel = |m: &Member, x: f64, y: f64| (m.inverse_map.transpose() * DVec2::new(x, y)).length();
     let sides = |m: &&Member| {
@@ -278,7 +279,8 @@ fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
         DVec2::from_angle(2.0 * y.atan2(x)) * m.weight
     };
     let common_turn = members.iter().map(turn).sum::<DVec2>().length() / total;
-    if smeared < 0.5 * total || (mean_area > MAX_SMEARED && common_turn > MIN_COMMON_DIRECTION) {
+    let are_unlike_ovals = are_round || mean_area <= MAX_SMEARED || common_turn <= MIN_COMMON_DIRECTION;
+    if smeared < 0.5 * total || !are_unlike_ovals {
         return None;
     }
     shown.or_else(|| common_side(members.iter().map(|m| sides(m)[0])))
@@ -498,36 +500,56 @@ mod tests {
         assert!((common_side([(41.6, 1.0)].into_iter()).unwrap() - 41.6).abs() < 1e-9);
     }
 
-    /// Unwarping magnifies the photo by `pixel` along y. Bloom of 4 photo pixels at each edge makes ellipses of discs.
+    const DIAMETER: f64 = 20.0;
+    const DISC_BLOOM: f64 = 4.0;
+
+    /// A disc of [`DIAMETER`] that unwarping magnifies by `pixel` along y. Bloom of [`DISC_BLOOM`] photo pixels at each
+    /// edge makes it an ellipse.
+    fn bloomed_disc(component: usize, pixel: f64) -> Member {
+        let size = DVec2::new(DIAMETER + 2.0 * DISC_BLOOM, DIAMETER + 2.0 * DISC_BLOOM * pixel);
+        let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::X }.outline(DVec2::new(100.0, 0.0));
+        let (area, centre, moments) = polygon_moments(&outline).unwrap();
+        Member {
+            component,
+            angle: rectangle_angle(&outline),
+            outline,
+            area,
+            centre,
+            moments,
+            weight: 1000.0,
+            blur: DVec2::new(1.0, pixel),
+            inverse_map: DMat2::from_diagonal(DVec2::new(1.0, pixel)),
+            is_clear: true,
+        }
+    }
+
+    /// The same lamp in a photo that unwarping magnifies along x instead of y.
+    fn with_blur_across(lamp: Member) -> Member {
+        Member { blur: lamp.blur.yx(), inverse_map: DMat2::from_diagonal(lamp.blur.yx()), ..lamp }
+    }
+
     #[test]
     fn discs_that_bloom_has_elongated_are_round_again() {
-        let (diameter, bloom) = (20.0, 4.0);
-        let lamp = |k: usize, pixel: f64| {
-            let size = DVec2::new(diameter + 2.0 * bloom, diameter + 2.0 * bloom * pixel);
-            let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::X }.outline(DVec2::new(100.0, 0.0));
-            let (area, centre, moments) = polygon_moments(&outline).unwrap();
-            Member {
-                component: k,
-                angle: rectangle_angle(&outline),
-                outline,
-                area,
-                centre,
-                moments,
-                weight: 1000.0,
-                blur: DVec2::new(1.0, pixel),
-                inverse_map: DMat2::from_diagonal(DVec2::new(1.0, pixel)),
-                is_clear: true,
-            }
-        };
-        let lamps: Vec<Member> = [1.2, 1.5, 1.9, 2.4].into_iter().enumerate().map(|(k, p)| lamp(k, p)).collect();
+        let lamps: Vec<Member> =
+            [1.2, 1.5, 1.9, 2.4].into_iter().enumerate().map(|(k, p)| bloomed_disc(k, p)).collect();
         let (design, _) = fit(&lamps, 0).unwrap();
         assert_eq!(design.shape, Shape::Ellipse);
-        assert!((design.size - diameter).abs().max_element() < 0.5, "{}", design.size);
+        assert!((design.size - DIAMETER).abs().max_element() < 0.5, "{}", design.size);
         // Ellipses that are long across their blur are no discs.
-        let turn = |m: Member| Member { blur: m.blur.yx(), inverse_map: DMat2::from_diagonal(m.blur.yx()), ..m };
-        let turned: Vec<Member> = lamps.into_iter().map(turn).collect();
+        let turned: Vec<Member> = lamps.into_iter().map(with_blur_across).collect();
         let (design, _) = fit(&turned, 0).unwrap();
         assert!(design.size.y > 1.15 * design.size.x, "{}", design.size);
+    }
+
+    #[test]
+    fn a_few_ovals_that_are_long_along_their_blur_are_discs() {
+        // Too few lamps show their bloom, so the discs are as wide as the short side of the ovals.
+        let lamps = || [2.5, 2.6].into_iter().enumerate().map(|(k, pixel)| bloomed_disc(k, pixel));
+        let (design, _) = fit(&lamps().collect::<Vec<_>>(), 0).unwrap();
+        assert_eq!((design.shape, design.size.x), (Shape::Ellipse, design.size.y));
+        assert!((design.size.x / (DIAMETER + 2.0 * DISC_BLOOM) - 1.0).abs() < 0.1, "{}", design.size);
+        let (design, _) = fit(&lamps().map(with_blur_across).collect::<Vec<_>>(), 0).unwrap();
+        assert!(design.size.y > 1.3 * design.size.x, "{}", design.size);
     }
 
     #[test]
