@@ -17,6 +17,8 @@ const MIN_ALBEDO: f32 = 0.02;
 const RARE: f32 = 0.3;
 /// Radius of that neighbourhood in pixels. [bench filter]
 const RARE_RADIUS: usize = 6;
+/// Errors are relative to the radiance, averaged over this radius in pixels. [bench filter]
+const RADIANCE_RADIUS: usize = 4;
 
 /// Both halves of the light, in units of the mean of the picture.
 pub struct Light {
@@ -76,7 +78,7 @@ impl Light {
                 *out = (of_channel(0) + of_channel(1) + of_channel(2)) / 6.0;
             }
         })?;
-        let mut scale = radiance.smoothed(4, job.part(0.3, 1.0))?;
+        let mut scale = radiance.smoothed(RADIANCE_RADIUS, job.part(0.3, 1.0))?;
         scale.data.iter_mut().for_each(|v| *v = 1.0 / (*v * *v + min_light * min_light));
         Ok(scale)
     }
