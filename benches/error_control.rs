@@ -312,7 +312,7 @@ fn preview_errors(name: &str, (world, camera): (&World, &Camera), params: &Param
 /// Times the preview filter alone.
 fn time_preview((_, world, camera): &Ready) {
     let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
-    let film = |seed| shoot(world, camera, &Params { samples: 2, seed, outputs: outputs.clone(), ..Params::default() });
+    let film = |seed| shoot(world, camera, &Params { samples: 4, seed, outputs: outputs.clone(), ..Params::default() });
     let (one, other) = (film(1), film(2));
     let times: Vec<f64> = (0..5).map(|_| time(Clock::Wall, || black_box(smooth(&one, &other))).0).collect();
     figure("render.preview.ms", 1e3 * times.iter().copied().fold(f64::INFINITY, f64::min), "ms");
@@ -345,7 +345,8 @@ fn bias(images: &[Image], truth: &Image, side: usize) -> f64 {
 
 fn smooth(one: &Film, other: &Film) -> denoise::Output {
     let [albedo, normal, position] = [0, 1, 2].map(|i| &one.layers[i].image);
-    let input = Input { halves: [&one.beauty, &other.beauty], variance: &one.variance, albedo, normal, position };
+    let (halves, variances) = ([&one.beauty, &other.beauty], [&one.variance, &other.variance]);
+    let input = Input { halves, variances, albedo, normal, position };
     denoise::run(&input, &denoise::Params::default(), Monitor::default().job()).expect("a preview")
 }
 

@@ -136,7 +136,7 @@ static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camer
     check(luxfer_scene_add_light(scene, &light, NULL), "light");
 }
 
-/* Renders a scene with few paths. */
+/* Renders a scene with few paths, and filters the noise. */
 static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer_camera_params *camera,
                              unsigned samples, const char *title) {
     luxfer_render *render = NULL;
@@ -147,12 +147,13 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     params.width = o->width / 2;
     params.height = o->height / 2;
     params.samples = samples;
+    params.preview = 1;
     check(luxfer_render_create(context, &render), title);
     check(luxfer_render_set_scene(render, scene), title);
     check(luxfer_render_set_camera(render, camera), title);
     check(luxfer_render_start(render, &params, &job), title);
     finish(job, title);
-    check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), title);
+    check(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &image), title);
     luxfer_release(render);
     return image;
 }
@@ -210,7 +211,9 @@ static void write_report(const options *o, const luxfer_transfer_report *r, cons
     fprintf(file, "  \"target\": [%.6g, %.6g, %.6g],\n", r->target[0], r->target[1], r->target[2]);
     fprintf(file, "  \"scale\": [%.6g, %.6g, %.6g],\n", s->scale[0], s->scale[1], s->scale[2]);
     fprintf(file, "  \"half_width\": [%.6g, %.6g, %.6g],\n", s->half_width[0], s->half_width[1], s->half_width[2]);
-    fprintf(file, "  \"luminaires\": %u,\n  \"texel_m\": %.6g\n}\n", r->fixtures, r->texel_size);
+    fprintf(file, "  \"filtered_error\": ");
+    write_number(file, r->preview_error);
+    fprintf(file, ",\n  \"luminaires\": %u,\n  \"texel_m\": %.6g\n}\n", r->fixtures, r->texel_size);
     fclose(file);
 }
 
@@ -221,7 +224,7 @@ int main(int argc, char **argv) {
     luxfer_render_params render;
     luxfer_transfer_report report;
     luxfer_relight_report solution;
-    luxfer_image *photo = NULL, *lit = NULL, *emission = NULL, *before, *white;
+    luxfer_image *photo = NULL, *lit = NULL, *filtered = NULL, *emission = NULL, *before, *white;
     luxfer_scene *scene = NULL, *lit_scene = NULL, *white_scene = NULL;
     luxfer_warnings *warnings = NULL;
     luxfer_job *job = NULL;
@@ -238,6 +241,7 @@ int main(int argc, char **argv) {
     render.width = o.width;
     render.height = o.height;
     render.samples = o.samples;
+    render.preview = 1;
     params.render = &render;
     params.plane_distance = o.distance;
     check(luxfer_transfer_start(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, &params, &job), "transfer");
@@ -245,13 +249,14 @@ int main(int argc, char **argv) {
 
     /* Get its results. */
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &lit), "render");
+    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER_PREVIEW, &filtered), "filtered render");
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_EMISSION, &emission), "emission");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit_scene), "lit scene");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_WHITE, &white_scene), "white scene");
     check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
     check(luxfer_transfer_get_solution(transfer, &solution, sizeof solution), "solution");
     check(luxfer_image_save(lit, path(&o, "render.exr"), 1), "render.exr");
-    check(luxfer_image_save(lit, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
+    check(luxfer_image_save(filtered, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
     check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
     check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
@@ -265,7 +270,7 @@ int main(int argc, char **argv) {
     add_headlight(scene, &camera);
     before = preview(&o, scene, &camera, 8, "rendering it before");
     white = preview(&o, white_scene, &camera, o.samples / 2 + 1, "rendering it in white");
-    check(overview_save(context, transfer, photo, before, white, lit, params.white_luminance, path(&o, "overview.png")),
+    check(overview_save(context, transfer, photo, before, white, filtered, params.white_luminance, path(&o, "overview.png")),
           "overview.png");
     printf("%u luminaires; colour and intensity to +-%.2f %%; see %s\n", report.fixtures, 100 * report.relight_error,
            path(&o, "overview.png"));
@@ -274,6 +279,7 @@ int main(int argc, char **argv) {
     luxfer_release(white);
     luxfer_release(before);
     luxfer_release(emission);
+    luxfer_release(filtered);
     luxfer_release(lit);
     luxfer_release(white_scene);
     luxfer_release(lit_scene);

@@ -15,6 +15,7 @@ int main(int argc, char **argv) {
     luxfer_job *job = NULL;
     luxfer_image *picture = NULL;
     luxfer_render_params params;
+    luxfer_render_report report;
     luxfer_status status;
 
     /* A context owns the threads. All objects are created in a context; NULL means default settings. */
@@ -25,6 +26,7 @@ int main(int argc, char **argv) {
     params.width = 300;
     params.height = 200;
     params.samples = 8;
+    params.preview = 1; /* filter the noise of so few paths */
 
     /* Every call returns a status. A call whose input is missing fails too, so report the first failure. */
     status = argc > 1 ? luxfer_scene_load(context, argv[1], NULL, &scene)
@@ -37,11 +39,12 @@ int main(int argc, char **argv) {
     if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL);
 
     /* Pictures are in cd/m2; the last argument is the exposure: with 0.005, 200 cd/m2 become white. */
-    if (status == LUXFER_OK) status = luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture);
+    if (status == LUXFER_OK) status = luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &picture);
     if (status == LUXFER_OK) status = luxfer_image_save(picture, "minimal.png", 0.005f);
+    if (status == LUXFER_OK) status = luxfer_render_get_report(render, &report, sizeof report);
 
     if (status == LUXFER_OK) {
-        printf("look at minimal.png\n");
+        printf("look at minimal.png; its root mean square error is %.0f %% of its mean\n", 100 * report.preview_error);
     } else {
         char message[512] = "";
         luxfer_context_get_last_error(context, message, sizeof message, NULL);

@@ -540,7 +540,7 @@ layouts! {
         flat_triangles;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error reserved
         preview relative_error;
-    luxfer_render_report: struct_size samples error discarded preview_bias relative_error;
+    luxfer_render_report: struct_size samples error discarded preview_bias relative_error preview_error;
     luxfer_render_part: struct_size x y width height first_sample samples;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
@@ -570,7 +570,7 @@ layouts! {
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
-        proposed_white_low proposed_white_high;
+        proposed_white_low proposed_white_high preview_error;
     luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved name reason;
     luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;

@@ -217,13 +217,17 @@ fn previews_are_asked_for() {
         assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
         let (beauty, report) = rendered(render, &params);
         let mut image = null_mut();
-        assert_eq!(report.preview_bias, 0.0);
+        assert_eq!((report.preview_bias, report.preview_error), (0.0, 0.0));
         assert_eq!(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &mut image), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW_INTERVAL, &mut image), LUXFER_NOT_FOUND);
         assert!(message(context).contains("luxfer_render_params.preview"));
 
         let (again, report) = rendered(render, &luxfer_render_params { preview: 1.0, ..params });
         assert_eq!(beauty, again, "the image does not change");
         assert!((0.0..0.2).contains(&report.preview_bias), "{}", report.preview_bias);
+        assert!(report.preview_error > 0.0 && report.preview_error.is_finite(), "{}", report.preview_error);
+        let interval = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW_INTERVAL, out))).1;
+        assert!(interval.len() == beauty.len() && interval.iter().all(|v| v.is_finite()));
         let preview = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, out))).1;
         assert!((mean(&preview) / mean(&beauty) - 1.0).abs() < 0.05 && preview != beauty);
         let mut count = 0;

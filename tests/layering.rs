@@ -21,7 +21,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
     ("scene", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "photometry"]),
-    ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
+    ("render", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages never use each other, with one exception: segmentation reads the number of channels of the features.
     ("features", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "network"]),

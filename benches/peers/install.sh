@@ -48,6 +48,9 @@ install_llvm
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
 
+# Open Image Denoise.
+install oidn pyoidn numpy
+
 # Normals from point clouds.
 install open3d open3d numpy
 # grabCut, a random forest and a support vector machine, for masks from strokes; a detector of line segments.

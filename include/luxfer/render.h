@@ -102,6 +102,12 @@ typedef struct luxfer_render_report {
      * paths. With few paths this estimate is too high: with 8 paths by about a quarter.
      */
     double relative_error;
+    /**
+     * Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
+     * divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a pixel has
+     * fewer than four paths; 0 without a preview.
+     */
+    double preview_error;
 } luxfer_render_report;
 
 /** Mean radiance of each pixel, linear RGB in cd/m². */
@@ -124,11 +130,19 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs details that
- * come from the light alone, such as soft shadows; luxfer_render_report.preview_bias estimates this error. The image
- * exists only if luxfer_render_params.preview is not 0.
+ * The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is combined with
+ * neighbours whose difference its noise explains, or stays as it is where this is estimated to be more accurate. Details
+ * that come from the light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates
+ * the remaining error. The image exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
+
+/**
+ * Half the width of the 95 % confidence interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
+ * bias of the filter; infinite where a pixel has fewer than four paths. The image exists only if
+ * luxfer_render_params.preview is not 0.
+ */
+#define LUXFER_RENDER_PREVIEW_INTERVAL 5
 
 /** Creates a rendering. It has no inputs yet. The caller releases *render. Any thread. */
 luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **render);

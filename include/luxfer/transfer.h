@@ -376,6 +376,11 @@ typedef struct luxfer_transfer_report {
      * lux.
      */
     double proposed_white_high;
+    /**
+     * luxfer_render_report.preview_error: estimated error of LUXFER_TRANSFER_RENDER_PREVIEW, divided by the image's
+     * mean. NaN without this image.
+     */
+    double preview_error;
 } luxfer_transfer_report;
 
 /** One lamp of the lit scene. */

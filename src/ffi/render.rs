@@ -40,10 +40,15 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs details that
-/// come from the light alone, such as soft shadows; luxfer_render_report.preview_bias estimates this error. The image
-/// exists only if luxfer_render_params.preview is not 0.
+/// The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is combined with
+/// neighbours whose difference its noise explains, or stays as it is where this is estimated to be more accurate. Details
+/// that come from the light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates
+/// the remaining error. The image exists only if luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
+/// Half the width of the 95 % confidence interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
+/// bias of the filter; infinite where a pixel has fewer than four paths. The image exists only if
+/// luxfer_render_params.preview is not 0.
+pub const LUXFER_RENDER_PREVIEW_INTERVAL: luxfer_render_image = 5;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
 #[repr(C)]
@@ -140,10 +145,22 @@ pub struct luxfer_render_report {
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
     /// paths. With few paths this estimate is too high: with 8 paths by about a quarter.
     pub relative_error: f64,
+    /// Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
+    /// divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a pixel has
+    /// fewer than four paths; 0 without a preview.
+    pub preview_error: f64,
 }
 
-versioned!(luxfer_render_report, [40], {
-    Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
+versioned!(luxfer_render_report, [40, 48], {
+    Self {
+        struct_size: 48,
+        samples: 0,
+        error: 0.0,
+        discarded: 0,
+        preview_bias: 0.0,
+        relative_error: 0.0,
+        preview_error: 0.0,
+    }
 });
 
 #[derive(Clone, Default)]
@@ -289,6 +306,10 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             LUXFER_RENDER_VARIANCE => |f| &f.variance,
             LUXFER_RENDER_PATHS => |f| &f.paths,
             LUXFER_RENDER_PREVIEW => preview(&*stage.output()?)?,
+            LUXFER_RENDER_PREVIEW_INTERVAL => {
+                preview(&*stage.output()?)?;
+                |f| f.preview.as_ref().map_or(&f.variance, |preview| &preview.interval)
+            }
             LUXFER_RENDER_INTERVAL => {
                 let (context, film) = (stage.context(), stage.output()?);
                 let (width, height) = (film.beauty.width, film.beauty.height);
@@ -344,6 +365,7 @@ pub unsafe extern "C" fn luxfer_render_get_report(
             discarded: output.discarded,
             preview_bias: output.preview.as_ref().map_or(0.0, |p| p.bias),
             relative_error: output.relative_error,
+            preview_error: output.preview.as_ref().map_or(0.0, |p| p.error),
             ..luxfer_render_report::defaults()
         });
         Ok(())

@@ -111,14 +111,17 @@ pub struct luxfer_transfer_report {
     /// Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
     /// lux.
     pub proposed_white_high: f64,
+    /// luxfer_render_report.preview_error: estimated error of LUXFER_TRANSFER_RENDER_PREVIEW, divided by the image's
+    /// mean. NaN without this image.
+    pub preview_error: f64,
 }
 
-const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24;
+const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24 + 8;
 
 /// Usual illuminances in lux: of corridors, of offices, and for fine work. [convention]: EN 12464-1
 const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
 
-versioned!(luxfer_transfer_report, [REPORT_SIZE], {
+versioned!(luxfer_transfer_report, [REPORT_SIZE - 8, REPORT_SIZE], {
     Self {
         struct_size: REPORT_SIZE as u32,
         fixtures: 0,
@@ -139,6 +142,7 @@ versioned!(luxfer_transfer_report, [REPORT_SIZE], {
         proposed_white: f64::NAN,
         proposed_white_low: f64::NAN,
         proposed_white_high: f64::NAN,
+        preview_error: f64::NAN,
     }
 });
 
@@ -174,6 +178,7 @@ impl luxfer_transfer_report {
             proposed_white: white.expected,
             proposed_white_low: white.low,
             proposed_white_high: white.high,
+            preview_error: or_nan(results.film.as_ref().and_then(|f| f.preview.as_ref()).map(|p| p.error)),
             ..Self::defaults()
         }
     }

@@ -37,7 +37,7 @@ pub struct Film {
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.
     pub layers: Vec<Layer>,
-    /// The filtered image with an estimate of its bias, if requested. The filtered image is not an unbiased estimate.
+    /// The filtered image with its interval, error and bias, if requested. The filtered image is not an unbiased estimate.
     pub preview: Option<denoise::Output>,
 }
 
@@ -47,7 +47,9 @@ impl Film {
         let layer = |l: &Layer| {
             Ok(Layer { image: l.image.try_clone()?, name: l.name.clone(), expression: l.expression.clone(), ..*l })
         };
-        let preview = |p: &denoise::Output| Ok(denoise::Output { image: p.image.try_clone()?, ..*p });
+        let preview = |p: &denoise::Output| {
+            Ok(denoise::Output { image: p.image.try_clone()?, interval: p.interval.try_clone()?, ..*p })
+        };
         Ok(Self {
             beauty: self.beauty.try_clone()?,
             variance: self.variance.try_clone()?,

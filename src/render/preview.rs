@@ -1,4 +1,4 @@
-//! Previews of a render in progress: adds to the requested outputs the guide images that `denoise` needs, and filters
+//! The filtered picture of a render: adds to the requested outputs the guide images that `denoise` needs, and filters
 //! the film.
 
 use super::aov::Aov;
@@ -34,9 +34,10 @@ pub fn add_preview(film: &mut Film, accumulator: &Accumulator, params: &Params, 
                 .ok_or_else(|| Error::new(ErrorKind::Internal, format!("the render has no layer {}", aov.name())))
         };
         let [one, other] = accumulator.halves(job)?;
+        let [first, second] = accumulator.half_variances(job)?;
         let input = Input {
             halves: [&one, &other],
-            variance: &film.variance,
+            variances: [&first, &second],
             albedo: guide(Aov::Albedo)?,
             normal: guide(Aov::Normal)?,
             position: guide(Aov::Position)?,

@@ -110,6 +110,7 @@ LUXFER_RENDER_VARIANCE = 1
 LUXFER_RENDER_PATHS = 2
 LUXFER_RENDER_INTERVAL = 3
 LUXFER_RENDER_PREVIEW = 4
+LUXFER_RENDER_PREVIEW_INTERVAL = 5
 LUXFER_AOV_DEPTH = 1
 LUXFER_AOV_DISTANCE = 2
 LUXFER_AOV_POSITION = 4
@@ -724,6 +725,7 @@ class luxfer_render_report(Structure):
         ("discarded", c_uint64),
         ("preview_bias", c_double),
         ("relative_error", c_double),
+        ("preview_error", c_double),
     ]
     result = types.RenderReport
 
@@ -998,6 +1000,7 @@ class luxfer_transfer_report(Structure):
         ("proposed_white", c_double),
         ("proposed_white_low", c_double),
         ("proposed_white_high", c_double),
+        ("preview_error", c_double),
     ]
     result = types.TransferReport
 

@@ -110,7 +110,8 @@ class Render(StageBase):
         return self._job("start_merge", _params.fill(_abi.luxfer_render_params, params, []))
 
     def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
-        """The current image: "beauty", "variance", "paths", "interval" or, if its setting is not 0, "preview"."""
+        """The current image: "beauty", "variance", "paths", "interval" or, if its setting is not 0, "preview" or
+        "preview-interval"."""
         return self._get_image("get_image", _params.member(RenderImage, which))
 
     @property

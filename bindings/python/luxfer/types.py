@@ -210,9 +210,15 @@ class RenderImage(IntEnum):
     """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
     where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty image after a noise filter that follows the edges of the visible surfaces. The filter blurs
-    details that come from the light alone, such as soft shadows; RenderReport.preview_bias estimates this
-    error. The image exists only if RenderParams.preview is not 0."""
+    """The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is
+    combined with neighbours whose difference its noise explains, or stays as it is where this is estimated to
+    be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+    RenderReport.preview_error estimates the remaining error. The image exists only if RenderParams.preview is
+    not 0."""
+    PREVIEW_INTERVAL = 5
+    """Half the width of the 95 % confidence interval of each pixel of the preview, in cd/m²; 3 channels. It
+    includes the bias of the filter; infinite where a pixel has fewer than four paths. The image exists only if
+    RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
@@ -1370,6 +1376,10 @@ class RenderReport:
     """Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the
     mean of the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer
     than two paths. With few paths this estimate is too high: with 8 paths by about a quarter."""
+    preview_error: float
+    """Estimated error of the preview, remaining noise and bias together: root mean square over pixels and
+    channels, divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a
+    pixel has fewer than four paths; 0 without a preview."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -1788,6 +1798,9 @@ class TransferReport:
     proposed_white_high: float
     """Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318,
     for 1000 lux."""
+    preview_error: float
+    """RenderReport.preview_error: estimated error of TransferImage.RENDER_PREVIEW, divided by the image's mean.
+    NaN without this image."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ use crate::render::layers::Layers;
 use crate::render::params::Params;
 use crate::render::world::World;
 use crate::scene::Camera;
+use glam::DVec3;
 use std::sync::atomic::AtomicU64;
 use std::time::Instant;
 
@@ -150,10 +151,19 @@ impl<'a> Accumulator<'a> {
 
     /// Returns two images, each from one half of the paths. They are equal at pixels that have a single path.
     pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
+        self.pair(job, Pixel::halves)
+    }
+
+    /// Returns the variances of the two [`halves`](Self::halves), each from its own paths alone.
+    pub fn half_variances(&self, job: Job) -> Result<[Image; 2]> {
+        self.pair(job, Pixel::half_variances)
+    }
+
+    fn pair(&self, job: Job, values: impl Fn(&Pixel) -> [DVec3; 2] + Sync) -> Result<[Image; 2]> {
         let half = |which: usize| {
             self.image(3, job, |x, y, out| {
                 let (x, y) = self.nearest(x, y);
-                self.pixel(x, y).halves()[which].as_vec3().write_to_slice(out);
+                values(self.pixel(x, y))[which].as_vec3().write_to_slice(out);
             })
         };
         Ok([half(0)?, half(1)?])

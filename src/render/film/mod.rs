@@ -37,5 +37,4 @@ pub use accumulator::Accumulator;
 pub use adaptive::AdaptiveSampler;
 pub use clock::Clock;
 pub use grid::TILE;
-pub use pooling::pooled;
 pub use sums::Sums;

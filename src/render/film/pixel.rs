@@ -90,22 +90,32 @@ impl Pixel {
 
     /// Returns an unbiased estimate of the variance of the mean; infinite for fewer than two paths.
     pub fn variance(&self) -> DVec3 {
-        if self.count < 2 {
+        self.variance_of(0..REPLICATIONS)
+    }
+
+    /// Returns unbiased estimates of the variances of the two [`halves`](Self::halves), each from its own paths alone;
+    /// infinite for fewer than four paths.
+    pub fn half_variances(&self) -> [DVec3; 2] {
+        [0, 1].map(|first| self.variance_of((0..REPLICATIONS).skip(first).step_by(2)))
+    }
+
+    /// Returns an unbiased estimate of the variance of the mean of some replications; infinite if fewer than two of them
+    /// have paths.
+    fn variance_of(&self, replications: impl Iterator<Item = u32> + Clone) -> DVec3 {
+        let used = || {
+            let sums = replications.clone().map(|r| (self.sums[r as usize].as_dvec3(), r));
+            sums.map(|(sum, r)| (sum, f64::from(paths_of_replication(self.count, r)))).filter(|(_, paths)| *paths > 0.0)
+        };
+        let (sum, paths) = used().fold((DVec3::ZERO, 0.0), |(s, n), (sum, paths)| (s + sum, n + paths));
+        let count = used().count();
+        if count < 2 {
             return DVec3::INFINITY;
         }
-        let mean = self.mean();
-        let (mut squares, mut used) = (DVec3::ZERO, 0u32);
-        for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
-            let paths = paths_of_replication(self.count, replication);
-            if paths > 0 {
-                // Weight each replication by its number of paths, on the assumption that its variance is inversely
-                // proportional to this number.
-                let distance = sum.as_dvec3() / f64::from(paths) - mean;
-                squares += distance * distance * f64::from(paths);
-                used += 1;
-            }
-        }
-        squares / f64::from(used - 1) / f64::from(self.count)
+        // Weight each replication by its number of paths, on the assumption that its variance is inversely proportional
+        // to this number.
+        let mean = sum / paths;
+        let squares: DVec3 = used().map(|(sum, paths)| (sum / paths - mean) * (sum / paths - mean) * paths).sum();
+        squares / (count - 1) as f64 / paths
     }
 }
 
@@ -149,5 +159,19 @@ mod tests {
             assert!((ratio - 1.0).abs() < 5.0 * 1.5 / (n as f64).sqrt(), "{count} paths: {ratio}");
         }
         assert_eq!(Pixel::default().variance(), DVec3::INFINITY);
+    }
+
+    #[test]
+    fn variances_of_halves_use_their_own_paths_and_need_four() {
+        let pixel = |values: &[f64]| {
+            let mut pixel = Pixel::default();
+            let value = |r: u32, i: u32| DVec3::splat(values[(i * REPLICATIONS + r) as usize]);
+            pixel.extend(values.len() as u32, |r, indices| indices.map(|i| value(r, i)).sum());
+            pixel.half_variances().map(|v| v.x)
+        };
+        // The variance of the mean of two values is a quarter of their squared difference.
+        assert_eq!(pixel(&[1.0, 5.0, 3.0, 11.0]), [1.0, 9.0]);
+        assert_eq!(pixel(&[1.0, 5.0, 3.0, 11.0, 1.0, 5.0, 3.0, 11.0]), [1.0, 9.0]);
+        assert_eq!(pixel(&[1.0, 5.0, 3.0]), [1.0, f64::INFINITY]);
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of the preview filter (`denoise`).
+//! Tests of the noise filter (`denoise`).
 
 use super::*;
 use crate::render::denoise::{self, Input};
@@ -38,25 +38,54 @@ fn room() -> (World, Camera) {
     (world(scene), Camera::look_at(Vec3::new(2.0, 1.6, 5.5), Vec3::new(2.0, 1.4, 0.0), 0.8))
 }
 
-/// Two independent renders with half of the paths each, and the variance of their mean.
+/// Two independent renders with half of the paths each, and their variances.
 struct Halves {
     images: [Image; 2],
-    variance: Image,
+    variances: [Image; 2],
+}
+
+impl Halves {
+    fn mean(&self) -> Image {
+        let [one, other] = &self.images;
+        Image { data: one.data.iter().zip(&other.data).map(|(a, b)| 0.5 * a + 0.5 * b).collect(), ..*one }
+    }
 }
 
 fn halves(world: &World, camera: &Camera, params: &Params) -> Halves {
     let half = |seed: u64| render(world, camera, &Params { samples: params.samples / 2, seed, ..params.clone() });
     let [one, other] = [half(2 * params.seed), half(2 * params.seed + 1)];
-    let mut variance = one.variance;
-    variance.data.iter_mut().zip(&other.variance.data).for_each(|(a, b)| *a = (*a + b) / 4.0);
-    Halves { images: [one.beauty, other.beauty], variance }
+    Halves { images: [one.beauty, other.beauty], variances: [one.variance, other.variance] }
 }
 
 fn smoothed(halves: &Halves, guide: &[Image; 3], strength: f32) -> denoise::Output {
     let [albedo, normal, position] = guide;
-    let [one, other] = &halves.images;
-    let input = Input { halves: [one, other], variance: &halves.variance, albedo, normal, position };
+    let ([one, other], [first, second]) = (&halves.images, &halves.variances);
+    let input = Input { halves: [one, other], variances: [first, second], albedo, normal, position };
     denoise::run(&input, &denoise::Params { strength }, Monitor::default().job()).unwrap()
+}
+
+/// A flat picture of `width` by `height` pixels: `light` by column, with Gaussian noise of standard deviation `sigma`
+/// in each half.
+fn flat(width: usize, height: usize, sigma: f32, light: impl Fn(usize) -> f32) -> Halves {
+    let mut rng = crate::rng::Rng::new(3, &[]);
+    let images = [0, 1].map(|_| {
+        let noise: Vec<f32> = (0..width * height).map(|_| sigma * rng.normal() as f32).collect();
+        Image::from_fn(width, height, |x, y| [light(x) + noise[y * width + x]; 3]).unwrap()
+    });
+    Halves { images, variances: [0, 1].map(|_| Image::from_fn(width, height, |_, _| [sigma * sigma; 3]).unwrap()) }
+}
+
+/// Guides of a grey plane whose normal depends on the column.
+fn plane(width: usize, height: usize, normal: impl Fn(usize) -> Vec3) -> [Image; 3] {
+    [
+        Image::from_fn(width, height, |_, _| [0.5; 3]).unwrap(),
+        Image::from_fn(width, height, |x, _| normal(x).to_array()).unwrap(),
+        Image::from_fn(width, height, |x, y| [x as f32, y as f32, 0.0]).unwrap(),
+    ]
+}
+
+fn mean(values: &[f32]) -> f64 {
+    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
 }
 
 /// Returns the mean luminance of each square of 8 × 8 pixels.
@@ -87,17 +116,30 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
         })
         .collect();
     let (halves, output) = &renders[0];
-    let [one, other] = &halves.images;
-    let both = Image { data: one.data.iter().zip(&other.data).map(|(a, b)| (a + b) / 2.0).collect(), ..*one };
+    let both = halves.mean();
     let (before, after) = (rel_mse(&both, &truth), rel_mse(&output.image, &truth));
     assert!(after < before / 5.0, "from {before} to {after}");
+    // The stated errors are true on average.
+    let unit = mean(&truth.data);
+    let square =
+        |image: &Image| image.data.iter().zip(&truth.data).map(|(a, t)| (a - t) * (a - t)).collect::<Vec<f32>>();
+    let n = RENDERS as f64;
+    let error = (renders.iter().map(|(_, output)| mean(&square(&output.image))).sum::<f64>() / n).sqrt() / unit;
+    let stated = (renders.iter().map(|(_, output)| output.error.powi(2)).sum::<f64>() / n).sqrt();
+    assert!(stated > 0.7 * error && stated < 1.4 * error, "error {stated} stated, {error} measured");
+    // So are the intervals.
+    let inside = |output: &denoise::Output| {
+        let pixels = output.image.data.iter().zip(&output.interval.data).zip(&truth.data);
+        pixels.filter(|((v, half_width), t)| (**v - **t).abs() <= **half_width).count() as f64 / truth.data.len() as f64
+    };
+    let covered = renders.iter().map(|(_, output)| inside(output)).sum::<f64>() / n;
+    assert!(covered > 0.9 && covered < 0.99, "{covered}");
     // Compute the squared bias of the mean preview in each square; subtract the noise that remains in the mean.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders
         .iter()
         .map(|(_, output)| squares(&output.image).iter().zip(&truth).map(|(a, b)| a - b).collect())
         .collect();
-    let n = RENDERS as f64;
     let of_square = |i: usize| {
         let mean = off.iter().map(|o| o[i]).sum::<f64>() / n;
         mean * mean - off.iter().map(|o| (o[i] - mean).powi(2)).sum::<f64>() / (n - 1.0) / n
@@ -106,10 +148,9 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let bias = ((0..truth.len()).map(of_square).sum::<f64>() / truth.len() as f64).sqrt() / light;
     let stated = (renders.iter().map(|(_, output)| output.bias.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * bias && stated < 1.6 * bias, "{stated} stated, {bias} measured");
-    // At strength 0, only rounding changes the image.
+    // At strength 0, the image stays the same.
     let same = smoothed(halves, &guide, 0.0);
-    assert!(same.image.data.iter().zip(&both.data).all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs()));
-    assert!(same.bias < 1e-5);
+    assert!(same.image == both && same.bias == 0.0);
 }
 
 #[test]
@@ -142,44 +183,84 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
 }
 
 #[test]
-fn without_variance_the_image_is_unchanged() {
+fn without_noise_the_image_is_unchanged() {
     let (world, camera) = room();
     let params = Params { width: 40, height: 30, samples: 8, ..Params::default() };
-    let mut sure = halves(&world, &camera, &params);
+    let noisy = halves(&world, &camera, &params);
     let guide = features(&world, &camera, 40, 30);
-    let plain = smoothed(&sure, &guide, 0.0).image;
-    let variance = sure.variance.clone();
+    let plain = noisy.mean();
     let mut last = f64::INFINITY;
-    for shrink in [1.0, 1e-2, 1e-4, 0.0] {
-        sure.variance.data.iter_mut().zip(&variance.data).for_each(|(v, whole)| *v = whole * shrink);
-        let moved = rel_mse(&smoothed(&sure, &guide, 1.0).image, &plain);
-        assert!(moved < last || moved == 0.0, "{shrink}: {moved} after {last}");
+    for share in [1.0, 1e-1, 1e-2, 0.0] {
+        // Keep a share of the noise: pull both halves towards their mean.
+        let pull = |(half, mean): (&f32, &f32)| mean + share * (half - mean);
+        let images = [0, 1].map(|i| {
+            let data = noisy.images[i].data.iter().zip(&plain.data).map(pull).collect();
+            Image { data, ..plain }
+        });
+        let variances = [0, 1].map(|i| {
+            let data = noisy.variances[i].data.iter().map(|v| share * share * v).collect();
+            Image { data, ..plain }
+        });
+        let output = smoothed(&Halves { images, variances }, &guide, 1.0);
+        let moved = rel_mse(&output.image, &plain);
+        assert!(moved < last || moved == 0.0, "{share}: {moved} after {last}");
         last = moved;
+        if share == 0.0 {
+            assert!(output.image == plain && output.error == 0.0 && output.interval.data.iter().all(|&v| v == 0.0));
+        }
     }
-    assert!(last < 1e-9, "{last}");
 }
 
 #[test]
-fn an_even_wall_stays_even_and_noise_on_it_goes() {
-    let (w, h) = (64, 64);
-    let mut rng = crate::rng::Rng::new(3, &[]);
-    let noise: Vec<[f32; 2]> = (0..w * h).map(|_| [0, 1].map(|_| 2.0 + 0.5 * rng.normal() as f32)).collect();
-    let halves = |value: &dyn Fn(usize) -> [f32; 2]| Halves {
-        images: [0, 1].map(|half| Image::from_fn(w, h, |x, y| [value(y * w + x)[half]; 3]).unwrap()),
-        variance: Image::from_fn(w, h, |_, _| [0.125; 3]).unwrap(),
-    };
-    let plane = |x: usize, y: usize| [x as f32, y as f32, 0.0];
-    let even = [
-        Image::from_fn(w, h, |_, _| [0.5; 3]).unwrap(),
-        Image::from_fn(w, h, |_, _| [0.0, 0.0, 1.0]).unwrap(),
-        Image::from_fn(w, h, plane).unwrap(),
-    ];
-    let output = smoothed(&halves(&|_| [2.0; 2]), &even, 1.0);
-    assert!(output.image.data.iter().all(|v| (v - 2.0).abs() < 1e-4) && output.bias < 1e-4);
-    let output = smoothed(&halves(&|i| noise[i]), &even, 1.0);
-    let square = output.image.data.iter().map(|&v| f64::from(v - 2.0).powi(2)).sum::<f64>() / (3 * w * h) as f64;
-    assert!(square < 0.125 / 50.0, "{square}");
+fn on_an_even_wall_noise_goes_and_the_mean_stays() {
+    let wall = plane(64, 64, |_| Vec3::Z);
+    let output = smoothed(&flat(64, 64, 0.0, |_| 2.0), &wall, 1.0);
+    assert!(output.image.data.iter().all(|&v| v == 2.0) && output.bias == 0.0);
+    let noisy = flat(64, 64, 0.5, |_| 2.0);
+    let output = smoothed(&noisy, &wall, 1.0);
+    // The variance of the mean of both halves is 0.125.
+    let square = mean(&output.image.data.iter().map(|v| (v - 2.0) * (v - 2.0)).collect::<Vec<f32>>());
+    assert!(square < 0.125 / 40.0, "{square}");
+    // The standard error of the mean of the picture is 0.0055.
+    let moved = mean(&output.image.data) - mean(&noisy.mean().data);
+    assert!(moved.abs() < 0.0055, "{moved}");
     assert!(output.bias < 0.02, "{}", output.bias);
+}
+
+#[test]
+fn an_edge_in_the_guides_stays_sharp() {
+    let half = |x: usize| if x < 32 { Vec3::Z } else { Vec3::X };
+    let step = |x: usize| if x < 32 { 1.0 } else { 3.0 };
+    let output = smoothed(&flat(64, 64, 0.5, step), &plane(64, 64, half), 1.0);
+    for x in [31, 32] {
+        let column: Vec<f32> = (0..64).map(|y| output.image.pixel(x, y)[0]).collect();
+        // Unfiltered, the mean of a column has a standard error of 0.044.
+        assert!((mean(&column) - f64::from(step(x))).abs() < 3.0 * 0.044, "column {x}: {}", mean(&column));
+    }
+}
+
+#[test]
+fn narrow_pictures_and_any_number_of_threads_work() {
+    for (width, height) in [(1, 1), (1, 40), (40, 1), (3, 2)] {
+        let output = smoothed(&flat(width, height, 0.5, |_| 2.0), &plane(width, height, |_| Vec3::Z), 1.0);
+        assert!(output.image.count_non_finite() + output.interval.count_non_finite() == 0, "{width} x {height}");
+    }
+    let (noisy, wall) = (flat(50, 30, 0.5, |x| x as f32), plane(50, 30, |_| Vec3::Z));
+    let run = |threads| crate::exec::Pool::new(threads).unwrap().run(|| smoothed(&noisy, &wall, 1.0));
+    let (one, three) = (run(1), run(3));
+    assert!(one.image == three.image && one.interval == three.interval);
+    assert!(one.bias == three.bias && one.error == three.error);
+}
+
+#[test]
+fn a_picture_of_unknown_noise_is_filtered_and_states_no_error() {
+    let wall = plane(64, 64, |_| Vec3::Z);
+    let Halves { images: [one, _], .. } = flat(64, 64, 0.5, |_| 2.0);
+    let unknown = || Image::from_fn(64, 64, |_, _| [f32::INFINITY; 3]).unwrap();
+    let output = smoothed(&Halves { images: [one.clone(), one], variances: [unknown(), unknown()] }, &wall, 1.0);
+    let square = mean(&output.image.data.iter().map(|v| (v - 2.0) * (v - 2.0)).collect::<Vec<f32>>());
+    assert!(square < 0.25 / 40.0, "{square}");
+    assert!(output.error == f64::INFINITY && output.interval.data.iter().all(|&v| v == f32::INFINITY));
 }
 
 #[test]
@@ -189,7 +270,8 @@ fn degenerate_images_give_numbers_or_an_error() {
     let run = |values: [f32; 5]| {
         let [beauty, variance, albedo, normal, position] = values.map(image);
         let halves = [&beauty, &beauty];
-        let input = Input { halves, variance: &variance, albedo: &albedo, normal: &normal, position: &position };
+        let variances = [&variance, &variance];
+        let input = Input { halves, variances, albedo: &albedo, normal: &normal, position: &position };
         denoise::run(&input, &denoise::Params::default(), monitor.job())
     };
     for values in [
@@ -206,6 +288,12 @@ fn degenerate_images_give_numbers_or_an_error() {
     assert!(run([0.0, -1.0, 0.0, 0.0, 0.0]).unwrap_err().message.contains("variance is -1"));
     assert!(run([0.0, f32::NAN, 0.0, 0.0, 0.0]).is_err());
     let (small, other) = (image(0.0), Image::new(4, 3, 3).unwrap());
-    let input = Input { halves: [&small, &small], variance: &small, albedo: &other, normal: &small, position: &small };
+    let input = Input {
+        halves: [&small, &small],
+        variances: [&small, &small],
+        albedo: &other,
+        normal: &small,
+        position: &small,
+    };
     assert!(denoise::run(&input, &denoise::Params::default(), monitor.job()).unwrap_err().message.contains("albedo"));
 }

@@ -88,21 +88,29 @@ class Picture:
     goal: Goal
     is_black: bool
 
+    @property
+    def filter_error(self) -> float | None:
+        """The stated error of the filtered picture; None if it is not filtered or has too few paths for a statement."""
+        error = self.report.preview_error
+        return error if self.is_filtered and math.isfinite(error) else None
+
     def facts(self) -> dict[str, Any]:
         """The picture as JSON has it."""
         return {
             "paths_per_pixel": self.report.samples,
             "error": self.report.error,
             "filtered": self.is_filtered,
-            "filter_error": self.report.preview_bias if self.is_filtered else None,
+            "filter_error": self.filter_error,
         }
 
     def words(self) -> str:
         """Its quality in a line."""
         noise = f"{percent(self.report.error)} of noise at {self.report.samples} paths per pixel"
-        if self.is_filtered:
-            return f"{noise}; the PNG is filtered, with a bias of {percent(self.report.preview_bias)}"
-        return noise
+        if not self.is_filtered:
+            return noise
+        if self.filter_error is None:
+            return f"{noise}; the PNG is filtered"
+        return f"{noise}; the PNG is filtered, with an error of {percent(self.filter_error)}"
 
     def doubts(self) -> list[dict[str, Any]]:
         """Reasons to doubt it."""

@@ -1,0 +1,157 @@
+//! Noise filter: smooths an image rendered with few paths per pixel, guided by surface attributes, and states the error
+//! of the result.
+//!
+//! 1. The paths are split into two halves, which are filtered separately (after Rousselle et al. 2012, "Adaptive
+//!    rendering with non-local means filtering"). Their colours are divided by the albedo of the surfaces (`light`),
+//!    which preserves textures.
+//! 2. A first pass averages 5 x 5 neighbours on the same surface (`guides`). It is the pilot: noise is small enough in
+//!    it for tests.
+//! 3. Passes with growing steps combine the pixels that pass a test: their pilots differ by no more than their
+//!    variances explain (after Sakai et al. 2024, "A statistical approach to Monte Carlo denoising"). Each pass fits
+//!    planes rather than means (`regression`), so that gradients survive, and its result is the pilot of the next. The
+//!    variances are measured as the difference between the two halves, which includes the correlations between pixels
+//!    that share paths.
+//! 4. Each pixel takes the pass with the least estimated error, or stays as it is (`choice`). With zero variance,
+//!    the image is unchanged.
+//! 5. The error, the bias and the interval of each pixel are estimated from the halves (`statement`).
+//!
+//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, by about their
+//! standard error. It states this bias, as part of the error. Final images are rendered without the filter.
+//!
+//! Not modelled: motion; reflections, which are smoothed as if they were light on the mirror's surface; textures seen
+//! in mirrors, which are blurred.
+
+mod choice;
+mod guides;
+mod input;
+mod light;
+mod planes;
+mod regression;
+mod statement;
+
+use crate::error::{Result, check_range};
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+pub use input::Input;
+
+use guides::Guides;
+use light::Light;
+use planes::{Classes, Planes};
+use regression::{Pass, Pilot};
+use statement::Statement;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Strength of the smoothing, in `[0, 10]`. The filter tolerates a squared difference between the pilots of
+    /// neighbours in proportion to their variances; `strength` scales this tolerance. 0 leaves the image unchanged.
+    pub strength: f32,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { strength: 1.0 }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Output {
+    pub image: Image,
+    /// Half-width of the 95 % confidence interval of each pixel's radiance, per channel, bias included; infinite where
+    /// a variance is unknown.
+    pub interval: Image,
+    /// Estimated error, remaining noise and bias together: root mean square over pixels and channels, relative to the
+    /// mean of the image. Infinite if a variance is unknown.
+    pub error: f64,
+    /// Estimated bias, relative to the mean of the image: the root mean square, over squares of 8 × 8 pixels, of the
+    /// mean bias in a square. The square of this estimate is unbiased. Blur within a square of pixels goes undetected.
+    pub bias: f64,
+}
+
+/// Distance between the taps of each pass, in pixels, and the radius over which the variance of its pilot is averaged.
+/// [bench filter]
+const PASSES: [(usize, usize); 3] = [(1, 6), (2, 6), (4, 10)];
+/// Squared difference of two pilots, in units of the sum of their variances, at which the weight of a neighbour falls
+/// by a factor e, at strength 1. [bench filter]
+const TOLERANCE: f32 = 4.0;
+
+/// Filters the image, and states the error of the result.
+///
+/// # Errors
+/// Images of different sizes or with too few channels; values that are not finite; a strength out of range; no memory;
+/// cancelled.
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
+    check_range("strength", params.strength, 0.0, 10.0)?;
+    input.check()?;
+    let guides = Guides::new(input, job.part(0.0, 0.05))?;
+    let light = Light::new(input, &guides, job.part(0.05, 0.1))?;
+    let edges = guides.edges(job.part(0.1, 0.1))?;
+    let classes = Classes { is_first: &edges };
+    let passes = match params.strength > 0.0 {
+        true => passes(&light, &guides, &classes, TOLERANCE * params.strength, job.part(0.1, 0.8))?,
+        false => Vec::new(),
+    };
+    let chosen = choice::choose(&light, &passes, &classes, job.part(0.8, 0.9))?;
+    let [one, other] = [0, 1].map(|half| changed(input.halves[half], &light, &chosen, half, job.part(0.9, 0.92)));
+    let (mut image, other) = (one?, other?);
+    let statement = Statement::of(&light, &classes, input.halves, [&image, &other], job.part(0.92, 0.98))?;
+    exec::for_rows(&mut image.data, 3 * other.width, job.part(0.98, 1.0), |y, row| {
+        row.iter_mut().zip(&other.data[3 * other.width * y..]).for_each(|(a, b)| *a = 0.5 * *a + 0.5 * b);
+    })?;
+    let Statement { interval, error, bias } = statement;
+    Ok(Output { image, interval, error, bias })
+}
+
+/// Returns the light after each pass.
+fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job: Job) -> Result<Vec<Planes>> {
+    let pass = |values: &Planes, pilot: Option<Pilot>, step: usize, job: Job| {
+        Pass { light: values, pilot, confidence: &light.confidence, guides, step }.run(job)
+    };
+    let mut pilot = pass(&light.halves, None, 1, job.part(0.0, 0.2))?;
+    let mut passes: Vec<Planes> = Vec::with_capacity(PASSES.len());
+    for (i, (step, radius)) in PASSES.into_iter().enumerate() {
+        let part = job.part(0.2 + 0.26 * i as f64, 0.2 + 0.26 * (i + 1) as f64);
+        let values = passes.last().unwrap_or(&light.halves);
+        let pilots = passes.last().unwrap_or(&pilot);
+        let before = passes.iter().rev().nth(1).unwrap_or(&light.halves);
+        let squares = squared_differences(light, pilots, before, part.part(0.0, 0.05))?;
+        let variance = classes.smoothed(&squares, radius, part.part(0.05, 0.2))?;
+        let tested = Pilot { light: pilots, variance: &variance, tolerance };
+        let filtered = pass(values, Some(tested), step, part.part(0.2, 1.0))?;
+        passes.push(filtered);
+        // The first pass has replaced the pilot.
+        pilot.data = Vec::new();
+    }
+    Ok(passes)
+}
+
+/// Returns half the squared difference between the halves of the pilot, per channel: an estimate of the variance of a
+/// half. Where the noise of the picture is unknown, the halves may be equal, and the change by the last pass takes the
+/// place of their difference.
+fn squared_differences(light: &Light, pilot: &Planes, before: &Planes, job: Job) -> Result<Planes> {
+    let (width, height) = (pilot.width, pilot.height);
+    Planes::from_rows([width, height, 3], job, |y, row| {
+        for (c, plane) in row.chunks_exact_mut(width).enumerate() {
+            let (one, other) = (pilot.row(y, c), pilot.row(y, c + 3));
+            for (x, out) in plane.iter_mut().enumerate() {
+                let other = if light.is_known(x, y) { other[x] } else { before.row(y, c)[x] };
+                *out = 0.5 * (one[x] - other) * (one[x] - other);
+            }
+        }
+    })
+}
+
+/// Returns a half of the picture after its light has been filtered. A pixel whose light is unchanged keeps its value.
+fn changed(half: &Image, light: &Light, chosen: &Planes, number: usize, job: Job) -> Result<Image> {
+    let width = half.width;
+    let mut image = Image::new(width, half.height, 3)?;
+    exec::for_rows(&mut image.data, 3 * width, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(3).enumerate() {
+            for (c, out) in out.iter_mut().enumerate() {
+                let [before, after] = [&light.halves, chosen].map(|planes| planes.row(y, 3 * number + c)[x]);
+                *out = half.pixel(x, y)[c] + (after - before) * light.albedo(x, y, c) * light.unit;
+            }
+        }
+    })?;
+    Ok(image)
+}

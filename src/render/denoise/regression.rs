@@ -1,0 +1,188 @@
+//! One pass of the filter: each pixel gets the value at its centre of a plane that is fitted to its neighbours by
+//! weighted least squares (first-order regression, as by Bitterli et al. 2016, here over the pixel coordinates).
+//!
+//! A neighbour's weight is the product of four factors: a Gaussian of its distance in pixels; its similarity in the
+//! guides; the statistical test of its pilot value, which falls with the squared difference of the two pilots divided
+//! by the sum of their variances (Welch's t, as by Sakai et al. 2024); and its confidence.
+
+use super::guides::Guides;
+use super::light::LIGHT;
+use super::planes::{Planes, Shift};
+use crate::error::Result;
+use crate::job::Job;
+use crate::simd::widest;
+
+/// Neighbours along each axis, on either side of a pixel. [convention: 5 x 5 taps, as in à-trous filters]
+const RADIUS: isize = 2;
+/// Standard deviation of the Gaussian over the taps, in taps. [bench filter]
+const SIGMA: f32 = 2.0;
+/// Pull of the slopes towards 0, as a share of the weight: the regression becomes a mean where the neighbours lie on
+/// one line or are few. [bench filter]
+const RIDGE: f32 = 0.02;
+/// Smallest share of the weights that must be left after the slopes are eliminated. [rounding]
+const MIN_LEFT: f32 = 0.02;
+/// Relative difference that rounding alone may cause. [rounding]
+const EQUAL: f32 = 1e-6;
+/// Sums of a pixel: moments 1, x, y, xx, xy, yy of the weights, and moments 1, x, y of each channel.
+const SUMS: usize = 15;
+
+/// The data of one pass.
+pub struct Pass<'a> {
+    /// The light of both halves; the values that are combined.
+    pub light: &'a Planes,
+    /// The pilot: a smoother estimate of the light, whose differences decide the weights; `None` to test nothing.
+    pub pilot: Option<Pilot<'a>>,
+    /// Confidence in each half of each pixel, in `(0, 1]`.
+    pub confidence: &'a Planes,
+    pub guides: &'a Guides,
+    /// Distance between neighbouring taps, in pixels.
+    pub step: usize,
+}
+
+#[derive(Clone, Copy)]
+pub struct Pilot<'a> {
+    pub light: &'a Planes,
+    /// Variance of the pilot, per channel; equal for both halves.
+    pub variance: &'a Planes,
+    /// Squared difference, in units of the sum of both variances, at which the weight has fallen by a factor e.
+    pub tolerance: f32,
+}
+
+impl Pass<'_> {
+    /// Filters both halves. Each half is tested against its own pilot only, so that the results stay independent.
+    pub fn run(&self, job: Job) -> Result<Planes> {
+        let Planes { width, height, .. } = *self.light;
+        Planes::from_rows([width, height, LIGHT], job, |y, out| {
+            let mut sums = [vec![0.0; SUMS * width], vec![0.0; SUMS * width]];
+            let mut distance = vec![0.0; width];
+            for dy in -RADIUS..=RADIUS {
+                for dx in -RADIUS..=RADIUS {
+                    self.add(y, [dx, dy], &mut distance, &mut sums);
+                }
+            }
+            let (first, second) = out.split_at_mut(3 * width);
+            for (sums, out) in sums.iter().zip([first, second]) {
+                solve(sums, self.pilot.is_some(), out);
+            }
+        })
+    }
+
+    /// Adds one tap to the sums of the pixels of a row.
+    fn add(&self, y: usize, tap: [isize; 2], distance: &mut [f32], sums: &mut [Vec<f32>; 2]) {
+        let (width, height) = (self.light.width, self.light.height);
+        let Some(at) = Shift::new([width, height], y, tap.map(|t| t * self.step as isize)) else { return };
+        let distance = &mut distance[..at.span];
+        match tap {
+            [0, 0] => distance.fill(0.0),
+            _ => self.guides.distances(y, &at, distance),
+        }
+        let place = tap.map(|t| t as f32);
+        let gauss = (-0.5 * (place[0] * place[0] + place[1] * place[1]) / (SIGMA * SIGMA)).exp();
+        for (half, sums) in sums.iter_mut().enumerate() {
+            let values = self.light.part(at.row, 3 * half, at.there, at.span);
+            let confidence = &self.confidence.row(at.row, half)[at.there..at.there + at.span];
+            let mut weights = vec![0.0; at.span];
+            match self.pilot {
+                None => weights.copy_from_slice(distance),
+                Some(Pilot { light, variance, tolerance }) => {
+                    let here = light.part(y, 3 * half, at.from, at.span);
+                    let there = light.part(at.row, 3 * half, at.there, at.span);
+                    let noise_here = variance.part(y, 0, at.from, at.span);
+                    let noise_there = variance.part(at.row, 0, at.there, at.span);
+                    test(tolerance, distance, here, there, noise_here, noise_there, &mut weights);
+                }
+            }
+            accumulate(gauss, place, confidence, values, &mut weights, at.from, sums);
+        }
+    }
+}
+
+widest! {
+    /// Adds the result of the test of the pilots to the distances.
+    fn test(
+        tolerance: f32,
+        distance: &[f32],
+        here: [&[f32]; 3],
+        there: [&[f32]; 3],
+        noise_here: [&[f32]; 3],
+        noise_there: [&[f32]; 3],
+        out: &mut [f32],
+    ) {
+        let n = out.len();
+        let distance = &distance[..n];
+        let [a, b, v, w] = [here, there, noise_here, noise_there].map(|planes| planes.map(|s| &s[..n]));
+        let square = |v: f32| v * v;
+        for i in 0..n {
+            let t = |c: usize| {
+                let rounding = square(EQUAL * (a[c][i] + b[c][i])) + f32::MIN_POSITIVE;
+                square(a[c][i] - b[c][i]) / (tolerance * (v[c][i] + w[c][i]) + rounding)
+            };
+            out[i] = distance[i] + (1.0 / 3.0) * (t(0) + t(1) + t(2));
+        }
+    }
+}
+
+widest! {
+    /// Turns distances into weights, and adds a tap's weighted moments to the sums of the pixels from `from` on.
+    fn accumulate(
+        gauss: f32,
+        place: [f32; 2],
+        confidence: &[f32],
+        values: [&[f32]; 3],
+        weights: &mut [f32],
+        from: usize,
+        sums: &mut [f32],
+    ) {
+        let n = weights.len();
+        let confidence = &confidence[..n];
+        for i in 0..n {
+            // Approximate exp(-t) by (1 - t/8)⁸, which is 0 from t = 8 on.
+            let square = |v: f32| v * v;
+            let w = (1.0 - weights[i] * 0.125).max(0.0);
+            weights[i] = gauss * square(square(square(w))) * confidence[i];
+        }
+        let [x, y] = place;
+        let width = sums.len() / SUMS;
+        let mut planes = sums.chunks_exact_mut(width);
+        let mut add = |scale: f32, values: Option<&[f32]>| {
+            let Some(plane) = planes.next() else { return };
+            let plane = &mut plane[from..from + n];
+            match values {
+                None => (0..n).for_each(|i| plane[i] += scale * weights[i]),
+                Some(values) => {
+                    let values = &values[..n];
+                    (0..n).for_each(|i| plane[i] += scale * (weights[i] * values[i]));
+                }
+            }
+        };
+        for scale in [1.0, x, y, x * x, x * y, y * y] {
+            add(scale, None);
+        }
+        for values in values {
+            for scale in [1.0, x, y] {
+                add(scale, Some(values));
+            }
+        }
+    }
+}
+
+/// Computes the filtered values of a row from its sums: the value at the centre of the fitted plane, or else the
+/// weighted mean.
+fn solve(sums: &[f32], has_slopes: bool, out: &mut [f32]) {
+    let width = out.len() / 3;
+    let sum = |plane: usize, x: usize| sums[plane * width + x];
+    for x in 0..width {
+        let [weight, bx, by] = [0, 1, 2].map(|plane| sum(plane, x));
+        let (xx, xy, yy) = (sum(3, x) + RIDGE * weight, sum(4, x), sum(5, x) + RIDGE * weight);
+        let determinant = xx * yy - xy * xy;
+        let (u, v) = ((yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant);
+        let left = weight - u * bx - v * by;
+        for c in 0..3 {
+            let [value, along_x, along_y] = [0, 1, 2].map(|moment| sum(6 + 3 * c + moment, x));
+            out[c * width + x] = match has_slopes && left > MIN_LEFT * weight {
+                true => (value - u * along_x - v * along_y) / left,
+                false => value / weight,
+            };
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What the filter states about its result: the bias, the error, and the interval of each pixel.
+//!
+//! All follow from the two halves before and after filtering; `choice` has the formulas.
+
+use super::light::Light;
+use super::planes::{Classes, Planes};
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, colour};
+use crate::job::Job;
+
+/// Half-width, in standard deviations, of the interval that contains 95 % of a normal distribution. [convention]
+const NORMAL_95: f32 = 1.959_964;
+/// Side of the squares over which the bias is averaged, in pixels. [convention]
+const SQUARE: usize = 8;
+/// Radius in pixels over which the errors of the pixels are averaged for their intervals. [bench filter]
+const INTERVAL_RADIUS: usize = 8;
+
+/// What the filter states; the fields are those of `Output`.
+pub struct Statement {
+    pub interval: Image,
+    pub error: f64,
+    pub bias: f64,
+}
+
+impl Statement {
+    /// Returns the statements about the mean of two filtered halves.
+    pub fn of(light: &Light, classes: &Classes, before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Self> {
+        let Image { width, height, .. } = *before[0];
+        let errors = squared_errors(before, after, job.part(0.0, 0.2))?;
+        let pixels = (3 * width * height) as f64;
+        let mean: f64 =
+            before.iter().flat_map(|image| &image.data).map(|&v| f64::from(v)).sum::<f64>() / (2.0 * pixels);
+        let is_known = (0..height).all(|y| (0..width).all(|x| light.is_known(x, y)));
+        let error = match mean > 0.0 {
+            _ if !is_known => f64::INFINITY,
+            true => (squared_error(&errors) / pixels).sqrt() / mean,
+            false => 0.0,
+        };
+        let around = classes.smoothed(&errors, INTERVAL_RADIUS, job.part(0.2, 0.7))?;
+        let mut interval = Image::new(width, height, 3)?;
+        exec::for_rows(&mut interval.data, 3 * width, job.part(0.7, 0.8), |y, row| {
+            for (x, out) in row.chunks_exact_mut(3).enumerate() {
+                for (c, out) in out.iter_mut().enumerate() {
+                    let [bias, variance] = [c, c + 3].map(|channel| around.row(y, channel)[x]);
+                    let half_width = NORMAL_95 * (bias.max(0.0) + variance).sqrt();
+                    *out = if light.is_known(x, y) { half_width } else { f32::INFINITY };
+                }
+            }
+        })?;
+        let bias = bias(before, after, job.part(0.8, 1.0))?;
+        Ok(Self { interval, error, bias })
+    }
+}
+
+/// Sums up the estimates. The squared bias counts only if it is positive: noise can make its estimate negative.
+fn squared_error(errors: &Planes) -> f64 {
+    let (mut bias, mut variance) = (0.0, 0.0);
+    for y in 0..errors.height {
+        let sum = |channel: usize| errors.row(y, channel).iter().map(|&v| f64::from(v)).sum::<f64>();
+        bias += (0..3).map(sum).sum::<f64>();
+        variance += (3..6).map(sum).sum::<f64>();
+    }
+    bias.max(0.0) + variance
+}
+
+/// Returns estimates of the squared bias of each pixel, per channel, and then of the variance of the mean of the halves.
+/// They are accurate only as means over many pixels.
+fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
+    let Image { width, height, .. } = *before[0];
+    Planes::from_rows([width, height, 6], job, |y, row| {
+        let (biases, variances) = row.split_at_mut(3 * width);
+        for x in 0..width {
+            let [a, b, c, d] = [before[0], before[1], after[0], after[1]].map(|image| image.rgb(x, y));
+            let (bias, variance) = ((c - a) * (d - b), 0.25 * (c - d) * (c - d));
+            for channel in 0..3 {
+                biases[channel * width + x] = bias[channel];
+                variances[channel * width + x] = variance[channel];
+            }
+        }
+    })
+}
+
+/// Estimates the bias of the filter, relative to the mean of the image, from the images of two halves of the paths
+/// before and after filtering. In each square of pixels, the mean change of one half is multiplied by the mean change
+/// of the other half. The bias is the square root of the mean of these products.
+fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
+    let Image { width, height, .. } = *before[0];
+    let across = width.div_ceil(SQUARE);
+    let squares = exec::map(across * height.div_ceil(SQUARE), job, |square| {
+        let (left, top) = (square % across * SQUARE, square / across * SQUARE);
+        let (mut moved, mut light, mut count) = ([0.0; 2], 0.0, 0.0);
+        for y in top..(top + SQUARE).min(height) {
+            for x in left..(left + SQUARE).min(width) {
+                for half in 0..2 {
+                    let [before, after] = [before, after].map(|i| f64::from(colour::luminance(i[half].rgb(x, y))));
+                    moved[half] += after - before;
+                    light += before / 2.0;
+                }
+                count += 1.0;
+            }
+        }
+        (moved[0] * moved[1] / count, light, count)
+    })?;
+    let (squared, light, count) = squares.iter().fold((0.0, 0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1, a.2 + s.2));
+    Ok(if light > 0.0 { f64::max(squared / count, 0.0).sqrt() * count / light } else { 0.0 })
+}
