@@ -2,7 +2,8 @@
 //! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
 //! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`rivals`); other methods in the same
 //! engine (`methods`); quality against time for every setting (`knobs`); the final votes on drawn styles and on pairs
-//! with a known truth (`votes`), and on sets that were set aside (`aside`).
+//! with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted pictures (`autocomplete`)
+//! and exemplars with defects (`doubts`) of the demonstration scenes, which need no test data.
 //!
 //! Pictures are scored by two judges: `harness/judge.rs`, and `tools/stylit_judge.py` beside the test data, which sees
 //! images only. The script runs with `LUXFER_PYTHON`, `target/peers/judge` or `python3`, if it has numpy, scipy and
@@ -13,6 +14,12 @@
 //! otherwise on fewer, so no picture reaches 45 %. `guide` has a standard error of 13 and consists mostly of similar
 //! patches under different light: see `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
+#[path = "stylit/autocomplete.rs"]
+mod autocomplete;
+#[path = "stylit/demonstration.rs"]
+mod demonstration;
+#[path = "stylit/doubts.rs"]
+mod doubts;
 #[path = "stylit/fidelity.rs"]
 mod fidelity;
 mod harness;
@@ -45,6 +52,13 @@ struct Pair {
 fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
+    let pool = Pool::new(2).expect("two threads");
+    if wants("autocomplete") {
+        autocomplete::measure(&pool);
+    }
+    if wants("doubts") {
+        doubts::measure(&pool);
+    }
     let pair = match Pair::load(1) {
         Ok(pair) => pair,
         Err(reason) => {
@@ -54,7 +68,6 @@ fn main() {
             return judged_absent(&reason);
         }
     };
-    let pool = Pool::new(2).expect("two threads");
     if wants("presets") {
         presets(&pair, &pool);
     }

@@ -68,10 +68,16 @@ pub enum Code {
     NoCounterpart = 27,
     /// Stylisation: the motion disagrees with the guides of the two frames.
     MotionDisagrees = 28,
+    /// Stylisation: the exemplar, or its painted part, lacks light that the target shows.
+    LightNotPainted = 29,
+    /// Stylisation: places of the exemplar with equal light are painted in two ways.
+    AmbiguousPaint = 30,
+    /// Stylisation: a small place of the artwork is unlike all places with similar light, such as a stain.
+    Blemish = 31,
 }
 
 impl Code {
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 31] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -100,6 +106,9 @@ impl Code {
         Self::NotInPicture,
         Self::NoCounterpart,
         Self::MotionDisagrees,
+        Self::LightNotPainted,
+        Self::AmbiguousPaint,
+        Self::Blemish,
     ];
 }
 

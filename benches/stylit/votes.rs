@@ -4,6 +4,7 @@
 //! that a program makes from the guides, so that the same program makes the right picture of the target.
 //! [`ASIDE`] lists sets that were not looked at while the votes were developed.
 
+use super::demonstration::{guides_of, objects};
 use super::fidelity::{Detail, Likeness};
 use super::{Pair, save};
 use crate::harness::scenes::data;
@@ -12,16 +13,13 @@ use glam::Vec3;
 use luxfer::demo::artwork::{Style, draw};
 use luxfer::demo::{sphere_on_table, still_life};
 use luxfer::exec::Pool;
-use luxfer::guides::{self, Extras, Guides, pairs};
+use luxfer::guides::{Extras, pairs};
 use luxfer::image::Image;
 use luxfer::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
 use luxfer::image::io::{Encoding, load};
 use luxfer::job::Monitor;
 use luxfer::patch::{VoteMode, vote};
-use luxfer::render::World;
-use luxfer::scene::Scene;
 use luxfer::stylize::{Guide, Input, Output, Params, Range, run};
-use std::sync::Arc;
 
 /// Drawn styles of the pair in the test data: name, and path of the artwork.
 const DRAWN: [(&str, &str); 4] = [
@@ -41,10 +39,6 @@ const VOTES: [(&str, VoteMode); 4] = [
     ("weighted", VoteMode::Weighted),
     ("adaptive", VoteMode::Adaptive),
 ];
-
-/// Size of the pictures of the demonstration scenes, and paths per pixel of their guides.
-const SIZE: [usize; 2] = [600, 456];
-const SAMPLES: u32 = 32;
 
 struct Set {
     name: &'static str,
@@ -180,11 +174,7 @@ fn rendered(pair: &Pair) -> Set {
 /// The still life in the style of the sphere on a table, drawn by the demonstration's artists and by a gradient.
 fn demonstrated(pool: &Pool) -> impl Iterator<Item = Set> {
     let [ball, target] = [sphere_on_table(), still_life()].map(|scene| guides_of(pool, scene.expect("a scene")));
-    let things = |p: &Option<guides::Point>| {
-        let name = p.map(|p| target.surfaces.shapes[p.mesh as usize].name.clone()).unwrap_or_default();
-        !["", "Table", "Wall"].contains(&name.as_str())
-    };
-    let object: Vec<bool> = target.surfaces.points.iter().map(things).collect();
+    let object = objects(&target);
     let light: Vec<(Image, Image)> = pairs(&ball, &target, Extras::default())
         .expect("guides of one kind")
         .into_iter()
@@ -200,17 +190,6 @@ fn demonstrated(pool: &Pool) -> impl Iterator<Item = Set> {
         light: light[0].clone(),
         truth: Some(Truth { picture, object: object.clone() }),
     })
-}
-
-fn guides_of(pool: &Pool, scene: Scene) -> Guides {
-    let camera = scene.cameras[0].clone();
-    let params = guides::Params { width: SIZE[0], height: SIZE[1], samples: SAMPLES, ..guides::Params::default() };
-    let monitor = Monitor::default();
-    let render = || {
-        let world = World::build(Arc::new(scene), monitor.job())?;
-        guides::run(&world, &camera, &params, monitor.job())
-    };
-    pool.run(render).expect("a valid scene")
 }
 
 /// Colours light by a gradient from a dark blue by a warm red to a pale yellow: a smooth medium without texture.

@@ -725,6 +725,27 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_MOTION_DISAGREES 28
 
+/**
+ * The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
+ * the artist of a half-painted picture has not painted yet. What is painted there is a guess. The severity is the
+ * share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
+ * the place of the target where most of them lie.
+ */
+#define LUXFER_WARNING_LIGHT_NOT_PAINTED 29
+
+/**
+ * Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The severity is the
+ * share of the exemplar with such light. The warning points to a place of the artwork with such light.
+ */
+#define LUXFER_WARNING_AMBIGUOUS_PAINT 30
+
+/**
+ * A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
+ * the difference, in units of the difference that places with equal guides typically have. The warning points to the
+ * place in the artwork.
+ */
+#define LUXFER_WARNING_BLEMISH 31
+
 /** Gets the number of warnings in a list. Any thread. */
 luxfer_status luxfer_warnings_get_count(luxfer_warnings *warnings, uint32_t *count);
 

@@ -351,7 +351,8 @@ pub unsafe extern "C" fn luxfer_stylize_start(
                     (None, stylize::run_and_publish(&input, &params, &publish, job)?)
                 };
                 let comparison = deviation.unwrap_or(output.report.agreement);
-                let warnings = stylize::motion_disagrees(comparison).into_iter().collect();
+                let mut warnings = output.report.warnings(input.known.is_some());
+                warnings.extend(stylize::motion_disagrees(comparison));
                 Ok(Stylised::finished(output, surfaces, warnings, updater))
             })
         })
@@ -396,7 +397,10 @@ pub unsafe extern "C" fn luxfer_stylize_update(
 /// picture, and whose targets are NULL. Any thread.
 ///
 /// The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
-/// the inverse mask and the artwork.
+/// the inverse mask and the artwork. The painted pixels stay as they are. The new paint continues strokes across the
+/// border of the painted part and joins it without a step, and no patch of the artwork is used more than 100 times as
+/// often as the mean. If the painted part lacks light that the rest shows, the result has the warning
+/// LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

@@ -31,7 +31,7 @@ pub(super) struct Finished {
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
-    /// Reasons to doubt the motion.
+    /// Reasons to doubt the exemplar, the light and the motion.
     pub warnings: Vec<Warning>,
     frame: Arc<Frame>,
     updater: Option<Arc<Mutex<Updater>>>,

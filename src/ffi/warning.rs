@@ -118,6 +118,18 @@ pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// share of these pixels among the pixels that were compared. The warning points to the pixel with the largest
 /// error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
+/// The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
+/// the artist of a half-painted picture has not painted yet. What is painted there is a guess. The severity is the
+/// share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
+/// the place of the target where most of them lie.
+pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
+/// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The severity is the
+/// share of the exemplar with such light. The warning points to a place of the artwork with such light.
+pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
+/// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
+/// the difference, in units of the difference that places with equal guides typically have. The warning points to the
+/// place in the artwork.
+pub const LUXFER_WARNING_BLEMISH: luxfer_warning_code = 31;
 
 /// A warning: a reason to doubt a result.
 #[repr(C)]
@@ -354,6 +366,9 @@ pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c
         LUXFER_WARNING_NOT_IN_PICTURE => c"LUXFER_WARNING_NOT_IN_PICTURE",
         LUXFER_WARNING_NO_COUNTERPART => c"LUXFER_WARNING_NO_COUNTERPART",
         LUXFER_WARNING_MOTION_DISAGREES => c"LUXFER_WARNING_MOTION_DISAGREES",
+        LUXFER_WARNING_LIGHT_NOT_PAINTED => c"LUXFER_WARNING_LIGHT_NOT_PAINTED",
+        LUXFER_WARNING_AMBIGUOUS_PAINT => c"LUXFER_WARNING_AMBIGUOUS_PAINT",
+        LUXFER_WARNING_BLEMISH => c"LUXFER_WARNING_BLEMISH",
         _ => c"LUXFER_WARNING_UNKNOWN",
     };
     name.as_ptr()

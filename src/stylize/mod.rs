@@ -10,9 +10,10 @@
 //!
 //! The modules: `guides` normalises the guides, `level` quantises one pyramid level, `finder` searches for nearest
 //! patches, `budget` finds the knee of the errors, `retrieve` matches under the budget, and `multires` runs from
-//! coarse to fine. `updater` follows changes of the artwork, `animate` advances from frame to frame, and `greedy` is
-//! Hertzmann's algorithm for comparison. `report` measures the result, and `pilot` predicts time and energy from runs
-//! at low resolution.
+//! coarse to fine. `border` joins new paint to a painted part. `updater` follows changes of the artwork, `animate`
+//! advances from frame to frame, and `greedy` is Hertzmann's algorithm for comparison. `report` measures the result,
+//! `lack` finds light that the exemplar lacks, `exemplar` finds defects of the exemplar, and `pilot` predicts time and
+//! energy from runs at low resolution.
 //!
 //! The final picture is a blend of the mean and of whole exemplar pixels, with as much fine detail as the exemplar
 //! (`VoteMode::Adaptive`, not in the paper).
@@ -37,10 +38,13 @@
 //! US 8,861,869, 8,571,328 and 8,625,927); hence the Cargo feature `stylize`, which a distributor can leave out.
 
 mod animate;
+mod border;
 mod budget;
+mod exemplar;
 mod finder;
 mod greedy;
 mod guides;
+mod lack;
 mod level;
 mod memory;
 mod multires;
@@ -58,7 +62,9 @@ mod warnings;
 mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
+pub use exemplar::Doubts;
 pub use guides::{Guide, MAX_CHANNELS, Range};
+pub use lack::Lack;
 pub use memory::Memory;
 pub use output::{IntermediateResult, Output, Publish};
 pub use params::{Finder, Input, Mode, Params};
@@ -66,7 +72,7 @@ pub use pilot::{PilotRuns, Prediction};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::PassReport;
 pub use updater::Updater;
-pub use warnings::{MAX_DISAGREEMENT, motion_disagrees};
+pub use warnings::{MAX_AMBIGUOUS, MAX_BLEMISH, MAX_DISAGREEMENT, MAX_LACK, motion_disagrees};
 
 use crate::error::Result;
 use crate::job::Job;

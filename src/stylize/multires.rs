@@ -2,8 +2,11 @@
 //! finer level from the upsampled field.
 
 use super::animate::{Moved, keep, moved};
+use super::border::{self, Border};
+use super::exemplar::examine;
 use super::finder::Nearest;
 use super::greedy;
+use super::lack::lack;
 use super::level::{Level, Problem};
 use super::memory::Memory;
 use super::output::{IntermediateResult, Output, Publish};
@@ -152,6 +155,10 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
     };
     let target = &level.problem.guides.target;
     let mut report = LevelReport { width: target.width, height: target.height, energy: Vec::new(), passes: Vec::new() };
+    let mut border = match params.mode {
+        Mode::Greedy => None,
+        _ => Border::new(level.problem, &state.kept, params, level.seed, job.part(0.12, 0.12))?,
+    };
     for k in 0..iterations {
         let part = |from: f64, to: f64| {
             let n = iterations as f64;
@@ -159,12 +166,23 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
         };
         let passes = rematch(level, state, params, l, k, part(0.0, 0.9))?;
         report.passes.extend(passes);
-        report.energy.push(energy(&state.field, level));
+        let State { field, picture, .. } = &mut *state;
+        if let Some(border) = &mut border {
+            border.rematch(level, field, picture, k as u64, part(0.9, 0.9))?;
+            if l == 0 {
+                border::limit_usage(level, field, part(0.9, 0.9))?;
+            }
+        }
+        report.energy.push(energy(field, level));
         // Paint by voting, except in the greedy mode, which has painted while matching.
-        let vote_mode = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
+        let is_last = l == 0 && k + 1 == iterations;
+        let vote_mode = if is_last { params.final_vote } else { params.vote };
         match params.mode {
-            Mode::Greedy => restore_known(&mut state.picture, level.problem),
-            _ => paint(&mut state.picture, &state.field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?,
+            Mode::Greedy => restore_known(picture, level.problem),
+            _ => paint(picture, field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?,
+        }
+        if is_last && border.is_some() {
+            border::fade(picture, field, level.problem, vote_mode, part(1.0, 1.0))?;
         }
     }
     Ok(report)
@@ -219,11 +237,14 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     let mut image = picture.try_clone()?;
     let decode_input = DecodeInput { field: &field, problem, artwork: setup.input.artwork, known: setup.input.known };
     decode_into(&mut image, &picture, decode_input, job.part(1.0, 1.0), |_| true)?;
+    let guide_error = guide_error(&field, problem, job)?;
     let report = Report {
+        lack: lack(problem, &guide_error, job)?,
+        doubts: examine(problem, job)?,
         levels,
         usage,
         whole: whole(&picture, &field, problem, job)?,
-        guide_error: guide_error(&field, problem, job)?,
+        guide_error,
         sources: sources(&field, problem, setup.halved, job)?,
         halvings: setup.halved,
         patch: problem.patch,

@@ -75,8 +75,11 @@ pub(super) fn decode_into(
                 (true, Some(known)) => pixel.copy_from_slice(known.pixel(x, y)),
                 (true, None) => pixel.fill(0.0),
                 _ => match whole.then(|| origin(field, problem.patch, x, y)).flatten() {
-                    Some((px, py)) => pixel.copy_from_slice(artwork.pixel(px, py)),
-                    None => pixel.iter_mut().zip(picture.pixel(x, y)).for_each(|(p, v)| *p = srgb_to_linear(*v)),
+                    // Near the border of a painted part, the paint may differ from that of the patches.
+                    Some((px, py)) if picture.pixel(x, y) == problem.style.pixel(px, py) => {
+                        pixel.copy_from_slice(artwork.pixel(px, py));
+                    }
+                    _ => pixel.iter_mut().zip(picture.pixel(x, y)).for_each(|(p, v)| *p = srgb_to_linear(*v)),
                 },
             }
         }

@@ -1,5 +1,7 @@
 //! Measures a run: energy, coverage, patch usage, guide error.
 
+use super::exemplar::Doubts;
+use super::lack::Lack;
 use super::level::{Level, Problem};
 use super::retrieve::PassReport;
 use crate::error::Result;
@@ -59,6 +61,10 @@ pub struct Report {
     /// How the motion agrees with the guides of both frames. A pixel is wrong if its motion leads to another surface in
     /// the previous frame. Zeros without motion.
     pub agreement: Comparison,
+    /// The part of the target whose light the exemplar lacks.
+    pub lack: Lack,
+    /// Defects of the exemplar.
+    pub doubts: Doubts,
 }
 
 impl Usage {

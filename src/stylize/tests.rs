@@ -7,6 +7,8 @@ use crate::patch::VoteMode;
 use crate::rng::Rng;
 use std::sync::Mutex;
 
+mod doubts;
+mod painted;
 mod sequences;
 
 /// A lit ball in front of a background, as one guide of three channels.

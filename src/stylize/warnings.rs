@@ -1,5 +1,8 @@
-//! Warnings about the motion of a sequence.
+//! Warnings about the exemplar, about light that it lacks, and about the motion of a sequence.
 
+use super::exemplar::Doubts;
+use super::lack::Lack;
+use super::report::Report;
 use crate::image::Comparison;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
@@ -18,6 +21,60 @@ pub fn motion_disagrees(comparison: Comparison) -> Option<Warning> {
     };
     let advice = "give the offset from this frame to the previous one, x right and y down, in pixels, for moving \
                   objects too: luxfer_guides_get_motion computes it";
-    let place = place.map(|[x, y]| DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
-    Some(Warning::above(Code::MotionDisagrees, share, MAX_DISAGREEMENT, message, advice)?.at(place))
+    Some(Warning::above(Code::MotionDisagrees, share, MAX_DISAGREEMENT, message, advice)?.at(centre(place)))
+}
+
+/// Maximum share of the pixels to paint whose light the exemplar may lack. [bench stylit:autocomplete]
+pub const MAX_LACK: f64 = 0.01;
+/// Maximum share of the exemplar whose light may be painted in two ways. [bench stylit:doubts]
+pub const MAX_AMBIGUOUS: f64 = 0.18;
+/// Maximum difference of a place of the artwork to all places with similar light, in units of the grain.
+/// [bench stylit:doubts]
+pub const MAX_BLEMISH: f64 = 13.0;
+
+impl Report {
+    /// Returns the reasons to doubt the exemplar and the light of the target. In a half-painted picture, the exemplar
+    /// is the painted part.
+    pub fn warnings(&self, is_half_painted: bool) -> Vec<Warning> {
+        let light = light_not_painted(&self.lack, is_half_painted);
+        light.into_iter().chain(ambiguous_paint(&self.doubts)).chain(blemish(&self.doubts)).collect()
+    }
+}
+
+fn light_not_painted(lack: &Lack, is_half_painted: bool) -> Option<Warning> {
+    let message = || {
+        let (share, exemplar) = (percent(lack.share), if is_half_painted { "painted part" } else { "exemplar" });
+        format!("{share} of the pixels to paint show light that the {exemplar} lacks, so their paint is a guess")
+    };
+    let advice = if is_half_painted {
+        "paint a piece of this place yourself; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows all such places"
+    } else {
+        "use an exemplar that shows such light, or raise match_appearance; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows all \
+         such places"
+    };
+    Some(Warning::above(Code::LightNotPainted, lack.share, MAX_LACK, message, advice)?.at(centre(lack.place)))
+}
+
+fn ambiguous_paint(doubts: &Doubts) -> Option<Warning> {
+    let message = || {
+        let share = percent(doubts.ambiguous);
+        format!("{share} of the exemplar has light that is painted in two ways, which the picture mixes")
+    };
+    let advice = "add a guide that distinguishes the two, such as materials or normals, or paint equal light alike";
+    let warning = Warning::above(Code::AmbiguousPaint, doubts.ambiguous, MAX_AMBIGUOUS, message, advice)?;
+    Some(warning.at(centre(doubts.ambiguous_at)))
+}
+
+fn blemish(doubts: &Doubts) -> Option<Warning> {
+    let message = || {
+        let grains = doubts.blemish;
+        format!("a place of the artwork differs from all places with similar light by {grains:.0} times its grain")
+    };
+    let advice = "if it is a stain or a slip, retouch it, or exclude it by luxfer_stylize_set_source_mask";
+    Some(Warning::above(Code::Blemish, doubts.blemish, MAX_BLEMISH, message, advice)?.at(centre(doubts.blemish_at)))
+}
+
+/// Returns the centre of a pixel.
+fn centre(pixel: Option<[usize; 2]>) -> Option<DVec2> {
+    pixel.map(|[x, y]| DVec2::new(x as f64 + 0.5, y as f64 + 0.5))
 }

@@ -634,6 +634,19 @@ class WarningCode(IntEnum):
     or positions, are compared along the motion, except in a preview, and guides of light alone find no error.
     The severity is the share of these pixels among the pixels that were compared. The warning points to the
     pixel with the largest error."""
+    LIGHT_NOT_PAINTED = 29
+    """The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow
+    beside which the artist of a half-painted picture has not painted yet. What is painted there is a guess. The
+    severity is the share of these pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The
+    warning points to the place of the target where most of them lie."""
+    AMBIGUOUS_PAINT = 30
+    """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The
+    severity is the share of the exemplar with such light. The warning points to a place of the artwork with
+    such light."""
+    BLEMISH = 31
+    """A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The
+    severity is the difference, in units of the difference that places with equal guides typically have. The
+    warning points to the place in the artwork."""
 
 
 class IlluminanceImage(IntEnum):

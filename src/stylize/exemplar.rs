@@ -1,0 +1,174 @@
+//! Doubts about the exemplar: places of similar guides that are painted differently.
+//!
+//! The exemplar is divided into blocks with even guides. A stylisation cannot distinguish the paint of blocks with
+//! equal guides, so it mixes them. Two defects show in the mean paint of the blocks:
+//!
+//! - A blemish, such as a stain: a block is unlike all blocks elsewhere with similar guides.
+//! - Two paints for one light: of the blocks elsewhere with equal guides, a good part is unlike the others.
+//!
+//! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
+
+use super::level::Problem;
+use crate::error::Result;
+use crate::exec;
+use crate::image::try_with_capacity;
+use crate::job::Job;
+
+/// Number of blocks along the longer side of the exemplar, and the minimum side of a block in pixels.
+const BLOCKS: usize = 48;
+const MIN_SIDE: usize = 6;
+/// Guides are equal or similar if they differ by at most this much, as a weighted root mean square of channels in
+/// `[0, 1]`. The guides within a block are equal. [bench stylit:doubts]
+const EQUAL: f32 = 0.03;
+const SIMILAR: f32 = 0.1;
+/// Blocks within this number of columns and rows are not elsewhere: a defect may cover them too.
+const NEAR: usize = 3;
+/// Minimum number of blocks with equal or similar guides with which a block is compared.
+const MIN_OTHERS: usize = 16;
+/// Minimum grain, in units of the display encoding: that of flat paint. [bench stylit:doubts]
+const MIN_GRAIN: f32 = 0.015;
+/// Number of grains by which the upper quartile of blocks with equal guides differs from their median if they have two
+/// paints. [bench stylit:doubts]
+const TWO_PAINTS: f32 = 4.0;
+
+/// Defects of the exemplar, with their places in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Doubts {
+    /// Largest difference, in grains, of a block to the blocks elsewhere with similar guides, and the block's centre.
+    pub blemish: f64,
+    pub blemish_at: Option<[usize; 2]>,
+    /// Share of the blocks whose light has two paints, and the centre of the block at which they differ most.
+    pub ambiguous: f64,
+    pub ambiguous_at: Option<[usize; 2]>,
+}
+
+/// The blocks of the exemplar whose guides are even.
+struct Blocks {
+    side: usize,
+    /// Number of channels of the guides.
+    channels: usize,
+    /// Column and row of each block.
+    at: Vec<[usize; 2]>,
+    /// Means of the guides, each multiplied by the square root of its weight.
+    guides: Vec<f32>,
+    /// Mean paint; unused channels are 0.
+    paint: Vec<[f32; 4]>,
+}
+
+/// A block compared with the blocks elsewhere.
+#[derive(Clone, Copy, Default)]
+struct Compared {
+    /// Median and upper quartile of the differences of blocks with equal guides to their median paint.
+    spread: Option<[f32; 2]>,
+    /// Difference of the block's paint to the most similar paint of blocks with similar guides: the 20th part of these
+    /// blocks is closer.
+    own: f32,
+}
+
+/// Looks for defects of the exemplar.
+pub(super) fn examine(problem: &Problem, job: Job) -> Result<Doubts> {
+    let blocks = Blocks::of(problem, job)?;
+    let compared = exec::map(blocks.at.len(), job, |i| blocks.compare(i))?;
+    let mut grains: Vec<f32> = compared.iter().filter_map(|c| c.spread).map(|[median, _]| median).collect();
+    if grains.is_empty() {
+        return Ok(Doubts::default());
+    }
+    let grain = quantile(&mut grains, 50).max(MIN_GRAIN);
+    let quartile = |c: &Compared| c.spread.map_or(0.0, |[_, quartile]| quartile / grain);
+    let worst = |measure: &dyn Fn(&Compared) -> f32| {
+        let ranked = (0..compared.len()).rev().max_by(|&a, &b| measure(&compared[a]).total_cmp(&measure(&compared[b])));
+        ranked.map(|i| (measure(&compared[i]), blocks.centre(i)))
+    };
+    let blemish = worst(&|c| c.own / grain);
+    let split = compared.iter().filter(|c| quartile(c) > TWO_PAINTS).count();
+    Ok(Doubts {
+        blemish: blemish.map_or(0.0, |(grains, _)| f64::from(grains)),
+        blemish_at: blemish.map(|(_, at)| at),
+        ambiguous: split as f64 / grains.len() as f64,
+        ambiguous_at: worst(&quartile).map(|(_, at)| at),
+    })
+}
+
+impl Blocks {
+    fn of(problem: &Problem, job: Job) -> Result<Self> {
+        let style = &problem.style;
+        let side = style.width.max(style.height).div_ceil(BLOCKS).max(MIN_SIDE);
+        let (columns, rows) = (style.width / side, style.height / side);
+        let roots: Vec<f32> = problem.guides.weights.iter().map(|w| w.sqrt() as f32).collect();
+        let even = exec::map(columns * rows, job, |b| block([b % columns, b / columns], side, problem, &roots))?;
+        let count = even.iter().flatten().count();
+        let mut blocks = Self {
+            side,
+            channels: roots.len(),
+            at: try_with_capacity(count)?,
+            guides: try_with_capacity(count * roots.len())?,
+            paint: try_with_capacity(count)?,
+        };
+        for (at, guides, paint) in even.into_iter().flatten() {
+            blocks.at.push(at);
+            blocks.guides.extend(guides);
+            blocks.paint.push(paint);
+        }
+        Ok(blocks)
+    }
+
+    fn centre(&self, i: usize) -> [usize; 2] {
+        self.at[i].map(|v| v * self.side + self.side / 2)
+    }
+
+    /// Compares a block with the blocks elsewhere that have similar guides.
+    fn compare(&self, i: usize) -> Compared {
+        let guides = |i: usize| &self.guides[i * self.channels..(i + 1) * self.channels];
+        let elsewhere = (0..self.at.len()).filter(|&j| (0..2).any(|k| self.at[i][k].abs_diff(self.at[j][k]) > NEAR));
+        let with_distance = elsewhere.map(|j| (j, squares(guides(i), guides(j))));
+        let similar: Vec<(usize, f32)> = with_distance.filter(|(_, d)| *d <= SIMILAR * SIMILAR).collect();
+        let paint = |&(j, _): &(usize, f32)| self.paint[j];
+        let equal: Vec<[f32; 4]> = similar.iter().filter(|(_, d)| *d <= EQUAL * EQUAL).map(paint).collect();
+        let mut compared = Compared::default();
+        if similar.len() >= MIN_OTHERS {
+            let mut to_own: Vec<f32> = similar.iter().map(|s| squares(&paint(s), &self.paint[i]).sqrt()).collect();
+            compared.own = quantile(&mut to_own, 5);
+        }
+        if equal.len() >= MIN_OTHERS {
+            let median = std::array::from_fn::<f32, 4, _>(|c| {
+                let mut values: Vec<f32> = equal.iter().map(|paint| paint[c]).collect();
+                quantile(&mut values, 50)
+            });
+            let mut to_median: Vec<f32> = equal.iter().map(|paint| squares(paint, &median).sqrt()).collect();
+            compared.spread = Some([50, 75].map(|percent| quantile(&mut to_median, percent)));
+        }
+        compared
+    }
+}
+
+/// Returns column and row, mean guides and mean paint of a block; `None` if its guides are uneven, or if it contains a
+/// pixel that may not be used.
+fn block(at: [usize; 2], side: usize, problem: &Problem, roots: &[f32]) -> Option<([usize; 2], Vec<f32>, [f32; 4])> {
+    let (style, source) = (&problem.style, &problem.guides.source);
+    let columns = at[0] * side..(at[0] + 1) * side;
+    let pixels = || (at[1] * side..(at[1] + 1) * side).flat_map(|y| columns.clone().map(move |x| (x, y)));
+    if problem.source_mask.as_ref().is_some_and(|mask| pixels().any(|(x, y)| !mask[y * style.width + x])) {
+        return None;
+    }
+    let share = 1.0 / (side * side) as f32;
+    let (mut guides, mut square, mut paint) = (vec![0.0; roots.len()], 0.0, [0.0; 4]);
+    for (x, y) in pixels() {
+        for ((mean, v), root) in guides.iter_mut().zip(source.pixel(x, y)).zip(roots) {
+            *mean += share * v * root;
+            square += share * (v * root).powi(2);
+        }
+        paint.iter_mut().zip(style.pixel(x, y)).for_each(|(mean, v)| *mean += share * v);
+    }
+    let variance = square - guides.iter().map(|v| v * v).sum::<f32>();
+    (variance <= EQUAL * EQUAL).then_some((at, guides, paint))
+}
+
+fn squares(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+/// Returns a quantile of values in any order.
+fn quantile(values: &mut [f32], percent: usize) -> f32 {
+    let rank = (values.len() - 1) * percent / 100;
+    *values.select_nth_unstable_by(rank, f32::total_cmp).1
+}

@@ -1,0 +1,104 @@
+//! Light of the target that the exemplar lacks.
+//!
+//! A place of the target is lacking if no place of the exemplar has similar guides, wherever it lies. Whatever is
+//! painted there is a guess. The guide error of a run is high there too, but it is also high where a match was chosen
+//! for its colours; so places with a high guide error are compared with a sample of the whole exemplar.
+
+use super::level::Problem;
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_with_capacity};
+use crate::job::Job;
+use std::collections::BTreeSet;
+
+/// Two places have similar guides if these differ by at most this much, as a weighted root mean square of channels in
+/// `[0, 1]`. [bench stylit:autocomplete]
+const MAX_DIFFERENCE: f32 = 0.1;
+/// Number of pixels along the longer side of an image that are compared, at most.
+const SAMPLES: usize = 128;
+/// Number of steps to which a channel is rounded, so that equal guides are compared only once. [rounding]
+const STEPS: f32 = 32.0;
+/// Maximum number of different guides of the exemplar that are compared.
+const MAX_CODES: usize = 2048;
+/// Side in samples of the blocks, of which the most lacking one gives the place.
+const BLOCK: usize = 8;
+
+/// The part of the target whose light the exemplar lacks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lack {
+    /// Share of the pixels to paint.
+    pub share: f64,
+    /// Centre, in pixels of the target, of the block that contains most of them.
+    pub place: Option<[usize; 2]>,
+}
+
+/// Compares the target with the exemplar. `guide_error` is that of the finished run.
+pub(super) fn lack(problem: &Problem, guide_error: &Image, job: Job) -> Result<Lack> {
+    let target = &problem.guides.target;
+    let codes = codes(problem)?;
+    let stride = stride(target);
+    let (columns, rows) = (target.width.div_ceil(stride), target.height.div_ceil(stride));
+    let is_wanted = |x: usize, y: usize| problem.target_mask.as_ref().is_none_or(|mask| mask[y * target.width + x]);
+    // For each sample: whether it is to be painted, and whether the exemplar lacks its light.
+    let samples = exec::map(rows, job, |row| {
+        let y = row * stride;
+        let sample = |column: usize| {
+            let x = column * stride;
+            let wanted = is_wanted(x, y);
+            let lacks = wanted && guide_error.pixel(x, y)[0] > MAX_DIFFERENCE;
+            (wanted, lacks && !codes.has_similar(target.pixel(x, y)))
+        };
+        (0..columns).map(sample).collect::<Vec<_>>()
+    })?;
+    let count = |pick: fn(&(bool, bool)) -> bool| samples.iter().flatten().filter(|s| pick(s)).count();
+    let share = count(|s| s.1) as f64 / count(|s| s.0).max(1) as f64;
+    let blocks = (0..rows).step_by(BLOCK).flat_map(|y| (0..columns).step_by(BLOCK).map(move |x| [x, y]));
+    let lacking = |&[x, y]: &[usize; 2]| {
+        let rows = samples[y..].iter().take(BLOCK);
+        rows.flat_map(|row| row[x..].iter().take(BLOCK)).filter(|s| s.1).count()
+    };
+    let centre = |[x, y]: [usize; 2]| {
+        [((x + BLOCK / 2) * stride).min(target.width - 1), ((y + BLOCK / 2) * stride).min(target.height - 1)]
+    };
+    let place = blocks.rev().max_by_key(lacking).filter(|_| share > 0.0).map(centre);
+    Ok(Lack { share, place })
+}
+
+fn stride(image: &Image) -> usize {
+    image.width.max(image.height).div_ceil(SAMPLES)
+}
+
+/// The different guides of the exemplar, rounded.
+struct Codes<'a> {
+    /// The channels of all codes, one code after the other, and the weights of the channels.
+    values: Vec<f32>,
+    weights: &'a [f64],
+}
+
+fn codes(problem: &Problem) -> Result<Codes<'_>> {
+    let source = &problem.guides.source;
+    let stride = stride(source);
+    let mut different = BTreeSet::new();
+    for y in (0..source.height).step_by(stride) {
+        for x in (0..source.width).step_by(stride) {
+            if problem.source_mask.as_ref().is_none_or(|mask| mask[y * source.width + x]) {
+                let code = source.pixel(x, y).iter().map(|v| (v * STEPS + 0.5) as u8);
+                different.insert(code.collect::<Vec<u8>>());
+            }
+        }
+    }
+    let step = different.len().div_ceil(MAX_CODES).max(1);
+    let mut values = try_with_capacity(different.len().div_ceil(step) * source.channels)?;
+    values.extend(different.iter().step_by(step).flatten().map(|&v| f32::from(v) / STEPS));
+    Ok(Codes { values, weights: &problem.guides.weights })
+}
+
+impl Codes<'_> {
+    fn has_similar(&self, guides: &[f32]) -> bool {
+        let difference = |code: &[f32]| -> f64 {
+            code.iter().zip(guides).zip(self.weights).map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum()
+        };
+        let limit = f64::from(MAX_DIFFERENCE).powi(2);
+        self.values.chunks_exact(guides.len()).any(|code| difference(code) <= limit)
+    }
+}
