@@ -28,6 +28,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("segment", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "features"]),
     ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
+    ("fixture", &["error", "job", "image", "geometry", "scene"]),
     ("relight", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Pipelines, which pass data between stages.
@@ -83,6 +84,7 @@ const PER_THREAD: (&str, &str) = ("thread_local!", "quiet");
 const TAGGED: &[&str] = &[
     "demo",
     "features",
+    "fixture",
     "geometry",
     "guides",
     "image",
