@@ -2,15 +2,12 @@
 //! of one pixel on their suspensions. It prints the share of right kinds, the errors of profile and drop, the share of
 //! 95 % intervals that hold the truth, and the seconds per lamp.
 //!
-//! Arguments: `generated [cases per body]`, or `real` for lamps of real photos, whose contours are drawn into
-//! `out/bench/fixtures-*.png`.
+//! Argument: the number of cases per body.
 
 mod harness;
 
 #[path = "fixtures/bodies.rs"]
 mod bodies;
-#[path = "fixtures/real.rs"]
-mod real;
 
 use bodies::{BODIES, Body, Case};
 use glam::DVec2;
@@ -42,9 +39,6 @@ struct Outcome {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    if words.iter().any(|word| word == "real") {
-        return real::run();
-    }
     let cases = words.iter().find_map(|word| word.parse().ok()).unwrap_or(CASES);
     let pool = Pool::new(2).unwrap();
     let mut table =
