@@ -46,10 +46,9 @@ impl Lights {
     }
 
     pub fn guides(&self) -> Vec<Guide<'_>> {
-        let guide = |p| {
-            let guides::Pair { name, source, target, .. } = p;
-            Guide { name, source, target, weight: 1.0, range: Range::Light }
-        };
-        self.0.iter().map(guide).collect()
+        let pairs = self.0.iter();
+        pairs
+            .map(|p| Guide { name: p.name, source: &p.source, target: &p.target, weight: 1.0, range: Range::Light })
+            .collect()
     }
 }
