@@ -216,9 +216,10 @@ class RenderImage(IntEnum):
     RenderReport.preview_error estimates the remaining error. The image exists only if RenderParams.preview is
     not 0."""
     PREVIEW_INTERVAL = 5
-    """Half the width of the 95 % confidence interval of each pixel of the preview, in cd/m²; 3 channels. It
-    includes the bias of the filter; infinite where a pixel has fewer than four paths. The image exists only if
-    RenderParams.preview is not 0."""
+    """Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It
+    includes the bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too
+    narrow: with 8 paths it may hold only 86 % of the pixels. The image exists only if RenderParams.preview is
+    not 0."""
 
 
 class EmitterAs(IntEnum):
