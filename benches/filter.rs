@@ -64,7 +64,10 @@ fn main() {
             Err(reason) => absent(&format!("filter.gain.{name}"), &reason),
         }
     }
-    table.print("errors relative to the true pixels, root mean square and median; share of the true pixels in the stated 95 % intervals");
+    table.print(
+        "errors relative to the true pixels, root mean square and median; share of the true pixels in the stated 95 % \
+         intervals",
+    );
     tally.print(peer.err().as_deref());
     pool.run(seconds);
 }

@@ -138,9 +138,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_PREVIEW 4
 
 /**
- * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the bias
- * of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths it may
- * hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
+ * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
+ * bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
+ * it may hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW_INTERVAL 5
 

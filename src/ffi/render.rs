@@ -45,9 +45,9 @@ pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
 /// that come from the light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates
 /// the remaining error. The image exists only if luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
-/// Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the bias
-/// of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths it may
-/// hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
+/// Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
+/// bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
+/// it may hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW_INTERVAL: luxfer_render_image = 5;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
