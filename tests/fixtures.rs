@@ -239,7 +239,7 @@ fn bad_input_is_refused_with_advice() {
     }
     assert_eq!(run(&Image::new(32, 64, 1).unwrap()).kind, ErrorKind::InvalidArgument);
 
-    // A square is no body of revolution seen level from the front, but a star is none from anywhere.
+    // A level view of a drum is a square, but no view of a body of revolution is a star.
     let star = |k: usize| {
         let radius = if k % 20 < 10 { 200.0 } else { 60.0 };
         shot.camera.principal + radius * DVec2::from_angle(k as f64 * std::f64::consts::TAU / 200.0)

@@ -727,7 +727,7 @@ typedef struct luxfer_warning {
 
 /**
  * The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
- * the artist of a half-painted picture has not painted yet. What is painted there is a guess. The severity is the
+ * the artist of a half-painted picture has not painted yet. The new paint there is a guess. The severity is the
  * share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
  * the place of the target where most of them lie.
  */

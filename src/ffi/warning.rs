@@ -119,7 +119,7 @@ pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
-/// the artist of a half-painted picture has not painted yet. What is painted there is a guess. The severity is the
+/// the artist of a half-painted picture has not painted yet. The new paint there is a guess. The severity is the
 /// share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
 /// the place of the target where most of them lie.
 pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;

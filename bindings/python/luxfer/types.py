@@ -637,7 +637,7 @@ class WarningCode(IntEnum):
     pixel with the largest error."""
     LIGHT_NOT_PAINTED = 29
     """The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow
-    beside which the artist of a half-painted picture has not painted yet. What is painted there is a guess. The
+    beside which the artist of a half-painted picture has not painted yet. The new paint there is a guess. The
     severity is the share of these pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The
     warning points to the place of the target where most of them lie."""
     AMBIGUOUS_PAINT = 30

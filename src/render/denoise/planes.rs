@@ -119,7 +119,7 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// Returns the pixels of row `y` whose neighbour at an offset lies in the image; `None` if there are none.
+    /// Returns the pixels of row `y` whose neighbour at an offset lies in the image; `None` if no pixel has one.
     pub fn new([width, height]: [usize; 2], y: usize, [dx, dy]: [isize; 2]) -> Option<Self> {
         let row = y.checked_add_signed(dy).filter(|&row| row < height)?;
         let from = dx.min(0).unsigned_abs();

@@ -16,7 +16,7 @@ const SQUARE: usize = 8;
 /// Radius in pixels over which the errors of the pixels are averaged for their intervals. [bench filter]
 const INTERVAL_RADIUS: usize = 8;
 
-/// What the filter states; the fields are those of `Output`.
+/// The statements of the filter about its result; `Output` describes the fields.
 pub struct Statement {
     pub interval: Image,
     pub error: f64,
