@@ -1,6 +1,6 @@
 //! Light of the target that the exemplar lacks.
 //!
-//! A place of the target is lacking if no place of the exemplar has similar guides, wherever it lies. Whatever is
+//! A place of the target is lacking if no place of the exemplar has similar guides of light, wherever it lies. Whatever is
 //! painted there is a guess. The guide error of a run is high there too, but it is also high where a match was chosen
 //! for its colours; so places with a high guide error are compared with a sample of the whole exemplar.
 
@@ -35,7 +35,7 @@ pub struct Lack {
 /// Compares the target with the exemplar. `guide_error` is that of the finished run.
 pub(super) fn lack(problem: &Problem, guide_error: &Image, job: Job) -> Result<Lack> {
     let target = &problem.guides.target;
-    let codes = codes(problem)?;
+    let Some(codes) = codes(problem)? else { return Ok(Lack::default()) };
     let stride = stride(target);
     let (columns, rows) = (target.width.div_ceil(stride), target.height.div_ceil(stride));
     let is_wanted = |x: usize, y: usize| problem.target_mask.as_ref().is_none_or(|mask| mask[y * target.width + x]);
@@ -68,21 +68,29 @@ fn stride(image: &Image) -> usize {
     image.width.max(image.height).div_ceil(SAMPLES)
 }
 
-/// The different guides of the exemplar, rounded.
-struct Codes<'a> {
-    /// The channels of all codes, one code after the other, and the weights of the channels.
+/// The different guides of the exemplar's light, rounded.
+struct Codes {
+    /// The channels of all codes, one code after the other, and the weights of the channels: 0 for channels of data.
     values: Vec<f32>,
-    weights: &'a [f64],
+    weights: Vec<f64>,
 }
 
-fn codes(problem: &Problem) -> Result<Codes<'_>> {
-    let source = &problem.guides.source;
+/// Collects the guides of the exemplar's light; `None` if all guides are data.
+fn codes(problem: &Problem) -> Result<Option<Codes>> {
+    let guides = &problem.guides;
+    let source = &guides.source;
+    let of_light = || guides.weights.iter().zip(&guides.is_light).map(|(w, &is_light)| if is_light { *w } else { 0.0 });
+    let total: f64 = of_light().sum();
+    if total <= 0.0 {
+        return Ok(None);
+    }
     let stride = stride(source);
     let mut different = BTreeSet::new();
     for y in (0..source.height).step_by(stride) {
         for x in (0..source.width).step_by(stride) {
             if problem.source_mask.as_ref().is_none_or(|mask| mask[y * source.width + x]) {
-                let code = source.pixel(x, y).iter().map(|v| (v * STEPS + 0.5) as u8);
+                let channels = source.pixel(x, y).iter().zip(&guides.is_light);
+                let code = channels.map(|(v, &is_light)| if is_light { (v * STEPS + 0.5) as u8 } else { 0 });
                 different.insert(code.collect::<Vec<u8>>());
             }
         }
@@ -90,13 +98,13 @@ fn codes(problem: &Problem) -> Result<Codes<'_>> {
     let step = different.len().div_ceil(MAX_CODES).max(1);
     let mut values = try_with_capacity(different.len().div_ceil(step) * source.channels)?;
     values.extend(different.iter().step_by(step).flatten().map(|&v| f32::from(v) / STEPS));
-    Ok(Codes { values, weights: &problem.guides.weights })
+    Ok(Some(Codes { values, weights: of_light().map(|weight| weight / total).collect() }))
 }
 
-impl Codes<'_> {
+impl Codes {
     fn has_similar(&self, guides: &[f32]) -> bool {
         let difference = |code: &[f32]| -> f64 {
-            code.iter().zip(guides).zip(self.weights).map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum()
+            code.iter().zip(guides).zip(&self.weights).map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum()
         };
         let limit = f64::from(MAX_DIFFERENCE).powi(2);
         self.values.chunks_exact(guides.len()).any(|code| difference(code) <= limit)
