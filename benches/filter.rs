@@ -1,9 +1,9 @@
 //! Benchmark of the noise filter: its error, and the truth of what it states.
 //!
-//! Interiors are rendered with few paths per pixel; the picture, its filtered version and that of Open Image Denoise are
-//! compared with a reference of many paths. Squared errors are reduced by the variance of the reference. The error is
-//! relative to the true pixel, or to a tenth of the image's mean where the pixel is darker. Arguments choose scenes.
-//! Takes about seven minutes of processor time.
+//! Interiors are rendered with few paths per pixel; the picture, its filtered version and that of Open Image Denoise
+//! are compared with a reference of many paths. Squared errors are reduced by the variance of the reference. The error
+//! is relative to the true pixel, or to a tenth of the image's mean where the pixel is darker. Arguments choose
+//! scenes. Takes about seven minutes of processor time.
 
 #[path = "photos/hall.rs"]
 mod hall;

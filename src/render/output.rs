@@ -37,7 +37,8 @@ pub struct Film {
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.
     pub layers: Vec<Layer>,
-    /// The filtered image with its interval, error and bias, if requested. The filtered image is not an unbiased estimate.
+    /// The filtered image with its interval, error and bias, if requested. The filtered image is not an unbiased
+    /// estimate.
     pub preview: Option<denoise::Output>,
 }
 

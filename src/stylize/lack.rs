@@ -1,8 +1,8 @@
 //! Light of the target that the exemplar lacks.
 //!
-//! A place of the target is lacking if no place of the exemplar has similar guides of light, wherever it lies. Whatever is
-//! painted there is a guess. The guide error of a run is high there too, but it is also high where a match was chosen
-//! for its colours; so places with a high guide error are compared with a sample of the whole exemplar.
+//! A place of the target is lacking if no place of the exemplar has similar guides of light, wherever it lies.
+//! Whatever is painted there is a guess. The guide error of a run is high there too, but it is also high where a match
+//! was chosen for its colours; so places with a high guide error are compared with a sample of the whole exemplar.
 
 use super::level::Problem;
 use crate::error::Result;

@@ -50,8 +50,8 @@ impl Guides {
         self.0.row(y, channel)
     }
 
-    /// Returns an image that is 1 at pixels that resemble fewer than three of their neighbours, as at edges of surfaces,
-    /// and 0 elsewhere.
+    /// Returns an image that is 1 at pixels that resemble fewer than three of their neighbours, as at edges of
+    /// surfaces, and 0 elsewhere.
     pub fn edges(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = self.0;
         Planes::from_rows([width, height, 1], job, |y, row| {

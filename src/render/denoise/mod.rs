@@ -57,8 +57,8 @@ impl Default for Params {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Half-width of an approximate 95 % interval of each pixel's radiance, per channel, bias included; infinite where a
-    /// variance is unknown. It is too narrow with few paths, because the choice of a pass is optimistic.
+    /// Half-width of an approximate 95 % interval of each pixel's radiance, per channel, bias included; infinite where
+    /// a variance is unknown. It is too narrow with few paths, because the choice of a pass is optimistic.
     pub interval: Image,
     /// Estimated error, remaining noise and bias together: root mean square over pixels and channels, relative to the
     /// mean of the image. Infinite if a variance is unknown.

@@ -73,7 +73,7 @@ impl Planes {
 
 /// A division of the pixels into two classes, such as edges and all others.
 pub struct Classes<'a> {
-    /// 1 for pixels of the first class, 0 for those of the second; one channel.
+    /// One channel: 1 for pixels of the first class, 0 for pixels of the second.
     pub is_first: &'a Planes,
 }
 

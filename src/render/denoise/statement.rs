@@ -64,8 +64,8 @@ fn squared_error(errors: &Planes) -> f64 {
     bias.max(0.0) + variance
 }
 
-/// Returns estimates of the squared bias of each pixel, per channel, and then of the variance of the mean of the halves.
-/// They are accurate only as means over many pixels.
+/// Returns estimates of the squared bias of each pixel, per channel, and then of the variance of the mean of the
+/// halves. They are accurate only as means over many pixels.
 fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
     let Image { width, height, .. } = *before[0];
     Planes::from_rows([width, height, 6], job, |y, row| {

@@ -99,8 +99,8 @@ impl Pixel {
         [0, 1].map(|first| self.variance_of((0..REPLICATIONS).skip(first).step_by(2)))
     }
 
-    /// Returns an unbiased estimate of the variance of the mean of some replications; infinite if fewer than two of them
-    /// have paths.
+    /// Returns an unbiased estimate of the variance of the mean of some replications; infinite if fewer than two of
+    /// them have paths.
     fn variance_of(&self, replications: impl Iterator<Item = u32> + Clone) -> DVec3 {
         let used = || {
             let sums = replications.clone().map(|r| (self.sums[r as usize].as_dvec3(), r));
