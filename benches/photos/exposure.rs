@@ -79,13 +79,11 @@ impl Scattered {
         };
         let (one, other) = (film(0), film(1));
         let halves = [&one.layers[0].image, &other.layers[0].image];
-        // The variance of the mean of two estimates is a quarter of their squared difference.
-        let mut variance = halves[0].clone();
-        variance.data.iter_mut().zip(&halves[1].data).for_each(|(a, b)| *a = (*a - b).powi(2) / 4.0);
+        // The pictures' own variances also hold the light that comes directly from lamps, which has noise at edges only.
+        let variances = [&one.variance, &other.variance];
         let mean = |layer: usize| mean(&one, &other, layer);
         let (position, normal, albedo) = (mean(1), mean(2), mean(3));
-        let input =
-            denoise::Input { halves, variance: &variance, albedo: &albedo, normal: &normal, position: &position };
+        let input = denoise::Input { halves, variances, albedo: &albedo, normal: &normal, position: &position };
         let params = denoise::Params { strength: SMOOTHING };
         let mut light = denoise::run(&input, &params, monitor.job()).expect("a smooth picture").image;
         light.data.iter_mut().zip(&albedo.data).for_each(|(v, a)| *v /= a.max(MIN_ALBEDO));

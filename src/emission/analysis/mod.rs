@@ -7,16 +7,17 @@
 //! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless
 //! another one scores clearly higher.
 
+mod evidence;
 pub mod sites;
 
 use super::exemplar::Exemplar;
-use super::exemplar::measured_lamp::MeasuredLamp;
 use super::exemplar::roles::Role;
 use super::lattice::law::Law;
-use super::lattice::{self, Correlated, basis, extent, neighbours};
+use super::lattice::{self, Correlated, basis, extent, neighbours, steps};
 use super::params::{Input, LawMode, Params, working_side};
 use crate::error::{Error, Result};
 use crate::job::Job;
+use evidence::Evidence;
 use glam::DVec2;
 use sites::Sites;
 
@@ -95,6 +96,24 @@ impl Proposal {
     fn without_period(law: Law) -> Self {
         Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
     }
+
+    /// The proposal with its lattice parallel to the axes of the unwarped photo, which are those of the room; unchanged
+    /// if the lamps contradict this, and for the panes of a luminous ceiling.
+    fn aligned(self, exemplar: &Exemplar, score: impl Fn(Law) -> f64) -> Self {
+        let law = self.law.aligned();
+        if law == self.law || exemplar.is_luminous_ceiling() {
+            return self;
+        }
+        let aligned = Self { law, score: score(law), ..self };
+        if aligned.score > self.score - CLEAR_MARGIN { aligned } else { self }
+    }
+
+    /// The value by which proposals are compared: the score, plus the clear margin if the law follows the axes of the
+    /// room, as most ceilings do.
+    fn rank(&self, exemplar: &Exemplar) -> f64 {
+        let is_preferred = self.law.is_aligned() && !exemplar.is_luminous_ceiling();
+        self.score + if is_preferred { CLEAR_MARGIN } else { 0.0 }
+    }
 }
 
 impl Analysis {
@@ -145,32 +164,36 @@ impl Analysis {
     /// Compares the law found in the whole exemplar with other proposals, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
-        let lamps = exemplar.measured_lamps(Role::is_whole);
-        let parts = exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
-        let seen: f64 = lamps.iter().map(|l| l.weight).sum();
+        let evidence = Evidence::of(exemplar);
+        let seen: f64 = evidence.whole.iter().map(|l| l.weight).sum();
         let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
         let endless: f64 = through.map(|(_, area)| area).sum();
-        if lamps.len() == 1 && parts.is_empty() && endless == 0.0 {
+        if evidence.is_single(exemplar) && endless == 0.0 {
             // A single lamp shows no repetition, even if its few pixels correlate.
             self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
             return Ok(());
         }
-        if lamps.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
+        if evidence.whole.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
             return Ok(());
         }
-        let score = |law: Law| score(exemplar, (&lamps, &parts), law);
+        let score = |law: Law| score(exemplar, &evidence, law);
         let own = Proposal { law: self.law, regularity: self.regularity, score: score(self.law) };
         if own.score.is_nan() {
             return Ok(());
         }
-        let mut proposals = self.propose(&lamps, whole, job)?;
+        let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
-        // Find the proposal with the highest score, the first one among equals. It replaces the law found in
-        // the whole exemplar only if its score is clearly higher.
-        let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
+        // Turn lattices parallel to the axes of the room if they then predict the lamps nearly as well.
+        let own = own.aligned(exemplar, score);
+        proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
+
+        // Find the proposal that ranks highest, the first one among equals. It replaces the law found in the whole
+        // exemplar only if its score is clearly higher.
+        let rank = |p: &Proposal| p.rank(exemplar);
+        let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
         // For the panes of a luminous ceiling, prefer the best lattice, unless another law scores clearly higher.
@@ -198,9 +221,9 @@ impl Analysis {
     }
 
     /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
-    /// `min_regularity`, and several rows and lattices with looser thresholds. A luminous ceiling also gets lattices
-    /// and rows from the distances between neighbouring panes.
-    fn propose(&self, lamps: &[MeasuredLamp], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
+    /// `min_regularity`, and several rows and lattices with looser thresholds. Also proposes lattices and rows along the
+    /// axes from the distances between lamps.
+    fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
         for limit in MAGNIFICATIONS {
@@ -225,13 +248,15 @@ impl Analysis {
             }
             job.check()?;
         }
-        if exemplar.is_luminous_ceiling() {
-            let periods = neighbours::periods(lamps);
-            let lattices = neighbours::lattices(&periods).into_iter();
-            let lattices = lattices.map(|basis| Law::Lattice(basis::refine(exemplar, basis, 2)));
-            let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period));
-            proposals.extend(lattices.chain(rows).map(|law| Proposal { law, regularity: 0.0, score: 0.0 }));
-        }
+        // The distances between neighbouring panes, or the steps between lamps, give periods along the axes.
+        let periods = match exemplar.is_luminous_ceiling() {
+            true => neighbours::periods(&evidence.whole),
+            false => steps::periods(&[&evidence.whole[..], &evidence.completed].concat()),
+        };
+        let lattices = neighbours::lattices(&periods).into_iter();
+        let lattices = lattices.map(|basis| Law::Lattice(basis::refine(exemplar, basis, 2)));
+        let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period));
+        proposals.extend(lattices.chain(rows).map(|law| Proposal { law, regularity: 0.0, score: 0.0 }));
         Ok(proposals)
     }
 
@@ -245,11 +270,10 @@ impl Analysis {
         if is_asked(&self.law) {
             return Ok(());
         }
-        let lamps = self.exemplar.measured_lamps(Role::is_whole);
-        let parts = self.exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
-        let mut proposals = self.propose(&lamps, whole, job)?;
+        let evidence = Evidence::of(&self.exemplar);
+        let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.retain(|p| is_asked(&p.law));
-        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&lamps, &parts), p.law));
+        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, &evidence, p.law));
         let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
         let best = best.ok_or_else(|| {
             Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
@@ -266,9 +290,9 @@ impl Analysis {
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
 /// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
-fn score(exemplar: &Exemplar, (lamps, parts): (&[MeasuredLamp], &[MeasuredLamp]), law: Law) -> f64 {
-    match Sites::new(exemplar, lamps, law) {
-        Some(sites) => sites.score(parts),
+fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
+    match Sites::new(exemplar, &evidence.whole, law) {
+        Some(sites) => sites.score(evidence),
         None => match law {
             Law::Free | Law::Whole(_) => SCORE_WITHOUT_PERIOD,
             _ => f64::NAN,

@@ -6,6 +6,7 @@
 //! leads, but which has no lamp. Predictions are weighted by the photo pixels of the lamp, so that the blurred distant
 //! part of a photo has little weight. A lattice that predicts no lamp from another scores 0.
 
+use super::evidence::Evidence;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
@@ -56,6 +57,8 @@ pub struct Sites {
     /// Maps unwarped pixels to lattice cells. A row uses only the first coordinate, along its period.
     pub to_cells: DMat2,
     pub basis: [DVec2; 2],
+    /// Length of the shorter period.
+    shortest: f64,
     is_row: bool,
 }
 
@@ -73,7 +76,7 @@ impl Sites {
         if !to_cells.is_finite() || shortest <= MAX_UNCHANGING_LENGTH {
             return None;
         }
-        let mut sites = Self { list: Vec::new(), to_cells, basis, is_row };
+        let mut sites = Self { list: Vec::new(), to_cells, basis, shortest, is_row };
         for lamp in lamps {
             let is_here = |site: &Site| {
                 let first = &site.lamps[0];
@@ -190,22 +193,26 @@ impl Sites {
     /// - the photo pixels of correctly predicted lamps among those of all lamps that are seen or predicted;
     /// - the number of lamps that are not the first of their site, among all lamps.
     ///
-    /// `parts` holds the visible parts of cut lamps, which count as predicted if a site leads to them.
-    pub fn score(&self, parts: &[MeasuredLamp]) -> f64 {
-        let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
+    /// Cut lamps whose size is known count as lamps if a site leads to them. The visible parts of other cut lamps count
+    /// as predicted if a site leads to any place on them.
+    pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),
             false => (predicted, all + site.shown),
         });
-        let is_predicted = |part: &&MeasuredLamp| {
-            self.list.iter().any(|site| {
-                let half = site.lamps[0].size / 2.0 + part.blur;
-                self.residual(part.centre - site.at).abs().cmple(half).all()
-            })
+        let off = |lamp: &MeasuredLamp, site: &Site| self.residual(lamp.centre - site.at).abs();
+        let on_lamp = |lamp: &MeasuredLamp, site: &Site| site.lamps[0].size / 2.0 + lamp.blur - off(lamp, site);
+        let at_centre = |lamp: &MeasuredLamp, site: &Site| MAX_OFF_SITE * self.shortest + lamp.blur - off(lamp, site);
+        let is_led_to = |lamp: &MeasuredLamp, slack: &dyn Fn(&MeasuredLamp, &Site) -> DVec2| {
+            self.list.iter().any(|site| slack(lamp, site).cmpge(DVec2::ZERO).all())
         };
-        let cut: f64 = parts.iter().map(|p| p.weight).sum();
-        let (predicted, all) =
-            (predicted + parts.iter().filter(is_predicted).map(|p| p.weight).sum::<f64>(), all + cut);
+        let completed = evidence.completed.iter().map(|lamp| (lamp, is_led_to(lamp, &at_centre)));
+        let cut = completed.clone().chain(evidence.parts.iter().map(|part| (part, is_led_to(part, &on_lamp))));
+        let (predicted, all) = cut.fold((predicted, all), |(predicted, all), (lamp, is_predicted)| {
+            (predicted + if is_predicted { lamp.weight } else { 0.0 }, all + lamp.weight)
+        });
+        let whole: usize = self.list.iter().map(|s| s.lamps.len()).sum();
+        let lamps = whole + completed.filter(|(_, is_predicted)| *is_predicted).count();
         if lamps == 0 || all <= 0.0 {
             return 0.0;
         }

@@ -10,9 +10,9 @@ use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::instances::{self, Rules};
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::rim_colour::RimColours;
-use crate::emission::lamps::{cut, lattice_fill, luminaires, sharpest, stretched};
+use crate::emission::lamps::{cut, lattice_fill, luminaires, sharpest, spacing, stretched};
 use crate::emission::lattice::law::Law;
-use crate::emission::lattice::{border_sites, centring, extent};
+use crate::emission::lattice::{basis, border_sites, centring, extent};
 use crate::emission::params::{Input, Params, working_side};
 use crate::emission::quilt;
 use crate::emission::quilt::guide::Guide;
@@ -166,6 +166,9 @@ impl Layer {
 /// [bench photos:tune]
 const MIN_CLEAN_SCORE: f64 = 0.6;
 
+/// A light counts as a line if it is more than this many times as long as wide. [judged on 50 photos]
+const MIN_LINE_ASPECT: f64 = 3.0;
+
 /// Outlines count as ragged if a photo pixel is at least this many unwarped pixels long, because they then show the
 /// steps between photo pixels. [convention]
 const MIN_RAGGED_PIXEL: f64 = 2.0;
@@ -217,10 +220,25 @@ fn source(
             (found, regularity, choice) = copied();
         }
     }
+    continue_lines(&mut exemplar, found);
     if let Law::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
     Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
+}
+
+/// If the pattern does not change along an axis, makes the lights along this axis run through the exemplar: joints or
+/// the border have only cut them into pieces.
+fn continue_lines(exemplar: &mut Exemplar, law: Law) {
+    let periods = law.lattice().into_iter().flatten();
+    for axis in periods.filter(|period| period.length() <= basis::MAX_UNCHANGING_LENGTH) {
+        let (along, across) = if axis.x.abs() > axis.y.abs() { (0, 1) } else { (1, 0) };
+        for (lamp, role) in exemplar.components.list.iter().zip(&mut exemplar.roles) {
+            if lamp.size()[along] as f64 > MIN_LINE_ASPECT * lamp.size()[across] as f64 {
+                *role = Role::Through;
+            }
+        }
+    }
 }
 
 /// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
@@ -332,7 +350,10 @@ impl<'a> PatternPlacement<'a> {
             Law::Whole(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
             _ => self.at_sites(exemplar, designs, instances::resolve(exemplar, patch_map, rules, params.seed, job)?),
         };
-        let mut instances = instances;
+        let mut instances = match law {
+            Law::Whole(_) => instances,
+            _ => spacing::keep_apart(exemplar, instances),
+        };
         sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
         match law {
             Law::Free => shifted(instances, by_patches, params),

@@ -13,4 +13,5 @@ pub mod luminaires;
 pub mod outline;
 pub mod rim_colour;
 pub mod sharpest;
+pub mod spacing;
 pub mod stretched;

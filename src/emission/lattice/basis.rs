@@ -1,6 +1,5 @@
 //! Fits the basis vectors of a lattice to the centres of its lamps.
 
-use super::law::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
@@ -14,14 +13,30 @@ const MAX_OFF_SITE: f64 = 0.12;
 /// change, and not for a period: the lattice search returns a shift of one pixel there. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
-/// Makes a period that is nearly parallel to an image axis exactly parallel, and keeps its length. In a row of few
+/// Makes a period whose slant, as a tangent, is below `max_slant` exactly parallel to its axis, and keeps its length. In a row of few
 /// lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.
-pub fn straight(period: DVec2) -> DVec2 {
+pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     match () {
-        _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
-        _ if period.y.abs() < MAX_SLANT * period.x.abs() => DVec2::new(period.length().copysign(period.x), 0.0),
+        _ if period.x.abs() < max_slant * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
+        _ if period.y.abs() < max_slant * period.x.abs() => DVec2::new(period.length().copysign(period.x), 0.0),
         _ => period,
     }
+}
+
+/// The shortest two vectors that span a lattice (Lagrange's reduction).
+pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
+    // Each step shortens the longer vector by a factor, so a few dozen steps reduce any lattice of finite vectors.
+    for _ in 0..64 {
+        if b.length_squared() < a.length_squared() {
+            std::mem::swap(&mut a, &mut b);
+        }
+        let times = (a.dot(b) / a.length_squared()).round();
+        if times == 0.0 || !times.is_finite() {
+            break;
+        }
+        b -= a * times;
+    }
+    [a, b]
 }
 
 /// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps takes

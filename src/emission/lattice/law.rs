@@ -1,11 +1,20 @@
 //! The law of a texture: the rule by which its pattern continues beyond the exemplar. The pattern continues on a
 //! lattice, in a row, by repetition, or by patches without a lattice.
 
+use super::basis;
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
 
 /// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
+
+/// A period of a lattice becomes parallel to an axis if its slant, as a tangent, is at most this. [judged on 50 photos]
+const MAX_LATTICE_SLANT: f64 = 0.06;
+
+/// A period, made exactly parallel to an axis if it nearly is. Its length stays.
+pub fn aligned(period: DVec2) -> DVec2 {
+    basis::straight(period, MAX_LATTICE_SLANT)
+}
 
 /// The rule by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +65,24 @@ impl Law {
             Self::Whole(basis) => Self::Whole(fit(basis)?),
             Self::Copy | Self::Free => self,
         })
+    }
+
+    /// The law with periods exactly parallel to the axes, where they nearly are. Other laws than lattices stay.
+    pub fn aligned(self) -> Self {
+        match self {
+            Self::Lattice(found) => Self::Lattice(basis::reduced(found).map(aligned)),
+            other => other,
+        }
+    }
+
+    /// Whether the periods, if any, are exactly parallel to the axes.
+    pub fn is_aligned(&self) -> bool {
+        let on_axis = |period: DVec2| period.min_element() == 0.0 || period.max_element() == 0.0;
+        match *self {
+            Self::Lattice([a, b]) => on_axis(a) && on_axis(b),
+            Self::Row([along, _]) => on_axis(along),
+            Self::Copy | Self::Whole(_) | Self::Free => true,
+        }
     }
 
     /// The periods along x and along y in unwarped pixels; `None` for an axis along which the lattice has no period.

@@ -17,6 +17,7 @@ pub mod kind_check;
 pub mod law;
 pub mod neighbours;
 pub mod repeats;
+pub mod steps;
 
 use super::exemplar::Exemplar;
 use crate::error::Result;
@@ -63,12 +64,12 @@ pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     };
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
-    Law::Row([basis::straight(period), across])
+    Law::Row([basis::straight(period, law::MAX_SLANT), across])
 }
 
 /// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
 pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
-    if !extent::has_few_lamps(exemplar, extent) {
+    if !extent::has_few_lamps(exemplar, extent) && !(crate::emission::toggle("W") && exemplar.lamps().count() < 40) {
         return Law::Free;
     }
     extent::as_period(exemplar)

@@ -1,0 +1,88 @@
+//! The lamps of an exemplar, as evidence for a law.
+//!
+//! The photo shows only a part of a lamp that its border cuts. If that lamp resembles whole lamps, it has their size, and
+//! the edges that the border does not cut give its centre. Such a lamp shows a period as well as a whole lamp does.
+
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::components::Component;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
+use crate::emission::exemplar::roles::Role;
+use glam::{BVec2, DVec2};
+
+/// The border cuts a side of a lamp if at least this share of the side's length lies at the border. Less is fraying of
+/// the mask. [rounding]
+const MIN_CUT_SHARE: f64 = 0.1;
+
+/// The lamps of an exemplar. Each list begins with the lamps that most photo pixels show.
+pub struct Evidence {
+    /// The lamps that the photo shows completely.
+    pub whole: Vec<MeasuredLamp>,
+    /// The lamps that the border cuts and whose size is known, with the centre of the whole lamp and the weight of the
+    /// visible part. Empty for a luminous ceiling, whose panes the border may have cut at any bar.
+    pub completed: Vec<MeasuredLamp>,
+    /// The visible parts of the other lamps that the border cuts.
+    pub parts: Vec<MeasuredLamp>,
+}
+
+impl Evidence {
+    pub fn of(exemplar: &Exemplar) -> Self {
+        let whole = exemplar.measured_lamps(Role::is_whole);
+        let mut parts = exemplar.measured_lamps(|role| matches!(role, Role::Cut | Role::Partial));
+        let mut completed = Vec::new();
+        if !exemplar.is_luminous_ceiling() {
+            completed = parts.iter().filter_map(|part| complete(exemplar, part, &whole)).collect();
+            parts.retain(|part| !completed.iter().any(|lamp| lamp.component == part.component));
+        }
+        Self { whole, completed, parts }
+    }
+
+    /// Whether the photo shows a single lamp, or one whole lamp and an unlike part: these show no period.
+    pub fn is_single(&self, exemplar: &Exemplar) -> bool {
+        let max_parts = usize::from(!exemplar.is_luminous_ceiling());
+        self.whole.len() == 1 && self.completed.is_empty() && self.parts.len() <= max_parts
+    }
+}
+
+/// The whole lamp of which the photo shows `part`. `None` if no whole lamp has its size, or if the border cuts both ends
+/// of an axis.
+fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) -> Option<MeasuredLamp> {
+    if exemplar.roles[part.component] != Role::Cut {
+        return None;
+    }
+    let lamp = &exemplar.components.list[part.component];
+    let (low, high) = lamp.bounds();
+    let [cut_low, cut_high] = cut_sides(exemplar, part.component, lamp);
+    if (cut_low & cut_high).any() {
+        return None;
+    }
+
+    // Find a whole lamp that is as long along the axes that are not cut, and no shorter along the others.
+    let is_cut = cut_low | cut_high;
+    let size = whole.iter().find_map(|other| {
+        let size = DVec2::select(is_cut, part.size.max(other.size), part.size);
+        MeasuredLamp { size, ..*part }.is_like(other).then_some(other.size)
+    })?;
+    let centre =
+        DVec2::select(cut_low, high - size / 2.0, DVec2::select(cut_high, low + size / 2.0, (low + high) / 2.0));
+    Some(MeasuredLamp { centre, size, ..*part })
+}
+
+/// Whether the border cuts the lower side of a component along each axis, and whether it cuts the upper side.
+fn cut_sides(exemplar: &Exemplar, component: usize, lamp: &Component) -> [BVec2; 2] {
+    let Exemplar { width, height, ref shown, ref components, .. } = *exemplar;
+    let [mut left, mut right, mut top, mut bottom] = [0usize; 4];
+    for y in lamp.min[1]..=lamp.max[1] {
+        for x in lamp.min[0]..=lamp.max[0] {
+            let i = y * width + x;
+            if components.labels[i] as usize == component + 1 {
+                left += usize::from(x == 0 || !shown[i - 1]);
+                right += usize::from(x + 1 == width || !shown[i + 1]);
+                top += usize::from(y == 0 || !shown[i - width]);
+                bottom += usize::from(y + 1 == height || !shown[i + width]);
+            }
+        }
+    }
+    let [across, down] = lamp.size();
+    let is_cut = |contacts: usize, side: usize| contacts as f64 >= MIN_CUT_SHARE * side as f64;
+    [BVec2::new(is_cut(left, down), is_cut(top, across)), BVec2::new(is_cut(right, down), is_cut(bottom, across))]
+}

@@ -1,0 +1,55 @@
+//! Keeps copies of lamps apart.
+//!
+//! If the lamps of a photo do not lie exactly on a lattice, the texture may show one lamp at two nearly equal places.
+
+use super::instance::Instance;
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::roles::Role;
+use glam::DVec2;
+use std::collections::BTreeMap;
+
+/// Minimum gap between two copies, as a share of the smallest gap between two lamps of the photo. [convention]
+const MIN_GAP_SHARE: f64 = 0.5;
+
+/// A box around a lamp.
+#[derive(Clone, Copy)]
+struct Frame {
+    centre: DVec2,
+    size: DVec2,
+}
+
+impl Frame {
+    /// Gap between two boxes along the axis on which they are farther apart; negative if they overlap.
+    fn gap(&self, other: &Self) -> f64 {
+        ((self.centre - other.centre).abs() - (self.size + other.size) / 2.0).max_element()
+    }
+}
+
+/// Drops each copy that comes much closer to an earlier one than any two whole lamps of the photo do.
+pub fn keep_apart(exemplar: &Exemplar, instances: Vec<Instance>) -> Vec<Instance> {
+    let frame = |(low, high): (DVec2, DVec2)| Frame { centre: (low + high) / 2.0, size: high - low };
+    let frames: Vec<Frame> = exemplar.components.list.iter().map(|lamp| frame(lamp.bounds())).collect();
+    let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();
+    let gaps = whole.iter().enumerate().flat_map(|(n, one)| whole[n + 1..].iter().map(|other| one.gap(other)));
+    let least = MIN_GAP_SHARE * gaps.fold(f64::INFINITY, f64::min);
+    if !(least.is_finite() && least > 0.0) {
+        return instances;
+    }
+
+    // Look up earlier copies in a grid whose cells are no smaller than the distance at which two copies may meet.
+    let cell = frames.iter().map(|f| f.size.max_element()).fold(0.0, f64::max) + least;
+    let mut grid: BTreeMap<[i64; 2], Vec<Frame>> = BTreeMap::new();
+    let mut kept = Vec::new();
+    for instance in instances {
+        let own = frames[instance.component];
+        let own = Frame { centre: own.centre + instance.shift, ..own };
+        let [x, y] = (own.centre / cell).floor().to_array().map(|v| v as i64);
+        let mut around = (y - 1..=y + 1).flat_map(|v| (x - 1..=x + 1).map(move |u| [u, v]));
+        let is_close = around.any(|at| grid.get(&at).is_some_and(|there| there.iter().any(|f| f.gap(&own) < least)));
+        if !is_close {
+            grid.entry([x, y]).or_default().push(own);
+            kept.push(instance);
+        }
+    }
+    kept
+}
