@@ -2,12 +2,14 @@
 //! of one pixel on their suspensions. It prints the share of right kinds, the errors of profile and drop, the share of
 //! 95 % intervals that hold the truth, and the seconds per lamp.
 //!
-//! Argument: the number of cases per body.
+//! Argument: the number of cases per body; or `rendered`, for lamps in rooms that the library renders.
 
 mod harness;
 
 #[path = "fixtures/bodies.rs"]
 mod bodies;
+#[path = "fixtures/rendered.rs"]
+mod rendered;
 
 use bodies::{BODIES, Body, Case};
 use glam::DVec2;
@@ -15,6 +17,7 @@ use harness::{Clock, Table, figure, quantile, time};
 use luxfer::exec::{self, Pool};
 use luxfer::fixture::{self, Fixture, Input, Interval, Known, Params};
 use luxfer::job::Monitor;
+use rendered::{Setup, photograph};
 
 /// Seed of the cameras.
 const SEED: u64 = 28;
@@ -39,6 +42,9 @@ struct Outcome {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    if words.iter().any(|word| word == "rendered") {
+        return of_renderings();
+    }
     let cases = words.iter().find_map(|word| word.parse().ok()).unwrap_or(CASES);
     let pool = Pool::new(2).unwrap();
     let mut table =
@@ -57,7 +63,7 @@ fn main() {
 fn outcome(body: &Body, number: usize) -> Outcome {
     let case = Case::new(body, number, SEED, NOISE);
     let hooks: Vec<DVec2> = case.suspension.into_iter().collect();
-    let input = Input { camera: &case.shot.camera, suspensions: &hooks, known: Known::Nothing };
+    let input = Input { camera: &case.shot.camera, shifted: &[], suspensions: &hooks, known: Known::Nothing };
     let params = Params { distance: case.ceiling.max(0.01), ..Params::default() };
     let outlines = [case.outline.clone()];
     let run = || fixture::from_outlines(&outlines, &input, &params, Monitor::default().job());
@@ -91,6 +97,50 @@ fn profile_error(found: &Fixture, body: &Body, diameter: f64) -> f64 {
         ((diameter * radius(y) - (body.radius)(share)) / body.height).powi(2)
     };
     ((0..HEIGHTS).map(square).sum::<f64>() / HEIGHTS as f64).sqrt()
+}
+
+/// Measures lamps in renderings: sharp, blurred by 1 pixel, blurred and clipped, and far away.
+fn of_renderings() {
+    let near = Setup { distance: 2.0, drop: 0.8, luminance: 60.0, white: 100.0, blur: 0.0 };
+    let setups = [
+        ("sharp", near),
+        ("blurred", Setup { blur: 1.0, ..near }),
+        ("clipped", Setup { luminance: 1000.0, blur: 1.0, ..near }),
+        ("far", Setup { distance: 3.5, ..near }),
+    ];
+    let columns = ["body", "photo", "width", "kind", "probability", "diameter", "in", "height", "in", "drop", "in"];
+    let mut table = Table::new(columns);
+    for body in &BODIES {
+        for (name, setup) in &setups {
+            table.row(of_rendering(body, name, setup));
+        }
+    }
+    table.print("Bodies from renderings: width in pixels, errors in %, and whether the interval holds the truth");
+}
+
+fn of_rendering(body: &Body, name: &str, setup: &Setup) -> Vec<String> {
+    let shot = photograph(body, setup);
+    let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[shot.hook], known: Known::Nothing };
+    let params = Params { distance: shot.ceiling, ..Params::default() };
+    let diameter = 2.0 * body.profile().iter().map(|v| v.x).fold(0.0, f64::max);
+    let is_lit = |x: usize| (0..shot.mask.height).any(|y| shot.mask.pixel(x, y)[0] > 0.5);
+    let width = (0..shot.mask.width).filter(|x| is_lit(*x)).count();
+    let head = [body.name.to_string(), name.to_string(), width.to_string()];
+    let found = match fixture::run(&shot.photo, &shot.mask, &input, &params, Monitor::default().job()) {
+        Ok(mut found) => found.remove(0),
+        Err(error) => return head.into_iter().chain([error.message]).collect(),
+    };
+    let error = |interval: Interval, truth: f64| {
+        let holds = interval.low <= truth && truth <= interval.high;
+        [format!("{:+.2}", 100.0 * (interval.value / truth - 1.0)), if holds { "yes" } else { "no" }.to_string()]
+    };
+    let kind = if found.kind == body.kind { "right".to_string() } else { format!("{:?}", found.kind) };
+    let numbers = [
+        error(found.diameter, diameter),
+        error(found.height, body.height),
+        error(found.lamps[0].drop, f64::from(setup.drop)),
+    ];
+    head.into_iter().chain([kind, format!("{:.2}", found.probability)]).chain(numbers.into_iter().flatten()).collect()
 }
 
 /// Returns the share in % of the flags that are set.

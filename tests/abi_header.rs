@@ -90,7 +90,7 @@ const PARTS: &[Part] = &[
     },
     Part {
         name: "lighting",
-        title: "lighting design: illuminance, powers and places of lamps, photometry",
+        title: "lighting design: illuminance, powers, places and bodies of lamps, photometry",
         includes: &["transfer"],
         groups: &[
             "illuminance",
@@ -103,6 +103,7 @@ const PARTS: &[Part] = &[
             "glare",
             "false_colour",
             "design",
+            "pendants",
         ],
     },
     Part {
@@ -559,6 +560,10 @@ layouts! {
     luxfer_placement_params: struct_size aim radiance starts min_offset max_offset min_scale max_scale
         min_rotation max_rotation seed;
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
+    luxfer_pendants_params: struct_size alike level refine known reserved known_length ceiling suspension_error focal
+        focal_error axes_error principal axes;
+    luxfer_pendant: struct_size profile_count kind doubts probability aspect diameter height drop centre residual cut
+        clipped profile profile_error radiance contour reserved;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;

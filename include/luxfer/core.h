@@ -204,6 +204,9 @@ typedef int32_t luxfer_struct_type;
 /** The luxfer_demo_photo_params. */
 #define LUXFER_STRUCT_DEMO_PHOTO_PARAMS 27
 
+/** The luxfer_pendants_params. */
+#define LUXFER_STRUCT_PENDANTS_PARAMS 28
+
 /**
  * Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
  * struct. If the program was built with an older header, in which the struct is smaller, only the fields of that

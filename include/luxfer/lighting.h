@@ -1,4 +1,4 @@
-/* luxfer: lighting design: illuminance, powers and places of lamps, photometry.
+/* luxfer: lighting design: illuminance, powers, places and bodies of lamps, photometry.
  *
  * tests/abi_header.rs generates this file from src/ffi.
  *
@@ -990,6 +990,224 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
                                      char *buffer,
                                      size_t capacity,
                                      size_t *needed);
+
+/* ====================================================================================================================
+ * Pendants
+ *
+ * Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
+ * axis: a globe, a drum, a cone, or any other profile. The body follows from the outline of the lamp in a mask and
+ * from the camera. Its size follows only if a length is known besides the distance of the ceiling, because a lamp of
+ * twice the size at twice the distance looks alike.
+ * ==================================================================================================================== */
+
+/** No length determines the size: drop, diameter and height hold only bounds. */
+#define LUXFER_DOUBT_SIZE 1
+
+/** The probability of the kind is below 0.9. */
+#define LUXFER_DOUBT_KIND 2
+
+/**
+ * The photo clips more than a tenth of the lamp's pixels: it may be brighter, and its glare may enlarge the outline.
+ */
+#define LUXFER_DOUBT_CLIPPED 4
+
+/** The border of the photo cuts off a part of the outline. */
+#define LUXFER_DOUBT_CUT 8
+
+/** The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the diameter. */
+#define LUXFER_DOUBT_HIDDEN 16
+
+/** The length that determines the size of lamps: a LUXFER_KNOWN_ value. */
+typedef int32_t luxfer_known;
+
+/** Settings of the fit of bodies. Fill them with luxfer_pendants_params_init. */
+typedef struct luxfer_pendants_params {
+    /** sizeof(luxfer_pendants_params), set by luxfer_pendants_params_init. */
+    uint32_t struct_size;
+    /** 1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own. */
+    uint32_t alike;
+    /** 1: all lamps hang equally high, which needs alike = 1; 0, the default: each hangs at its own height. */
+    uint32_t level;
+    /**
+     * 1, the default: the outline is moved to the place where the photo's luminance is half of the way from the lamp
+     * to its surroundings; 0: the outline is that of the mask.
+     */
+    uint32_t refine;
+    /** Meaning of known_length: a LUXFER_KNOWN_ value; default LUXFER_KNOWN_NOTHING. */
+    luxfer_known known;
+    /** Must be 0. */
+    uint32_t reserved;
+    /**
+     * The known length in metres, in [1e-4, 1e4], a drop in [0, 1e4]; not used with LUXFER_KNOWN_NOTHING, and then 0,
+     * the default.
+     */
+    double known_length;
+    /**
+     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: lengths are then multiples of
+     * this height.
+     */
+    double ceiling;
+    /** Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1. */
+    double suspension_error;
+    /** The camera, if no rectification is given: its focal length in pixels, > 0; default 0. */
+    double focal;
+    /**
+     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of a
+     * focal length that was assumed or read from metadata is used if this is 0.
+     */
+    double focal_error;
+    /**
+     * Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0. Not
+     * used with a rectification, which has its own.
+     */
+    double axes_error;
+    /** Principal point in pixels; NaN, the default: the photo's centre. */
+    double principal[2];
+    /**
+     * Room axes as unit vectors in camera space, as in luxfer_rectify_report.axes: axis 1 points down. Default: a
+     * camera that looks along a level axis, without roll.
+     */
+    double axes[3][3];
+} luxfer_pendants_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_pendants_params_init(luxfer_pendants_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_PENDANTS_PARAMS, place, size);
+}
+
+/** The kind of a lamp's body: a LUXFER_BODY_ value. */
+typedef int32_t luxfer_body;
+
+/**
+ * A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value, the lower
+ * end and the upper end of the 95 % interval. If the photo does not determine a value, the value is NaN and the
+ * interval holds what is known; its ends may be infinite.
+ */
+typedef struct luxfer_pendant {
+    /** sizeof(luxfer_pendant), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of vertices of the profile, in [2, 65]. */
+    uint32_t profile_count;
+    /** Kind of the body: a LUXFER_BODY_ value. */
+    luxfer_body kind;
+    /** Reasons to doubt the result: LUXFER_DOUBT_ flags. */
+    uint32_t doubts;
+    /** Probability of the kind among all kinds, in [0, 1]. */
+    double probability;
+    /** Interval of height / largest diameter. */
+    double aspect[3];
+    /** Interval of the largest diameter in metres. */
+    double diameter[3];
+    /** Interval of the height of the body in metres. */
+    double height[3];
+    /** Interval of the distance in metres of the body's top below the ceiling. */
+    double drop[3];
+    /**
+     * Intervals of the place of the body's middle relative to the camera: along room axes 0 and 2, which are
+     * horizontal, and upwards. In metres; with LUXFER_DOUBT_SIZE in multiples of the distance of the first lamp's
+     * middle.
+     */
+    double centre[3][3];
+    /** Median distance in pixels between the outline and the fitted body. */
+    double residual;
+    /** Share of the outline that the photo's border cuts off, in [0, 0.3]. */
+    double cut;
+    /** Share of the lamp's pixels that the photo clips, in [0, 1]. */
+    double clipped;
+    /**
+     * Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the largest
+     * diameter. The rest is 0.
+     */
+    float profile[65][2];
+    /** Half of the 95 % interval of each radius of the profile. It is large where the body hides its own profile. */
+    float profile_error[65];
+    /** Mean radiance of the lamp in 16 bands of equal height, from bottom to top, in the units of the photo. */
+    float radiance[16][3];
+    /** Outline of the fitted body in the photo, a closed polygon: x and y in pixels. */
+    float contour[180][2];
+    /** Reserved; always 0. */
+    uint32_t reserved;
+} luxfer_pendant;
+
+/** A sphere. */
+#define LUXFER_BODY_GLOBE 0
+
+/** An ellipsoid of revolution. */
+#define LUXFER_BODY_SPHEROID 1
+
+/** A cylinder. */
+#define LUXFER_BODY_DRUM 2
+
+/** A cylinder lower than a quarter of its diameter. */
+#define LUXFER_BODY_DISC 3
+
+/** A frustum of a cone. */
+#define LUXFER_BODY_CONE 4
+
+/** A part of a sphere below a horizontal plane. */
+#define LUXFER_BODY_BOWL 5
+
+/** A part of a sphere above a horizontal plane. */
+#define LUXFER_BODY_DOME 6
+
+/** Any other body of revolution, such as a bell. */
+#define LUXFER_BODY_OTHER 7
+
+/** Only suspensions, if any are given. */
+#define LUXFER_KNOWN_NOTHING 0
+
+/** The distance of the first lamp's top below the ceiling. */
+#define LUXFER_KNOWN_DROP 1
+
+/** The largest diameter of a lamp. */
+#define LUXFER_KNOWN_DIAMETER 2
+
+/** The horizontal distance between the axes of the first two lamps. */
+#define LUXFER_KNOWN_SPACING 3
+
+/**
+ * Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
+ * 1 to 16 lamps, without their suspensions; each connected region is a lamp, numbered from the top. view is a
+ * rectification of the photo whose job has succeeded; NULL: the camera is that of params. suspensions has the
+ * coordinates x and y in pixels of suspension_count places where suspensions meet the ceiling, each for the lamp
+ * whose axis passes nearest; NULL if there are none. params may be NULL for the defaults. pendants is an array of
+ * capacity structs; size is sizeof one of them. *count receives the number of lamps; those beyond the capacity are
+ * left out. The call takes about 0.2 seconds for a lamp, and more for many lamps that are alike; luxfer_job_start runs
+ * it as a job. Any thread.
+ * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not
+ * that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has
+ * succeeded; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ */
+luxfer_status luxfer_pendants_find(luxfer_context *context,
+                                   luxfer_image *photo,
+                                   luxfer_image *mask,
+                                   luxfer_rectify *view,
+                                   const double *suspensions,
+                                   uint32_t suspension_count,
+                                   const luxfer_pendants_params *params,
+                                   luxfer_pendant *pendants,
+                                   size_t size,
+                                   uint32_t capacity,
+                                   uint32_t *count);
+
+/**
+ * Adds count meshes, 1 to 1024, to a scene, each with the body of a lamp that luxfer_pendants_find has found. places
+ * has the coordinates x, y and z in metres of the middle of each body's upper end. diameter is the largest diameter in
+ * metres, in [0.001, 1e4]; 0: the diameter found. The meshes share a new material, which emits light with the photo's
+ * colours along the height of the body; where the photo is clipped, they are too dark. luminance is the luminance in
+ * cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of
+ * the first new mesh and that of the material; each pointer may be NULL. Any thread.
+ * LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
+ * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
+ */
+luxfer_status luxfer_scene_add_pendants(luxfer_scene *scene,
+                                        const luxfer_pendant *pendant,
+                                        const double *places,
+                                        uint32_t count,
+                                        float diameter,
+                                        float luminance,
+                                        uint32_t *first_mesh,
+                                        uint32_t *material);
 
 #ifdef __cplusplus
 }

@@ -17,6 +17,7 @@ use super::importance::luxfer_importance_params;
 use super::lamps::luxfer_lamps_params;
 use super::params;
 use super::pattern::luxfer_pattern_params;
+use super::pendants::luxfer_pendants_params;
 use super::placement::luxfer_placement_params;
 use super::plan::luxfer_plan_params;
 use super::rectify::luxfer_rectify_params;
@@ -94,6 +95,8 @@ pub const LUXFER_STRUCT_PLAN_PARAMS: luxfer_struct_type = 25;
 pub const LUXFER_STRUCT_RENDER_PART: luxfer_struct_type = 26;
 /// The struct luxfer_demo_photo_params.
 pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
+/// The struct luxfer_pendants_params.
+pub const LUXFER_STRUCT_PENDANTS_PARAMS: luxfer_struct_type = 28;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
 /// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -138,6 +141,7 @@ pub unsafe extern "C" fn luxfer_init(
         LUXFER_STRUCT_PLAN_PARAMS => params::init::<luxfer_plan_params>(place.cast(), size),
         LUXFER_STRUCT_RENDER_PART => params::init::<luxfer_render_part>(place.cast(), size),
         LUXFER_STRUCT_DEMO_PHOTO_PARAMS => params::init::<luxfer_demo_photo_params>(place.cast(), size),
+        LUXFER_STRUCT_PENDANTS_PARAMS => params::init::<luxfer_pendants_params>(place.cast(), size),
         other => Err(Error::argument(format!("the type of the struct is {other}; it must be a LUXFER_STRUCT_ value"))),
     })
 }

@@ -71,10 +71,11 @@ pub use unwarp::unwarp;
 pub use vanishing::VanishingPoint;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Homography, Perspective, Segment};
+use crate::geometry::perspective::VERTICAL;
+use crate::geometry::{FocalSource, Homography, Perspective, Segment};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
 /// Longest side, in pixels, of the image in which lines are detected. Larger photos are first reduced to this size.
 /// The precision lost is smaller than the deviation of real lenses and walls from straight lines.
@@ -96,6 +97,29 @@ pub struct View {
     pub distortion: Option<Distortion>,
     /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
     pub expected_focal: FocalPrior,
+}
+
+impl View {
+    /// Returns independent changes of the vertical direction in camera space, of one standard deviation each.
+    pub fn vertical_shifts(&self) -> [DVec3; 3] {
+        // The columns of the Cholesky factor of the covariance, which has no more than rank 2.
+        let mut rest = self.vanishing_points[VERTICAL].covariance;
+        [0, 1, 2].map(|k| {
+            let pivot = rest.col(k)[k];
+            let column = if pivot > 0.0 { rest.col(k) / pivot.sqrt() } else { DVec3::ZERO };
+            rest -= DMat3::from_cols(column * column.x, column * column.y, column * column.z);
+            column
+        })
+    }
+
+    /// Returns the standard deviation of the focal length in pixels if it was assumed or read from metadata; else 0,
+    /// because the error of a focal length from vanishing points is not estimated.
+    pub fn focal_error(&self) -> f64 {
+        match self.perspective.focal_source {
+            FocalSource::Assumed | FocalSource::Metadata => self.expected_focal.spread * self.perspective.focal,
+            FocalSource::Given | FocalSource::VanishingPoints | FocalSource::Lamps => 0.0,
+        }
+    }
 }
 
 /// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite yield no lines.

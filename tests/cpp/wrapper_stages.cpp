@@ -290,6 +290,27 @@ void light(const Context &context) {
     CHECK(Scene::load(context, "wrapper_stages.glb").counts().triangles == scene.counts().triangles);
 }
 
+// The body of a globe, from its picture to a scene.
+void pendants(const Context &context) {
+    std::vector<float> disc(96 * 96);
+    for (int i = 0; i < 96 * 96; ++i)
+        disc[i] = std::hypot(i % 96 - 47.5f, i / 96 - 47.5f) < 24 ? 1.0f : 0.0f;
+    const Image globe = Image::create(context, {disc, 96, 96, 1});
+    luxfer::PendantsParams params;
+    params.focal = 200;
+    params.ceiling = 1.5;
+    const std::array<double, 2> hook[] = {{47.5, 5}};
+    const auto lamps = luxfer::find_pendants(context, globe, globe, {}, hook, params);
+    CHECK(lamps.size() == 1 && !(lamps[0].doubts & LUXFER_DOUBT_SIZE) && std::fabs(lamps[0].aspect[0] - 1) < 0.05);
+    CHECK(lamps[0].drop[1] < lamps[0].drop[0] && lamps[0].drop[0] < lamps[0].drop[2]);
+    const Scene scene = Scene::demo(context, LUXFER_DEMO_TARGET_ROOM);
+    const std::uint32_t meshes = scene.counts().meshes;
+    const std::array<double, 3> places[] = {{1, 2, 1}, {2, 2, 1}};
+    const luxfer::PlacedPendants placed = luxfer::add_pendants(scene, lamps[0], places, 2000, 0.4f);
+    CHECK(placed.first_mesh == meshes && scene.counts().meshes == meshes + 2);
+    CHECK(placed.material + 1 == scene.counts().materials);
+}
+
 luxfer::Guides guides_of(const Context &context, luxfer_demo which) {
     const auto guides = copied(luxfer::Guides::create(context));
     guides.set_scene(Scene::demo(context, which));
@@ -359,6 +380,7 @@ int main() {
     CHECK(std::strcmp(luxfer_get_version_string(), "") != 0);
     lighting_transfer(context);
     light(context);
+    pendants(context);
     plans(context);
     stylisation(context);
     return check::summary("wrapper_stages");

@@ -1,8 +1,9 @@
-// Lighting design: powers of lamps for several goals, maps of importance, luminaire files, colour temperature and glare.
+// Lighting design: powers and bodies of lamps, maps of importance, luminaire files, colour temperature and glare.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
 
+#include "photo.hpp"
 #include "render.hpp"
 
 namespace luxfer {
@@ -11,6 +12,7 @@ using LampsParams = Params<luxfer_lamps_params, LUXFER_STRUCT_LAMPS_PARAMS>;
 using ImportanceParams = Params<luxfer_importance_params, LUXFER_STRUCT_IMPORTANCE_PARAMS>;
 using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE_COLOUR_PARAMS>;
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
+using PendantsParams = Params<luxfer_pendants_params, LUXFER_STRUCT_PENDANTS_PARAMS>;
 using PlacementParams = Params<luxfer_placement_params, LUXFER_STRUCT_PLACEMENT_PARAMS>;
 
 /// Solves for lamp powers that come as near as possible to several goals. See luxfer_lamps.
@@ -153,6 +155,40 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
     std::uint32_t index = 0;
     const luxfer_status status = luxfer_scene_add_luminaire(scene.get(), distribution.get(), &params, &index);
     return detail::finish(scene.context().get(), status, index);
+}
+
+/// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, the camera is that of
+/// `params`. `suspensions` has x and y of the pixels where suspensions meet the ceiling.
+inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context, const Image &photo, const Image &mask,
+                                                         const Rectify &view = {},
+                                                         Span<const std::array<double, 2>> suspensions = {},
+                                                         const luxfer_pendants_params &params = PendantsParams()) {
+    std::vector<luxfer_pendant> lamps(16); // the library takes at most 16 lamps
+    const double *places = suspensions.empty() ? nullptr : suspensions.data()->data();
+    std::uint32_t count = 0;
+    const luxfer_status status = luxfer_pendants_find(
+        context.get(), photo.get(), mask.get(), view.get(), places, static_cast<std::uint32_t>(suspensions.size()),
+        &params, lamps.data(), sizeof(luxfer_pendant), static_cast<std::uint32_t>(lamps.size()), &count);
+    lamps.resize(count);
+    return detail::finish(context.get(), status, std::move(lamps));
+}
+
+/// The meshes and the material that add_pendants has created.
+struct PlacedPendants {
+    std::uint32_t first_mesh = 0, material = 0;
+};
+
+/// Adds a mesh with the body of a lamp at each place, which is the middle of its upper end. `luminance` in cd/m² belongs
+/// to a surface of value 1 in the photo; a `diameter` of 0 is the diameter found.
+inline Result<PlacedPendants> add_pendants(const Scene &scene, const luxfer_pendant &pendant,
+                                           Span<const std::array<double, 3>> places, float luminance,
+                                           float diameter = 0) {
+    PlacedPendants placed;
+    const double *tops = places.empty() ? nullptr : places.data()->data();
+    const luxfer_status status =
+        luxfer_scene_add_pendants(scene.get(), &pendant, tops, static_cast<std::uint32_t>(places.size()), diameter,
+                                  luminance, &placed.first_mesh, &placed.material);
+    return detail::finish(scene.context().get(), status, placed);
 }
 
 /// The correlated colour temperature in kelvin, and the signed distance Duv from the blackbody locus.

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .importance import Importance
     from .job import Job, Task
     from .lamps import Lamps
+    from .pendant import find_pendants
     from .photometry import (
         Distribution,
         colour_of_temperature,
@@ -81,6 +82,7 @@ __all__ = [
     "colour_temperature",
     "errors",
     "false_colour",
+    "find_pendants",
     "fit_temperature",
     "glare",
     "homography",
@@ -100,6 +102,7 @@ _MODULES = {
     "DemoPhoto": "demo",
     "homography": "image",
     "Task": "job",
+    "find_pendants": "pendant",
     "StageWarning": "warning",
     "align_sheet": "sheet",
     "print_sheet": "sheet",

@@ -54,6 +54,7 @@ LUXFER_STRUCT_SHEET_PARAMS = 24
 LUXFER_STRUCT_PLAN_PARAMS = 25
 LUXFER_STRUCT_RENDER_PART = 26
 LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
+LUXFER_STRUCT_PENDANTS_PARAMS = 28
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -255,6 +256,23 @@ LUXFER_SCALE_LINEAR = 0
 LUXFER_SCALE_LOGARITHMIC = 1
 LUXFER_UNIT_LUMINANCE = 0
 LUXFER_UNIT_ILLUMINANCE = 1
+LUXFER_DOUBT_SIZE = 1
+LUXFER_DOUBT_KIND = 2
+LUXFER_DOUBT_CLIPPED = 4
+LUXFER_DOUBT_CUT = 8
+LUXFER_DOUBT_HIDDEN = 16
+LUXFER_BODY_GLOBE = 0
+LUXFER_BODY_SPHEROID = 1
+LUXFER_BODY_DRUM = 2
+LUXFER_BODY_DISC = 3
+LUXFER_BODY_CONE = 4
+LUXFER_BODY_BOWL = 5
+LUXFER_BODY_DOME = 6
+LUXFER_BODY_OTHER = 7
+LUXFER_KNOWN_NOTHING = 0
+LUXFER_KNOWN_DROP = 1
+LUXFER_KNOWN_DIAMETER = 2
+LUXFER_KNOWN_SPACING = 3
 LUXFER_GUIDES_FULL = 0
 LUXFER_GUIDES_DIRECT = 1
 LUXFER_GUIDES_SPECULAR = 2
@@ -1334,6 +1352,58 @@ class luxfer_preset(Structure):
     result = types.Preset
 
 
+class luxfer_pendants_params(Structure):
+    """Settings of the fit of bodies."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("alike", c_uint32),
+        ("level", c_uint32),
+        ("refine", c_uint32),
+        ("known", c_int32),
+        ("reserved", c_uint32),
+        ("known_length", c_double),
+        ("ceiling", c_double),
+        ("suspension_error", c_double),
+        ("focal", c_double),
+        ("focal_error", c_double),
+        ("axes_error", c_double),
+        ("principal", c_double * 2),
+        ("axes", (c_double * 3) * 3),
+    ]
+    enumerations: dict[str, type] = {"known": types.Known}
+    struct_type = LUXFER_STRUCT_PENDANTS_PARAMS
+
+
+class luxfer_pendant(Structure):
+    """A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value,
+    the lower end and the upper end of the 95 % interval. If the photo does not determine a value, the value is
+    NaN and the interval holds what is known; its ends may be infinite."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("profile_count", c_uint32),
+        ("kind", c_int32),
+        ("doubts", c_uint32),
+        ("probability", c_double),
+        ("aspect", c_double * 3),
+        ("diameter", c_double * 3),
+        ("height", c_double * 3),
+        ("drop", c_double * 3),
+        ("centre", (c_double * 3) * 3),
+        ("residual", c_double),
+        ("cut", c_double),
+        ("clipped", c_double),
+        ("profile", (c_float * 2) * 65),
+        ("profile_error", c_float * 65),
+        ("radiance", (c_float * 3) * 16),
+        ("contour", (c_float * 2) * 180),
+        ("reserved", c_uint32),
+    ]
+    enumerations: dict[str, type] = {"kind": types.Body, "doubts": types.Doubt}
+    result = types.Pendant
+
+
 class luxfer_guides_params(Structure):
     """Settings of the guides."""
 
@@ -1700,6 +1770,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
     "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_pendants_find": (c_int32, [("context", POINTER(luxfer_context)), ("photo", POINTER(luxfer_image)), ("mask", POINTER(luxfer_image)), ("view", POINTER(luxfer_rectify)), ("suspensions", POINTER(c_double)), ("suspension_count", c_uint32), ("params", POINTER(luxfer_pendants_params)), ("pendants", POINTER(luxfer_pendant)), ("size", c_size_t), ("capacity", c_uint32), ("count", POINTER(c_uint32))]),
+    "luxfer_scene_add_pendants": (c_int32, [("scene", POINTER(luxfer_scene)), ("pendant", POINTER(luxfer_pendant)), ("places", POINTER(c_double)), ("count", c_uint32), ("diameter", c_float), ("luminance", c_float), ("first_mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),

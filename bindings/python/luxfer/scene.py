@@ -18,6 +18,7 @@ from .types import (
     CameraParams,
     MaterialParams,
     MeshInfo,
+    Pendant,
     Requirements,
     SceneCounts,
     Surface,
@@ -244,6 +245,20 @@ class Scene(Handle):
         mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
         image = image_of(self._context, texture)
         self._call("place_emission", _params.text(name, "name"), image, *_colour(scale), mesh, material)
+        return mesh.value, material.value
+
+    def add_pendants(
+        self, pendant: Pendant, places: ArrayLike, *, luminance: float, diameter: float = 0
+    ) -> tuple[int, int]:
+        """Adds a mesh with the body of a lamp, found by find_pendants, at each of the places (n, 3): the middles of
+        the upper ends, in metres. `luminance` in cd/m² belongs to a surface of value 1 in the photo; `diameter` 0 is
+        the diameter found. Returns the indices of the first mesh and of the material."""
+        lamp = _abi.luxfer_pendant(struct_size=ctypes.sizeof(_abi.luxfer_pendant))
+        _params.update(lamp, vars(pendant), [])
+        tops = _rows(places, 3, np.float64, "places")
+        mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
+        place = _arrays.pointer(tops, ctypes.c_double)
+        self._call("add_pendants", lamp, place, len(tops), diameter, luminance, mesh, material)
         return mesh.value, material.value
 
     # -- what it holds

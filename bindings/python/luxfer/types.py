@@ -708,6 +708,40 @@ class Unit(IntEnum):
     """Illuminance in lux."""
 
 
+class Known(IntEnum):
+    """The length that determines the size of lamps."""
+
+    NOTHING = 0
+    """Only suspensions, if any are given."""
+    DROP = 1
+    """The distance of the first lamp's top below the ceiling."""
+    DIAMETER = 2
+    """The largest diameter of a lamp."""
+    SPACING = 3
+    """The horizontal distance between the axes of the first two lamps."""
+
+
+class Body(IntEnum):
+    """The kind of a lamp's body."""
+
+    GLOBE = 0
+    """A sphere."""
+    SPHEROID = 1
+    """An ellipsoid of revolution."""
+    DRUM = 2
+    """A cylinder."""
+    DISC = 3
+    """A cylinder lower than a quarter of its diameter."""
+    CONE = 4
+    """A frustum of a cone."""
+    BOWL = 5
+    """A part of a sphere below a horizontal plane."""
+    DOME = 6
+    """A part of a sphere above a horizontal plane."""
+    OTHER = 7
+    """Any other body of revolution, such as a bell."""
+
+
 class GuidesImage(IntEnum):
     """A guide image."""
 
@@ -881,6 +915,23 @@ class Aov(IntFlag):
     """Share of the pixel that surfaces cover. Layer Alpha, channel A."""
     LUMINANCE = 512
     """Luminance of the main image, in cd/m². Layer Luminance, channel Y."""
+
+
+class Doubt(IntFlag):
+    """Doubt, to be combined with |."""
+
+    SIZE = 1
+    """No length determines the size: drop, diameter and height hold only bounds."""
+    KIND = 2
+    """The probability of the kind is below 0.9."""
+    CLIPPED = 4
+    """The photo clips more than a tenth of the lamp's pixels: it may be brighter, and its glare may enlarge the
+    outline."""
+    CUT = 8
+    """The border of the photo cuts off a part of the outline."""
+    HIDDEN = 16
+    """The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the
+    diameter."""
 
 
 class GuidesWith(IntFlag):
@@ -2220,6 +2271,85 @@ class Preset:
     """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
     """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
+
+
+class PendantsParams(TypedDict, total=False):
+    """Settings of the fit of bodies."""
+
+    alike: int
+    """1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own."""
+    level: int
+    """1: all lamps hang equally high, which needs alike = 1; 0, the default: each hangs at its own height."""
+    refine: int
+    """1, the default: the outline is moved to the place where the photo's luminance is half of the way from the
+    lamp to its surroundings; 0: the outline is that of the mask."""
+    known: Known | str | int
+    """Meaning of known_length: Known; default Known.NOTHING."""
+    known_length: float
+    """The known length in metres, in [1e-4, 1e4], a drop in [0, 1e4]; not used with Known.NOTHING, and then 0,
+    the default."""
+    ceiling: float
+    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: lengths are then multiples
+    of this height."""
+    suspension_error: float
+    """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
+    focal: float
+    """The camera, if no rectification is given: its focal length in pixels, > 0; default 0."""
+    focal_error: float
+    """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the
+    error of a focal length that was assumed or read from metadata is used if this is 0."""
+    axes_error: float
+    """Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5];
+    default 0. Not used with a rectification, which has its own."""
+    principal: Sequence[float]
+    """Principal point in pixels; NaN, the default: the photo's centre."""
+    axes: Sequence[float]
+    """Room axes as unit vectors in camera space, as in RectifyReport.axes: axis 1 points down. Default: a
+    camera that looks along a level axis, without roll."""
+
+
+@dataclass(frozen=True)
+class Pendant:
+    """A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value,
+    the lower end and the upper end of the 95 % interval. If the photo does not determine a value, the value is
+    NaN and the interval holds what is known; its ends may be infinite."""
+
+    profile_count: int
+    """Number of vertices of the profile, in [2, 65]."""
+    kind: Body
+    """Kind of the body: Body."""
+    doubts: Doubt
+    """Reasons to doubt the result: Doubt."""
+    probability: float
+    """Probability of the kind among all kinds, in [0, 1]."""
+    aspect: tuple[float, float, float]
+    """Interval of height / largest diameter."""
+    diameter: tuple[float, float, float]
+    """Interval of the largest diameter in metres."""
+    height: tuple[float, float, float]
+    """Interval of the height of the body in metres."""
+    drop: tuple[float, float, float]
+    """Interval of the distance in metres of the body's top below the ceiling."""
+    centre: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+    """Intervals of the place of the body's middle relative to the camera: along room axes 0 and 2, which are
+    horizontal, and upwards. In metres; with Doubt.SIZE in multiples of the distance of the first lamp's
+    middle."""
+    residual: float
+    """Median distance in pixels between the outline and the fitted body."""
+    cut: float
+    """Share of the outline that the photo's border cuts off, in [0, 0.3]."""
+    clipped: float
+    """Share of the lamp's pixels that the photo clips, in [0, 1]."""
+    profile: tuple[tuple[float, float], ...]
+    """Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the
+    largest diameter. The rest is 0."""
+    profile_error: tuple[float, ...]
+    """Half of the 95 % interval of each radius of the profile. It is large where the body hides its own
+    profile."""
+    radiance: tuple[tuple[float, float, float], ...]
+    """Mean radiance of the lamp in 16 bands of equal height, from bottom to top, in the units of the photo."""
+    contour: tuple[tuple[float, float], ...]
+    """Outline of the fitted body in the photo, a closed polygon: x and y in pixels."""
 
 
 class GuidesParams(TypedDict, total=False):
