@@ -78,14 +78,28 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
 /// that the face also surrounds lamps at these pixels. [convention]
 const MARGIN: f64 = 1.05;
 
+/// Pixels share a face of the room if at least this share of them lies on it. [convention]
+const SHARED: f64 = 0.9;
+
 impl Layout {
     /// Returns the face on which most of the given pixels lie.
     pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
+        self.most_hit(perspective, pixels).0
+    }
+
+    /// Returns the face on which nearly all of the given pixels lie; `None` if there is no such face.
+    pub fn shared_face(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Option<Face> {
+        let (face, share) = self.most_hit(perspective, pixels);
+        (share >= SHARED).then_some(face)
+    }
+
+    /// Returns the face on which most of the given pixels lie, and the share of the pixels that lie on it.
+    fn most_hit(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Face, f64) {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
         pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
         let most = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
-        Face::ALL[most]
+        (Face::ALL[most], counts[most] as f64 / counts.iter().sum::<usize>().max(1) as f64)
     }
 
     /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns the

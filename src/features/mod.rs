@@ -22,6 +22,9 @@
 //! A depth map may also be estimated from the photo alone, by a network that the caller supplies as an ONNX file
 //! (Cargo feature `onnx`).
 //!
+//! The user's strokes grow over the smooth surfaces on which they lie ([`Surfaces`]). The grown surfaces are evidence
+//! for the layout, and tell which pixels lie off the plane of the strokes.
+//!
 //! Not modelled: lens distortion; room shapes other than a single box in the built-in layout (furniture, beams,
 //! two-part rooms).
 
@@ -30,6 +33,7 @@ mod box_room;
 mod clean;
 mod depth;
 mod frustum;
+mod grow;
 mod input;
 mod layout;
 #[cfg(feature = "onnx")]
@@ -45,6 +49,7 @@ mod warnings;
 
 pub use box_room::{Face, Layout};
 pub use frustum::Frustum;
+pub use grow::Surfaces;
 pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, NORMAL, POSITION, Params, PlaneStroke, RoomView};
 #[cfg(feature = "onnx")]
 pub use monocular::{DepthNetwork, Normalisation, run_with_network};
@@ -65,6 +70,9 @@ pub struct Features {
     pub depth_source: DepthSource,
     /// The box room from which the depth was computed, if any.
     pub layout: Option<Layout>,
+    /// The parts of the photo over which the strokes of the room have grown; `None` unless strokes lie both on and off
+    /// the plane.
+    pub surfaces: Option<Surfaces>,
     /// Number of photo pixels with a NaN, infinite or negative value, which were replaced from their neighbours.
     pub non_finite: usize,
 }
@@ -81,8 +89,11 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
 
     let (photo, non_finite) = clean::clean(input.photo, job.part(0.0, 0.1))?;
 
+    let strokes = input.room.as_ref().map_or(&[][..], |room| room.strokes);
+    let surfaces = grow::grow(&photo, strokes, job.part(0.1, 0.15))?;
+
     // Compute depth and normals from the best available source.
-    let geometry_job = job.part(0.1, 0.7);
+    let geometry_job = job.part(0.15, 0.7);
     let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 100).clamp(2, 64) };
     let geometry = || match (&input.depth, &input.room) {
         (Some(map), _) => {
@@ -92,7 +103,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
         (None, Some(room)) => {
             let layout = match room.layout {
                 Some(known) => known,
-                None => search::find(room, width, height, geometry_job.part(0.0, 0.6))?,
+                None => search::find(room, surfaces.as_ref(), [width, height], geometry_job.part(0.0, 0.6))?,
             };
             let surface = layout.surface(room, width, height, &frustum, geometry_job.part(0.6, 1.0))?;
             Ok((surface, DepthSource::Layout, Some(layout)))
@@ -119,5 +130,5 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
         return Err(Error::argument("the photo holds values beyond 1e30; scale it so that 1 is display white"));
     }
     let confidence = surface.confidence;
-    Ok(Features { image, depth_confidence: confidence, depth_source, layout, non_finite })
+    Ok(Features { image, depth_confidence: confidence, depth_source, layout, surfaces, non_finite })
 }

@@ -2,6 +2,7 @@
 //! ceiling); seams between faces should coincide with segments along them; the strokes of a plane should lie on a
 //! single face.
 
+use super::grow::Surfaces;
 use super::input::RoomView;
 use super::strokes;
 use crate::error::Result;
@@ -27,6 +28,8 @@ const SEAM_WIDTH: f64 = 0.03;
 /// the lines exclude nearly all boxes that agree with them. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
+/// Weight of the surfaces over which strokes have grown, relative to the strokes. [bench photos:masks]
+const GROWN: f64 = 0.5;
 /// Number of partial sums that are computed in parallel. It is fixed, so that the order of additions does not depend
 /// on the processor.
 const LANES: usize = 8;
@@ -76,7 +79,13 @@ const OTHERS: [[usize; 2]; 3] = [[VERTICAL, HORIZONTAL_B], [HORIZONTAL_A, HORIZO
 
 impl Evidence {
     /// Collects the segments and strokes of a view; `axes` are the room's axes, with z along the viewing direction.
-    pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
+    pub fn gather(
+        room: &RoomView,
+        surfaces: Option<&Surfaces>,
+        axes: &DMat3,
+        [width, height]: [usize; 2],
+        job: Job,
+    ) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
         // Let the weight of a segment grow with its length only up to a quarter of the photo's diagonal.
@@ -108,10 +117,13 @@ impl Evidence {
         // Negative strokes, which lie off the plane, are uninformative without a stroke on the plane.
         let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
         let has_plane = stroke_samples.iter().any(|s| s.positive);
-        for sample in stroke_samples.iter().filter(|_| has_plane) {
+        let grown = surfaces.map(|s| strokes::surface_samples(s, room, &to_room, [width, height])).transpose()?;
+        let grown = grown.iter().flatten().map(|sample| (sample, GROWN));
+        let all = stroke_samples.iter().map(|sample| (sample, 1.0)).chain(grown);
+        for (sample, share) in all.filter(|_| has_plane) {
             let (quadrant, size) = quadrant(sample.ray);
             let weight = if sample.positive { ON_PLANE } else { -ELSEWHERE };
-            quadrants[quadrant].stroke_samples.push((size, weight * sample.weight));
+            quadrants[quadrant].stroke_samples.push((size, share * weight * sample.weight));
         }
         Ok(Self { segments, quadrants, has_plane })
     }

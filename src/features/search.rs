@@ -8,6 +8,7 @@
 //! finer grids of values.
 
 use super::box_room::{Face, Layout, faces, facing_axes};
+use super::grow::Surfaces;
 use super::input::RoomView;
 use super::score::Evidence;
 use crate::error::{Error, Result};
@@ -48,14 +49,15 @@ const LANES: usize = 8;
 /// The sides of a box, and its score.
 type ScoredBox = ([f64; 4], f64);
 
-/// Finds the box that agrees best with the segments and strokes of a view.
-pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<Layout> {
+/// Finds the box that agrees best with the segments and strokes of a view, and with the surfaces over which the strokes
+/// have grown.
+pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job: Job) -> Result<Layout> {
     let axes = facing_axes(room.perspective);
     let orthogonality = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
     if !orthogonality.iter().all(|v| v.abs() < 1e-3) {
         return Err(Error::argument("room.perspective.axes must be orthogonal unit columns; see Perspective"));
     }
-    let evidence = Evidence::gather(room, &axes, [width, height], job.part(0.0, 0.1))?;
+    let evidence = Evidence::gather(room, surfaces, &axes, size, job.part(0.0, 0.1))?;
 
     let values: [Vec<f64>; 4] = std::array::from_fn(|side| {
         let mut all = evidence.candidates(side, PEAKS);
@@ -63,7 +65,7 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
         all
     });
     let coarse = Tables::new(&evidence, values, job.part(0.1, 0.4))?.best(job.part(0.4, 0.7))?;
-    let view = rays(room, &axes, [width, height]);
+    let view = rays(room, &axes, size);
     let mut starts: Vec<ScoredBox> = Vec::new();
     for found in &coarse {
         if starts.len() < STARTS && starts.iter().all(|s| differ(&view, &s.0, &found.0)) {

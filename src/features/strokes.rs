@@ -1,9 +1,11 @@
 //! Turns strokes into evidence about the room. Each cell of a grid yields at most one sample of the strokes on the
-//! plane and one of the other strokes, so that neither brush width nor the number of strokes affects the result.
+//! plane and one of the other strokes, so that neither brush width nor the number of strokes affects the result. The
+//! surfaces over which strokes have grown yield samples too, with weights in proportion to their areas.
 
+use super::grow::Surfaces;
 use super::input::RoomView;
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -17,7 +19,7 @@ pub struct StrokeSample {
     pub ray: DVec3,
     /// True for strokes on the plane, false for strokes elsewhere.
     pub positive: bool,
-    /// Weight: one over the number of samples with the same value of `positive` in the view.
+    /// Weight; the weights of all samples with the same value of `positive` add up to one.
     pub weight: f64,
 }
 
@@ -49,4 +51,32 @@ pub fn stroke_samples(
         })
     });
     Ok(stroke_samples.filter(|sample| sample.ray.is_finite()).collect())
+}
+
+/// Samples the surfaces over which strokes have grown.
+pub fn surface_samples(
+    surfaces: &Surfaces,
+    room: &RoomView,
+    to_room: &DMat3,
+    [width, height]: [usize; 2],
+) -> Result<Vec<StrokeSample>> {
+    let (columns, rows) = (surfaces.width, surfaces.height);
+    let pixel = DVec2::new(width as f64 / columns as f64, height as f64 / rows as f64);
+    let mut cells = try_vec(2 * CELLS * CELLS, (DVec2::ZERO, 0.0))?;
+    let known = surfaces.on_plane.iter().enumerate().filter_map(|(i, on_plane)| Some((i, (*on_plane)?)));
+    for (i, positive) in known {
+        let (x, y) = (i % columns, i / columns);
+        let cell = [(2 * x + 1) * CELLS / (2 * columns), (2 * y + 1) * CELLS / (2 * rows)];
+        let (sum, count) = &mut cells[2 * (cell[1] * CELLS + cell[0]) + usize::from(positive)];
+        *sum += DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * pixel;
+        *count += 1.0;
+    }
+    let area = |positive: bool| cells.iter().skip(usize::from(positive)).step_by(2).map(|cell| cell.1).sum::<f64>();
+    let areas = [area(false), area(true)];
+    let occupied = cells.iter().enumerate().filter(|(_, cell)| cell.1 > 0.0);
+    let samples = occupied.map(|(i, (sum, count))| {
+        let ray = *to_room * room.perspective.ray(sum / *count);
+        StrokeSample { ray, positive: i % 2 == 1, weight: count / areas[i % 2] }
+    });
+    try_collect(samples.filter(|sample| sample.ray.is_finite()))
 }

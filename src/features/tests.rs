@@ -353,6 +353,8 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     let pixels = || points.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.face_of(&camera, pixels().take(1)), Face::Back);
     assert_eq!(small.face_of(&camera, pixels().skip(1)), Face::Right);
+    assert_eq!(small.shared_face(&camera, pixels().take(1)), Some(Face::Back));
+    assert_eq!(small.shared_face(&camera, pixels()), None);
     let (large, growth) = small.enlarged(Face::Ceiling, &camera, pixels());
     assert!(pixels().all(|p| large.face_of(&camera, std::iter::once(p)) == Face::Ceiling), "{large:?}");
     // Sides are in units of the distance to the far wall. In the old unit, the ceiling, the floor and the left wall

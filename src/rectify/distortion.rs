@@ -6,7 +6,11 @@
 //! line passes the centre at distance d, its curvature is `2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient
 //! of the curve, divided by d, therefore yields one estimate of k per line. A robust mean over the many lines of a
 //! room rejects mouldings and vaults, which are curved themselves.
+//!
+//! Lines that consist of several pieces (`edge_lines`) must be smooth as a whole: the tiles of a ceiling sag between
+//! their bars, so each edge of a tile is curved although the lens is not to blame.
 
+use super::edge_lines::{self, Edge};
 use super::gradient::{Gradients, SIGMA};
 use crate::geometry::Segment;
 use crate::geometry::robust::weighted_median;
@@ -54,8 +58,11 @@ const MODEL_ERROR: f64 = 0.009;
 /// lines.
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
     let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
+    let edges: Vec<Edge> = segments.iter().filter_map(|s| trace(gradients, s)).collect();
+    // The pieces of a line that is no parabola as a whole tell nothing about the lens.
+    let lines = edge_lines::lines(&edges).into_iter().filter(|pieces| pieces.len() == 1 || is_parabola(pieces));
     let estimates: Vec<LineEstimate> =
-        segments.iter().filter_map(|s| LineEstimate::by(gradients, s, centre, diagonal)).collect();
+        lines.flatten().filter_map(|edge| LineEstimate::by(edge, centre, diagonal)).collect();
     combine(&estimates)
 }
 
@@ -77,11 +84,10 @@ impl LineEstimate {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
 
-    fn by(gradients: &Gradients, segment: &Segment, centre: DVec2, diagonal: f64) -> Option<Self> {
-        let along = (segment.b - segment.a).try_normalize()?;
-        let distance = along.perp().dot(0.5 * (segment.a + segment.b) - centre);
-        let places = places(gradients, segment)?;
-        let (bend, variance) = parabola(&places)?;
+    fn by(edge: &Edge, centre: DVec2, diagonal: f64) -> Option<Self> {
+        let across = (edge.b - edge.a).try_normalize()?.perp();
+        let distance = across.dot(0.5 * (edge.a + edge.b) - centre);
+        let (bend, variance) = parabola(&along([edge.a, edge.b], &edge.points))?;
         let leverage = distance / (diagonal * diagonal);
         let weight = leverage * leverage / variance;
         let squared_offset = (distance / diagonal).powi(2);
@@ -89,36 +95,53 @@ impl LineEstimate {
     }
 }
 
+/// Whether one parabola fits all pieces of a line.
+fn is_parabola(pieces: &[&Edge]) -> bool {
+    let [Some(first), Some(last)] = [pieces.first(), pieces.last()] else { return false };
+    let points: Vec<DVec2> = pieces.iter().flat_map(|piece| piece.points.iter().copied()).collect();
+    parabola(&along([first.a, last.b], &points)).is_some()
+}
+
+/// Returns points as distances along and across the line from `a` to `b`.
+fn along([a, b]: [DVec2; 2], points: &[DVec2]) -> Vec<DVec2> {
+    let along = (b - a).normalize_or_zero();
+    points.iter().map(|p| DVec2::new(along.dot(p - a), along.perp().dot(p - a))).collect()
+}
+
 /// Locates the edge along a segment, once per pixel of length. Each position is the maximum of the gradient across the
-/// segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias it. Returns x
-/// along the segment and y across it; `None` if too little of the edge is found.
-fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
+/// segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias it. `None` if too
+/// little of the edge is found.
+fn trace(gradients: &Gradients, segment: &Segment) -> Option<Edge> {
     let length = segment.length();
     if length < MIN_LENGTH {
         return None;
     }
-    let along = (segment.b - segment.a) / length;
-    let across = along.perp();
     let steps = (length - 2.0 * TRIM) as usize;
-    let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| segment.a + along * t + across * f64::from(o));
     // Determine the polarity of the edge from the sum of the gradients along the segment.
-    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (TRIM + i as f64), across)).sum();
-    let mut places = Vec::new();
+    let direction = (segment.b - segment.a) / length;
+    let sense: f64 =
+        (0..steps).map(|i| slope(gradients, segment.a + direction * (TRIM + i as f64), direction.perp())).sum();
+    let (a, b) = if sense < 0.0 { (segment.b, segment.a) } else { (segment.a, segment.b) };
+    let along = (b - a) / length;
+    let across = along.perp();
+    let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| a + along * t + across * f64::from(o));
+    let mut points = Vec::new();
     for t in (0..steps).map(|i| TRIM + i as f64) {
-        let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across) * sense.signum()).collect();
+        let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across)).collect();
         let Some(best) = (0..slopes.len()).max_by(|&i, &k| slopes[i].total_cmp(&slopes[k])) else { continue };
         // Skip positions where the edge leaves the strip or has the wrong polarity; refine to sub-pixel precision by a
         // parabola.
         let inside = best > 0 && best + 1 < slopes.len() && slopes[best] > 0.0;
         if inside
-            && let [a, b, c] = slopes[best - 1..=best + 1]
-            && a + c < 2.0 * b
+            && let [before, peak, after] = slopes[best - 1..=best + 1]
+            && before + after < 2.0 * peak
         {
-            let offset = best as f64 - f64::from(SEARCH_WIDTH) + 0.5 * (a - c) / (a - 2.0 * b + c);
-            places.push(DVec2::new(t, offset));
+            let vertex = 0.5 * (before - after) / (before - 2.0 * peak + after);
+            let offset = best as f64 - f64::from(SEARCH_WIDTH) + vertex;
+            points.push(a + along * t + across * offset);
         }
     }
-    (places.len() as f64 >= MIN_COVERAGE * steps as f64).then_some(places)
+    (points.len() as f64 >= MIN_COVERAGE * steps as f64).then_some(Edge { a, b, points })
 }
 
 /// Directional derivative of the encoded luma, interpolated between pixels; 0 outside the image.
@@ -247,6 +270,32 @@ mod tests {
                 assert!(found.error < 0.01, "k {k}: {found:?}");
             }
         }
+    }
+
+    /// A ceiling of tiles in the upper half of a photo, whose edges sag by 1.2 pixels between the bars that carry them.
+    #[test]
+    fn tiles_that_sag_between_their_bars_are_no_distortion() {
+        let tiles = Image::from_fn(640, 480, |x, y| {
+            let samples = (0..9).map(|s| {
+                let at = DVec2::new(x as f64 + (s % 3) as f64 / 3.0, y as f64 + (s / 3) as f64 / 3.0) + 1.0 / 6.0;
+                let across = (at.x / 160.0).fract() - 0.5;
+                let edge = (at.y - 1.2 * (1.0 - 4.0 * across * across)).rem_euclid(40.0);
+                if at.y < 230.0 && (edge < 6.0 || at.x.rem_euclid(160.0) < 6.0) { 0.1 } else { 0.5 }
+            });
+            [(samples.sum::<f64>() / 9.0 + 0.01 * Rng::new(4, &[x as u64, y as u64]).normal()) as f32; 3]
+        });
+        let tiles = tiles.unwrap();
+        let found = measured(&tiles);
+        assert!(found.is_none_or(|found| found.corner.abs() < 3.0 * found.error && found.error < 0.02), "{found:?}");
+        // Without the lines of the pieces, their curvature would count as distortion.
+        let monitor = Monitor::default();
+        let luma = gradient::encoded_luma(&tiles, monitor.job()).unwrap();
+        let gradients = gradient::gradients(&luma, monitor.job()).unwrap();
+        let segments = segments::detect(&gradients, monitor.job()).unwrap();
+        let (centre, diagonal) = (DVec2::new(320.0, 240.0), 400.0);
+        let edges = segments.iter().filter_map(|s| trace(&gradients, s));
+        let pieces: Vec<LineEstimate> = edges.filter_map(|edge| LineEstimate::by(&edge, centre, diagonal)).collect();
+        assert!(combine(&pieces).is_some_and(|of_pieces| of_pieces.corner.abs() > 0.05), "{:?}", combine(&pieces));
     }
 
     #[test]

@@ -38,6 +38,7 @@ mod biweight;
 mod camera;
 pub mod canny;
 mod distortion;
+mod edge_lines;
 mod focal;
 mod footprint;
 mod gather;

@@ -45,6 +45,15 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
+    /// Removes the given pixels (`y * width + x`) from the mask.
+    pub fn remove(&mut self, is_removed: impl Fn(usize) -> bool) {
+        for (i, confidence) in self.confidence.data.iter_mut().enumerate() {
+            if self.mask.data[i] > 0.5 && is_removed(i) {
+                (self.mask.data[i], *confidence) = (0.0, 0.0);
+            }
+        }
+    }
+
     /// Wraps a segmentation that the caller supplies: one channel of probabilities in `[0, 1]`, or a mask of 0 and 1.
     pub fn from_confidence(confidence: &Image) -> Result<Self> {
         check_range("the number of channels of the mask", confidence.channels, 1, 1)?;

@@ -522,3 +522,19 @@ fn a_cancelled_job_ends_with_an_error() {
     let input = Input { features: &features, strokes: &strokes, region: None };
     assert_eq!(run(&input, &Params::default(), monitor.job()).unwrap_err(), Error::cancelled());
 }
+
+#[test]
+fn removed_pixels_leave_the_mask_and_the_others_stay() {
+    let (features, _) = room();
+    let before = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
+    let mut after = before.clone();
+    after.remove(|pixel| pixel % 2 == 0);
+    for i in 0..before.mask.data.len() {
+        let kept = if i % 2 == 0 && before.mask.data[i] > 0.5 {
+            [0.0; 2]
+        } else {
+            [before.mask.data[i], before.confidence.data[i]]
+        };
+        assert_eq!([after.mask.data[i], after.confidence.data[i]], kept);
+    }
+}

@@ -103,6 +103,7 @@ pub struct Input {
 #[derive(Clone, Debug)]
 pub struct Params {
     pub rectify: rectify::Params,
+    /// Settings of the unwarping. Without `axes`, the axes of the face of the room's layout that holds the plane.
     pub unwarp: rectify::UnwarpParams,
     pub features: features::Params,
     /// Settings of the first phase of segmentation, which finds the plane.

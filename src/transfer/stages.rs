@@ -63,7 +63,18 @@ impl Transfer {
             strokes.extend(self.results.beyond.iter().cloned());
         }
         let input = segment::Input { features: &features.image, strokes: &strokes, region: None };
-        let plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.context("strokes of the plane"))?;
+        let mut plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.context("strokes of the plane"))?;
+        if let Some(surfaces) = &features.surfaces {
+            let size = [plane.mask.width, plane.mask.height];
+            let is_off = |pixel: usize| surfaces.is_off_plane(pixel, size);
+            // Strokes that were painted after the features had been computed may contradict the surfaces.
+            let share_off = |s: &segment::Stroke| {
+                s.pixels.iter().filter(|p| is_off(**p as usize)).count() as f64 / s.pixels.len().max(1) as f64
+            };
+            if !self.input.strokes.plane_strokes().any(|s| s.positive && share_off(s) > 0.5) {
+                plane.remove(is_off);
+            }
+        }
         self.results.plane = Some(Arc::new(plane));
         Ok(())
     }
@@ -141,9 +152,23 @@ impl Transfer {
         let photo = need(&self.input.photo, "set the photo")?;
         let view = need(&self.results.view, "run stage View")?;
         let plane = need(&self.results.plane, "run stage Plane")?;
-        let unwarped = rectify::unwarp(photo, view, &plane.mask, &self.params.unwarp, job)?;
+        let axes = self.params.unwarp.axes.or_else(|| self.laid_out_axes());
+        let params = rectify::UnwarpParams { axes, ..self.params.unwarp.clone() };
+        let unwarped = rectify::unwarp(photo, view, &plane.mask, &params, job)?;
         self.results.unwarped = Some(Arc::new(unwarped));
         Ok(())
+    }
+
+    /// The room axes along the face of the room's layout that holds the plane. `None` if there is no layout, or if the
+    /// plane lies on several faces.
+    fn laid_out_axes(&self) -> Option<[usize; 2]> {
+        let Results { view: Some(view), features: Some(features), plane: Some(plane), .. } = &self.results else {
+            return None;
+        };
+        let mask = &plane.mask;
+        let marked = (0..mask.data.len()).filter(|&p| mask.data[p] > 0.5).map(|p| mask.centre_of(p));
+        let normal = features.layout?.shared_face(&view.perspective, marked)?.axis();
+        Some([(normal + 1) % 3, (normal + 2) % 3])
     }
 
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {

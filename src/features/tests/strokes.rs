@@ -20,7 +20,7 @@ fn as_strokes(all: &[(Vec<u32>, bool)]) -> Vec<PlaneStroke<'_>> {
 fn layout_of(camera: &Perspective, segments: &[(Segment, Option<usize>)], all: &[(Vec<u32>, bool)]) -> Layout {
     let strokes = as_strokes(all);
     let room = RoomView { perspective: camera, segments, strokes: &strokes, layout: None };
-    search::find(&room, SIZE[0], SIZE[1], Monitor::default().job()).unwrap()
+    search::find(&room, None, SIZE, Monitor::default().job()).unwrap()
 }
 
 const SIZE: [usize; 2] = [640, 480];
