@@ -75,10 +75,6 @@ use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
 
-pub fn toggle(name: &str) -> bool {
-    std::env::var("T").is_ok_and(|t| t.contains(name))
-}
-
 /// Makes an emission from a texture that the caller supplies. A texel counts as light if any of its channels is above
 /// 0.
 pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {

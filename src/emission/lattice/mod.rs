@@ -69,7 +69,7 @@ pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
 
 /// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
 pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
-    if !extent::has_few_lamps(exemplar, extent) && !(crate::emission::toggle("W") && exemplar.lamps().count() < 40) {
+    if !extent::has_few_lamps(exemplar, extent) {
         return Law::Free;
     }
     extent::as_period(exemplar)
