@@ -79,7 +79,8 @@ impl Scattered {
         };
         let (one, other) = (film(0), film(1));
         let halves = [&one.layers[0].image, &other.layers[0].image];
-        // The pictures' own variances also hold the light that comes directly from lamps, which has noise at edges only.
+        // The variances of the whole pictures also hold the light that comes directly from lamps, which has noise at
+        // edges only.
         let variances = [&one.variance, &other.variance];
         let mean = |layer: usize| mean(&one, &other, layer);
         let (position, normal, albedo) = (mean(1), mean(2), mean(3));

@@ -1,7 +1,7 @@
 //! The lamps of an exemplar, as evidence for a law.
 //!
-//! The photo shows only a part of a lamp that its border cuts. If that lamp resembles whole lamps, it has their size, and
-//! the edges that the border does not cut give its centre. Such a lamp shows a period as well as a whole lamp does.
+//! The photo shows only a part of a lamp that its border cuts. If that lamp resembles whole lamps, it has their size,
+//! and the edges that the border does not cut give its centre. Such a lamp shows a period as well as a whole lamp does.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
@@ -43,8 +43,8 @@ impl Evidence {
     }
 }
 
-/// The whole lamp of which the photo shows `part`. `None` if no whole lamp has its size, or if the border cuts both ends
-/// of an axis.
+/// The whole lamp of which the photo shows `part`. `None` if no whole lamp has its size, or if the border cuts both
+/// ends of an axis.
 fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) -> Option<MeasuredLamp> {
     if exemplar.roles[part.component] != Role::Cut {
         return None;

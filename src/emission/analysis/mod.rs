@@ -221,8 +221,8 @@ impl Analysis {
     }
 
     /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
-    /// `min_regularity`, and several rows and lattices with looser thresholds. Also proposes lattices and rows along the
-    /// axes from the distances between lamps.
+    /// `min_regularity`, and several rows and lattices with looser thresholds. Also proposes lattices and rows along
+    /// the axes from the distances between lamps.
     fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();

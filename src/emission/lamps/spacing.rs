@@ -4,7 +4,6 @@
 
 use super::instance::Instance;
 use crate::emission::exemplar::Exemplar;
-use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 use std::collections::BTreeMap;
 

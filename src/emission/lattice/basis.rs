@@ -13,8 +13,9 @@ const MAX_OFF_SITE: f64 = 0.12;
 /// change, and not for a period: the lattice search returns a shift of one pixel there. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
-/// Makes a period whose slant, as a tangent, is below `max_slant` exactly parallel to its axis, and keeps its length. In a row of few
-/// lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the axis.
+/// Makes a period whose slant, as a tangent, is below `max_slant` exactly parallel to its axis, and keeps its length.
+/// In a row of few lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the
+/// axis.
 pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     match () {
         _ if period.x.abs() < max_slant * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),

@@ -98,3 +98,21 @@ impl Law {
         [along(DVec2::X), along(DVec2::Y)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearly_parallel_periods_become_parallel_and_oblique_ones_stay() {
+        let near = Law::Lattice([DVec2::new(100.0, 4.0), DVec2::new(98.0, 84.0)]).aligned();
+        let Law::Lattice([a, b]) = near else { panic!("{near:?}") };
+        assert!(near.is_aligned() && a.min_element() == 0.0 && b.min_element().abs() == 0.0, "{near:?}");
+        assert!((a.length() - 80.0).abs() < 0.1 && (b.length() - 100.1).abs() < 0.1, "{near:?}");
+
+        let hexagonal = Law::Lattice([DVec2::new(100.0, 0.0), DVec2::new(50.0, 86.6)]);
+        assert!(!hexagonal.aligned().is_aligned());
+        let free = Law::Free;
+        assert!(free.is_aligned() && free.aligned() == free);
+    }
+}

@@ -12,8 +12,10 @@ const MAX_LAMPS: usize = 48;
 /// Two steps count as equal if they differ by at most this share of their length, besides the lamps' blur.
 /// [judged on 50 photos]
 const MAX_DIFFERENCE: f64 = 0.04;
-/// A step is a period if at least this many pairs of lamps show it: a single pair shows no repetition. [convention]
+/// A step is a period if at least this many pairs of lamps show it, because a single pair shows no repetition, and at
+/// least this many pairs per lamp, because some steps between scattered lamps are equal by chance. [convention]
 const MIN_PAIRS: usize = 2;
+const MIN_PAIRS_PER_LAMP: f64 = 1.0 / 3.0;
 /// Maximum number of periods along each axis. [bench emission:seconds]
 const MAX_PERIODS: usize = 4;
 
@@ -23,14 +25,27 @@ struct Step {
     pairs: usize,
 }
 
-/// The periods along x and along y that most pairs of lamps show, the shorter one first among equals.
+/// The periods along x and along y that most pairs of lamps show, the shorter one first among equals. Leaves out
+/// multiples of a period.
 pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
-    let mut steps = steps(&lamps[..lamps.len().min(MAX_LAMPS)]);
-    steps.retain(|step| step.pairs >= MIN_PAIRS);
+    let lamps = &lamps[..lamps.len().min(MAX_LAMPS)];
+    let mut steps = steps(lamps);
+    steps.retain(|step| step.pairs >= MIN_PAIRS && step.pairs as f64 >= MIN_PAIRS_PER_LAMP * lamps.len() as f64);
     steps.sort_by(|a, b| b.pairs.cmp(&a.pairs).then(a.mean.length().total_cmp(&b.mean.length())));
     [0, 1].map(|axis| {
-        let along = steps.iter().filter(|step| step.mean[1 - axis] == 0.0);
-        along.map(|step| step.mean[axis].abs()).take(MAX_PERIODS).collect()
+        let mut periods: Vec<f64> = Vec::new();
+        for step in steps.iter().filter(|step| step.mean[1 - axis] == 0.0) {
+            let length = step.mean[axis];
+            let is_multiple = |period: &f64| {
+                let times = (length / period).round();
+                times >= 1.0 && (length - times * period).abs() <= MAX_DIFFERENCE * length
+            };
+            if !periods.iter().any(is_multiple) {
+                periods.push(length);
+            }
+        }
+        periods.truncate(MAX_PERIODS);
+        periods
     })
 }
 
@@ -58,4 +73,26 @@ fn steps(lamps: &[MeasuredLamp]) -> Vec<Step> {
         }
     }
     steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lamp(x: f64, y: f64) -> MeasuredLamp {
+        let (size, blur) = (DVec2::new(12.0, 6.0), DVec2::splat(0.5));
+        MeasuredLamp { component: 0, centre: DVec2::new(x, y), size, weight: 72.0, blur }
+    }
+
+    #[test]
+    fn steps_that_two_pairs_show_are_periods_and_single_or_oblique_ones_are_not() {
+        let lamps = [lamp(10.0, 10.0), lamp(50.0, 10.0), lamp(10.0, 41.0), lamp(50.0, 41.0), lamp(123.0, 10.0)];
+        // Every second lamp of a longer row is a multiple of the period.
+        let row: Vec<MeasuredLamp> = (0..6).map(|k| lamp(30.0 * f64::from(k), 0.0)).collect();
+        assert_eq!(periods(&row), [vec![30.0], vec![]]);
+        assert_eq!(periods(&lamps), [vec![40.0], vec![31.0]]);
+        for few in [&lamps[..2], &[]] {
+            assert!(periods(few).iter().all(Vec::is_empty));
+        }
+    }
 }

@@ -1,6 +1,8 @@
 //! Tests of lamps that the border of the photo cuts, and of single lamps, which show no spacing.
 
 use super::*;
+use crate::emission::lamps::instance::Instance;
+use crate::emission::lamps::spacing;
 use crate::geometry::polygon;
 
 /// The texture of an exemplar that is a photo seen straight on.
@@ -95,4 +97,29 @@ fn columns_of_windows_at_unequal_distances_repeat_as_one() {
         assert!((period.length() - 84.0).abs() < 1.0, "{width}: {period}");
         assert!((repeat.length() - expected).abs() < 2.0, "{width}: {repeat}");
     }
+}
+
+#[test]
+fn lamps_that_the_border_cuts_show_a_period() {
+    // Two whole lamps, and above them two of which the photo shows the lower half.
+    let design = Design::new(160, 90, |x, y| {
+        [40.0, 105.0].iter().any(|at| (x - at).abs() < 12.0) && ((y - 55.0).abs() < 8.0 || y < 8.0)
+    });
+    let law = continued(&design).law;
+    let Law::Lattice([a, b]) = law else { panic!("{law:?}") };
+    let [across, down] = if a.x.abs() > a.y.abs() { [a, b] } else { [b, a] };
+    assert!((across.abs() - DVec2::new(65.0, 0.0)).length() < 1.0, "{law:?}");
+    assert!((down.abs() - DVec2::new(0.0, 55.0)).length() < 1.0, "{law:?}");
+}
+
+#[test]
+fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
+    let design =
+        Design::new(160, 90, |x, y| [40.0, 105.0].iter().any(|at| (x - at).abs() < 12.0) && (y - 45.0).abs() < 8.0);
+    let exemplar = Exemplar::new(&design.input(), 160.0, 0.0, Monitor::default().job()).unwrap();
+    // The gap between the lamps is 41 pixels, so a gap of 21 between copies is allowed, and one of 20 is not.
+    let copies = [0.0, 44.0, 45.0, 90.0, 0.5].map(|x| Instance { component: 0, shift: DVec2::new(x, 0.0) });
+    let kept = spacing::keep_apart(&exemplar, copies.to_vec());
+    let shifts: Vec<f64> = kept.iter().map(|copy| copy.shift.x).collect();
+    assert_eq!(shifts, [0.0, 45.0, 90.0]);
 }
