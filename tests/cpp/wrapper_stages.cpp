@@ -293,8 +293,10 @@ void light(const Context &context) {
 // The body of a globe, from its picture to a scene.
 void pendants(const Context &context) {
     std::vector<float> disc(96 * 96);
-    for (int i = 0; i < 96 * 96; ++i)
-        disc[i] = std::hypot(i % 96 - 47.5f, i / 96 - 47.5f) < 24 ? 1.0f : 0.0f;
+    for (std::size_t i = 0; i < disc.size(); ++i) {
+        const auto x = static_cast<float>(i % 96), y = static_cast<float>(i / 96);
+        disc[i] = std::hypot(x - 47.5f, y - 47.5f) < 24 ? 1.0f : 0.0f;
+    }
     const Image globe = Image::create(context, {disc, 96, 96, 1});
     luxfer::PendantsParams params;
     params.focal = 200;
