@@ -1052,13 +1052,13 @@ typedef struct luxfer_pendants_params {
     /** The camera, if no rectification is given: its focal length in pixels, > 0; default 0. */
     double focal;
     /**
-     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of a
-     * focal length that was assumed or read from metadata is used if this is 0.
+     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of
+     * a focal length that was assumed or read from metadata is used if this is 0.
      */
     double focal_error;
     /**
-     * Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0. Not
-     * used with a rectification, which has its own.
+     * Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0.
+     * Not used with a rectification, which has its own.
      */
     double axes_error;
     /** Principal point in pixels; NaN, the default: the photo's centre. */

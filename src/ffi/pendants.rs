@@ -91,11 +91,11 @@ pub struct luxfer_pendants_params {
     pub suspension_error: f64,
     /// The camera, if no rectification is given: its focal length in pixels, > 0; default 0.
     pub focal: f64,
-    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of a
-    /// focal length that was assumed or read from metadata is used if this is 0.
+    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of
+    /// a focal length that was assumed or read from metadata is used if this is 0.
     pub focal_error: f64,
-    /// Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0. Not
-    /// used with a rectification, which has its own.
+    /// Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0.
+    /// Not used with a rectification, which has its own.
     pub axes_error: f64,
     /// Principal point in pixels; NaN, the default: the photo's centre.
     pub principal: [f64; 2],

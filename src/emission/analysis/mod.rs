@@ -97,8 +97,8 @@ impl Proposal {
         Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
     }
 
-    /// The proposal with its lattice parallel to the axes of the unwarped photo, which are those of the room; unchanged
-    /// if the lamps contradict this, and for the panes of a luminous ceiling.
+    /// Turns the lattice parallel to the axes of the room. Returns the proposal unchanged if the lamps contradict this,
+    /// and for the panes of a luminous ceiling.
     fn aligned(self, exemplar: &Exemplar, score: impl Fn(Law) -> f64) -> Self {
         let law = self.law.aligned();
         if law == self.law || exemplar.is_luminous_ceiling() {
