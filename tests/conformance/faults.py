@@ -60,9 +60,8 @@ def broken_fields(struct: Argument) -> list[Argument]:
             count = 1
             for n in member.dims:
                 count *= n
-            if len(member.dims) == 1:
-                for value in REALS if member.type in ("float", "double") else integers(member.type):
-                    with_field(member.name, array(member.type, *[value] * count))
+            for value in REALS if member.type in ("float", "double") else integers(member.type):
+                with_field(member.name, array(member.type, *[value] * count))
         elif member.name == "struct_size":
             for size in (0, 3, 4, 8, 4095, 4096, 4097, 2**32 - 1):
                 with_field(member.name, plain(size))

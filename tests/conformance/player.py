@@ -124,9 +124,9 @@ class Player:
                 at = getattr(kind, field).offset
                 ctypes.c_void_p.from_buffer(room, at).value = self.value(argument)
             elif member.dims:
-                place = getattr(value, field)
-                for i, number in enumerate(argument[2]):
-                    place[i] = number
+                numbers = argument[2]
+                place = (TYPES[member.type] * len(numbers)).from_buffer(room, getattr(kind, field).offset)
+                place[:] = numbers
             else:
                 setattr(value, field, argument[1])
         return address(value)

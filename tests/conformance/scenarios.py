@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from script import SETTINGS, Argument, Call, Script, array, report, struct, view
 
 ROOM = ["room", 0x5A]
@@ -439,6 +441,25 @@ def stylisation() -> Scenario:
     return s
 
 
+def pendants() -> Scenario:
+    s = Scenario()
+    width, height, centre, radius = 64, 48, (32, 24), 14
+    disc = [float(math.dist((x + 0.5, y + 0.5), centre) < radius) for y in range(height) for x in range(width)]
+    pixels = array("float", *disc)
+    globe = s.make("image_create", s.context, struct(
+        "image_view", width=width, height=height, channels=1, byte_size=4 * len(disc), data=pixels
+    ))  # fmt: skip
+    settings = struct("pendants_params", focal=200.0, known=2, known_length=0.4)
+    hook, found = array("double", 32, 2), struct("pendant", "raw")
+    s.call("pendants_find", s.context, globe, globe, None, hook, 1, settings, found, 4096, 1, ROOM)
+    drum = struct(
+        "pendant", "raw", struct_size=4096, profile_count=2, diameter=array("double", 0.4, 0.3, 0.5),
+        profile=array("float", 0.5, 0, 0.5, 1),
+    )  # fmt: skip
+    s.call("scene_add_pendants", s.room(), drum, array("double", 0, 1.8, 0, 0.5, 1.8, 0), 2, 0.0, 500.0, ROOM, ROOM)
+    return s
+
+
 def sheets() -> Scenario:
     s = Scenario()
     settings = struct("sheet_params", dpi=40.0)
@@ -448,7 +469,7 @@ def sheets() -> Scenario:
     return s
 
 
-ALL = [library, images, scenes, jobs, photo, emission, rendering, light, lamps, photometry, transfer, planning, stylisation, sheets]
+ALL = [library, images, scenes, jobs, photo, emission, rendering, light, lamps, photometry, transfer, planning, stylisation, pendants, sheets]
 
 
 def programs() -> dict[str, list[Call]]:

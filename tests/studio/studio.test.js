@@ -111,6 +111,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   await other.waitForFunction((masks) => document.body.dataset.masks === masks, made.masks);
   await other.waitForFunction((texture) => document.body.dataset.texture === texture, made.texture);
   await other.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
+  await settled(other);
   assert.equal(await download(other, "csv", "utf8"), csv);
   assert.deepEqual([...page.problems, ...other.problems], []);
 });
