@@ -151,15 +151,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
 
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = composition.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
-        // If the exemplar repeats as a whole, the exemplar itself is one period.
-        let periods = match layer.law {
-            Law::Whole(_) => [Some(f64::INFINITY); 2],
-            other => other.periods(),
-        };
-        let own = layer.exemplar.statistics(input.unwarped, periods);
-        // A lamp drawn from its design lacks the bloom of the photo, so correct the expected area.
-        let own = if layer.is_clean() { own.with_area(layer.designs.area_ratio(&layer.exemplar)) } else { own };
-        (own.scaled(1.0 / layer.scale), composition.weights.mean(k))
+        (layer.statistics(input.unwarped).scaled(1.0 / layer.scale), composition.weights.mean(k))
     });
     let expected = Statistics::mixed(parts);
     let exemplar_lamps = composition.exemplar_lamps();

@@ -238,14 +238,14 @@ int main() {
     render.set_aovs(LUXFER_AOV_ALPHA | LUXFER_AOV_NORMAL);
     starve("render", 16, [&] {
         luxfer::RenderParams small;
-        small.width = 400;
-        small.height = 300;
+        small.width = 160;
+        small.height = 120;
         small.samples = 2;
         small.preview = 1;
         render.start(small).wait();
         return hash(render.image());
     }, 40);
-    starve("layers", 400, [&] {
+    starve("layers", 64, [&] {
         render.write_exr("memory.exr");
         return hash(render.image());
     }, 40);
@@ -255,8 +255,8 @@ int main() {
     const auto stylize = luxfer::Stylize::create(context);
     starve("stylize", 16, [&] {
         luxfer::GuidesParams small;
-        small.width = 400;
-        small.height = 280;
+        small.width = 200;
+        small.height = 140;
         small.samples = 2;
         guides.start(small).wait();
         stylize.set_artwork(guides.demo_artwork(LUXFER_ARTWORK_PEN));

@@ -39,15 +39,21 @@ pub struct Site {
     /// `unmarked` counts positions that shine in the photo, `missing` those that do not.
     pub unmarked: f64,
     pub missing: f64,
-    /// Number of positions counted in `missing`.
-    pub dark: usize,
+    /// The part of `missing` that lies between lamps of the site, in photo pixels, and its number of positions.
+    pub holes: f64,
+    pub hole_count: usize,
+    /// The cells, counted from `at`, in which the pattern continues: from the first to the last lamp along both
+    /// periods, and without limit on a side where no predicted lamp is missing. Beyond a side where some are missing,
+    /// the pattern has ended, for example because a wall is near.
+    pub cells: [DVec2; 2],
 }
 
 impl Site {
-    /// Share of the positions in view that have a lamp or shine, weighted by photo pixels.
+    /// Share of the positions that have a lamp or shine among those in view between the first and the last lamp,
+    /// weighted by photo pixels.
     pub fn occupancy(&self) -> f64 {
         let seen = self.shown + self.unmarked;
-        seen / (seen + self.missing).max(f64::MIN_POSITIVE)
+        seen / (seen + self.holes).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -93,7 +99,9 @@ impl Sites {
                         shown: 0.0,
                         unmarked: 0.0,
                         missing: 0.0,
-                        dark: 0,
+                        holes: 0.0,
+                        hole_count: 0,
+                        cells: [DVec2::NEG_INFINITY, DVec2::INFINITY],
                     });
                 }
             }
@@ -118,26 +126,31 @@ impl Sites {
     /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Also measures where the
     /// lattice predicts a lamp of this site in full view but the light mask shows none.
     fn weigh(&mut self, k: usize, all: &[MeasuredLamp], exemplar: &Exemplar) {
-        let Site { lamps, .. } = &self.list[k];
+        let lamps = &self.list[k].lamps;
         let first = lamps[0];
         let shown: f64 = lamps.iter().map(|l| l.weight).sum();
         let off: DVec2 = lamps.iter().map(|l| self.residual(l.centre - first.centre) * l.weight).sum();
         let at = first.centre + off / shown.max(f64::MIN_POSITIVE);
-        let (unmarked, missing, dark) = self.missing(at, (lamps, all), exemplar);
-        let site = &mut self.list[k];
-        (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
+        let site = Site { at, shown, ..self.list[k].clone() };
+        self.list[k] = self.with_empty_positions(site, all, exemplar);
     }
 
-    /// Tests the positions in full view where the lattice predicts a lamp of this site (`lamps`, of `all` lamps) but the
-    /// light mask shows none. Returns the photo pixels of positions that shine like the site's lamps, the photo pixels
-    /// of dark positions, and the number of dark positions. A lamp that covers the position off its centre counts as
-    /// dark.
-    fn missing(
-        &self,
-        at: DVec2,
-        (lamps, all): (&[MeasuredLamp], &[MeasuredLamp]),
-        exemplar: &Exemplar,
-    ) -> (f64, f64, usize) {
+    /// The cell of a position, counted from the cell of the site at `at`. A row has only the first coordinate.
+    fn cell(&self, at: DVec2, position: DVec2) -> DVec2 {
+        let cell = (self.to_cells * (position - at)).round();
+        if self.is_row { DVec2::new(cell.x, 0.0) } else { cell }
+    }
+
+    /// Whether the pattern of a site continues at a position, and has not ended before it.
+    pub fn continues(&self, site: &Site, position: DVec2) -> bool {
+        let cell = self.cell(site.at, position);
+        cell.cmpge(site.cells[0]).all() && cell.cmple(site.cells[1]).all()
+    }
+
+    /// Tests the positions in full view where the lattice predicts a lamp of this site (one of `all` lamps) but the
+    /// light mask shows none, and adds them to the site. A lamp that covers the position off its centre counts as dark.
+    fn with_empty_positions(&self, mut site: Site, all: &[MeasuredLamp], exemplar: &Exemplar) -> Site {
+        let Site { at, ref lamps, .. } = site;
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
         let is_shown = |p: DVec2| {
@@ -174,18 +187,31 @@ impl Sites {
         let contrast = |p: DVec2| exemplar.working.contrast(p, half);
         let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
         let brightest = of_lamps.fold(0.0, f64::max);
-        let (mut unmarked, mut missing, mut dark) = (0.0, 0.0, 0);
-        for p in empty {
-            let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
-            let shines =
-                label_at(p) == 0 && brightest > 0.0 && contrast(p).is_some_and(|c| c >= MIN_SHINING * brightest);
-            if shines {
-                unmarked += pixels;
-            } else {
-                (missing, dark) = (missing + pixels, dark + 1);
+        let shines = |p: &DVec2| {
+            label_at(*p) == 0 && brightest > 0.0 && contrast(*p).is_some_and(|c| c >= MIN_SHINING * brightest)
+        };
+        let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.partition(shines);
+
+        // A dark position is a hole if it lies between the first and the last lamp along both periods. Beyond them, it
+        // ends the pattern on that side.
+        let lit = lamps.iter().map(|l| l.centre).chain(shining.iter().copied()).map(|p| self.cell(at, p));
+        let (low, high) = lit.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), c| (a.min(c), b.max(c)));
+        let mut cells = [DVec2::NEG_INFINITY, DVec2::INFINITY];
+        let pixels = |p: DVec2| 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
+        let (mut missing, mut holes, mut hole_count) = (0.0, 0.0, 0);
+        for p in dark {
+            let (cell, pixels) = (self.cell(at, p), pixels(p));
+            let (before, after) = (cell.cmplt(low), cell.cmpgt(high));
+            missing += pixels;
+            if !(before | after).any() {
+                (holes, hole_count) = (holes + pixels, hole_count + 1);
             }
+            cells = [DVec2::select(before, low, cells[0]), DVec2::select(after, high, cells[1])];
         }
-        (unmarked, missing, dark)
+        let unmarked = shining.into_iter().map(pixels).sum();
+        (site.unmarked, site.missing, site.holes, site.hole_count, site.cells) =
+            (unmarked, missing, holes, hole_count, cells);
+        site
     }
 
     /// How well the lattice predicts the lamps, in [0, 1]. The score is the product of two shares:

@@ -1,6 +1,7 @@
 //! The layer of one exemplar: the positions of its lamps and patches over the whole texture.
 
 use super::window::{self, Window};
+use crate::emission::agreement::statistics::Statistics;
 use crate::emission::analysis::sites::Sites;
 use crate::emission::analysis::{Analysis, Choice};
 use crate::emission::exemplar::Exemplar;
@@ -52,6 +53,8 @@ pub struct Layer {
     /// The designs (one size and one outline per kind of lamp) from which lamps are drawn; empty if lamps keep the
     /// outlines of the photo.
     pub designs: Designs,
+    /// The sites at which lamps are placed exactly; `None` if copied patches alone give their places.
+    sites: Option<Sites>,
     /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
@@ -100,8 +103,12 @@ impl Layer {
             }
             false => Designs::default(),
         };
+        let sites = placement.sites(&exemplar, &designs).filter(|_| has_pieces);
         let instances = match has_pieces {
-            true => placement.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
+            true => {
+                let at = (sites.as_ref(), &patch_map);
+                placement.place_lamps(&exemplar, &designs, at, by_patches, job.part(0.92, 1.0))?
+            }
             false => Vec::new(),
         };
         let patch_map = match placement.stretch().filter(|_| by_patches) {
@@ -123,9 +130,25 @@ impl Layer {
             has_pieces,
             rim_colours,
             designs,
+            sites,
             even: None,
             scale,
         })
+    }
+
+    /// The statistics that the texture should have, with lengths in unwarped pixels: those of the exemplar where its
+    /// pattern has not ended, with the lamps of the designs.
+    pub fn statistics(&self, unwarped: &Image) -> Statistics {
+        // If the exemplar repeats as a whole, the exemplar itself is one period.
+        let periods = match self.law {
+            Law::Whole(_) => [Some(f64::INFINITY); 2],
+            other => other.periods(),
+        };
+        let has_ended =
+            |p: DVec2| self.sites.as_ref().is_some_and(|sites| lattice_fill::has_ended(sites, &self.exemplar, p));
+        let shown = self.exemplar.statistics(unwarped, periods, has_ended);
+        // A lamp drawn from its design lacks the bloom of the photo, so correct the expected area.
+        if self.is_clean() { shown.with_area(self.designs.area_ratio(&self.exemplar)) } else { shown }
     }
 
     /// Whether lamps are drawn from designs, one size and one outline for all lamps of a kind.
@@ -309,26 +332,18 @@ impl<'a> PatternPlacement<'a> {
         })
     }
 
-    /// Moves lamps to the exact sites of their lattice. `shown` holds the lamps that the copied patches contain; it is
-    /// returned unchanged if there are no designs (except for panes) or no sites, and for a row that ends within the
-    /// exemplar.
-    fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
-        let &Self { params, law, offset, .. } = self;
-        let ends = match law {
+    /// The sites of the lattice at which lamps are placed exactly. `None` if there are no designs (except for panes) or
+    /// no sites, and for a row that ends within the exemplar.
+    fn sites(&self, exemplar: &Exemplar, designs: &Designs) -> Option<Sites> {
+        let ends = match self.law {
             Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
             _ => false,
         };
-        let are_panes = params.clean_lamps && exemplar.to_photo.is_some() && exemplar.is_luminous_ceiling();
+        let are_panes = self.params.clean_lamps && exemplar.to_photo.is_some() && exemplar.is_luminous_ceiling();
         if ends || (designs.kinds.is_empty() && !are_panes) {
-            return shown;
+            return None;
         }
-        match Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), law) {
-            Some(sites) => {
-                let area = (offset, params.size());
-                lattice_fill::place(exemplar, designs, &sites, law, shown, area, params.seed)
-            }
-            None => shown,
-        }
+        Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), self.law)
     }
 
     /// Places the lamps that are copied into the texture as a whole, not assembled from patches.
@@ -336,7 +351,7 @@ impl<'a> PatternPlacement<'a> {
         &self,
         exemplar: &Exemplar,
         designs: &Designs,
-        patch_map: &PatchMap,
+        (sites, patch_map): (Option<&Sites>, &PatchMap),
         by_patches: bool,
         job: Job,
     ) -> Result<Vec<Instance>> {
@@ -348,11 +363,18 @@ impl<'a> PatternPlacement<'a> {
         let instances = match law {
             Law::Lattice(_) | Law::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
             Law::Whole(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
-            _ => self.at_sites(exemplar, designs, instances::resolve(exemplar, patch_map, rules, params.seed, job)?),
+            _ => {
+                let shown = instances::resolve(exemplar, patch_map, rules, params.seed, job)?;
+                let area = (offset, params.size());
+                match sites {
+                    Some(sites) => lattice_fill::place(exemplar, designs, sites, law, shown, area, params.seed),
+                    None => shown,
+                }
+            }
         };
         let mut instances = match law {
             Law::Whole(_) => instances,
-            _ => spacing::keep_apart(exemplar, instances),
+            _ => spacing::keep_apart(exemplar, designs, instances),
         };
         sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
         match law {

@@ -18,6 +18,7 @@ use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
 use foreshortening::{LocalMap, MagnificationLimit};
+use glam::DVec2;
 use measured_lamp::MeasuredLamp;
 use roles::Role;
 use working::{Sources, Working};
@@ -87,9 +88,14 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern, with lengths in unwarped pixels. `periods` has the meaning of
-    /// [`Pattern::periods`].
-    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
+    /// The statistics of the pattern where `is_left_out` is false, with lengths in unwarped pixels. `periods` has the
+    /// meaning of [`Pattern::periods`].
+    pub fn statistics(
+        &self,
+        unwarped: &Image,
+        periods: [Option<f64>; 2],
+        is_left_out: impl Fn(DVec2) -> bool,
+    ) -> Statistics {
         // Count every component that is copied as one piece as a lamp.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
@@ -99,7 +105,8 @@ impl Exemplar {
         let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
         let colour = |i: usize| {
             let (x, y) = (i % width, i / width);
-            (self.shown[i] && is_inside(x, y)).then(|| unwarped.rgb(x, y))
+            let centre = DVec2::new(x as f64, y as f64) + 0.5;
+            (self.shown[i] && is_inside(x, y) && !is_left_out(centre)).then(|| unwarped.rgb(x, y))
         };
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }

@@ -10,6 +10,7 @@ use super::design::Designs;
 use super::instance::Instance;
 use crate::emission::analysis::sites::{Site, Sites};
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lattice::cells;
 use crate::emission::lattice::law::Law;
@@ -52,7 +53,7 @@ pub fn place(
     let mut instances = Vec::new();
     for (n, site) in kept.iter().enumerate().filter(|(_, site)| is_always_taken(site, exemplar)) {
         let half = site.lamps[0].size / 2.0;
-        let choice = sharpest(site, exemplar);
+        let choice = sharpest(site, exemplar, designs);
         let (low, high) = (-half - site.at - offset, size + half - site.at - offset);
         for [i, j] in cells::between(to_cells, low, high) {
             let step = offset + a * i as f64 + b * j as f64;
@@ -80,12 +81,19 @@ pub fn place(
     instances
 }
 
+/// Whether the pattern has ended before this position of the exemplar, although the texture continues it: at each site
+/// that gets a lamp in every cell.
+pub fn has_ended(sites: &Sites, exemplar: &Exemplar, position: DVec2) -> bool {
+    let mut filled = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).peekable();
+    filled.peek().is_some() && filled.all(|site| !sites.continues(site, position))
+}
+
 /// Whether a site gets a lamp in every cell. The panes of a luminous ceiling always do.
 fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     if exemplar.is_luminous_ceiling() {
         return true;
     }
-    site.occupancy() >= if site.dark <= MAX_FEW_DARK { MIN_OCCUPANCY_FEW_DARK } else { MIN_OCCUPANCY }
+    site.occupancy() >= if site.hole_count <= MAX_FEW_DARK { MIN_OCCUPANCY_FEW_DARK } else { MIN_OCCUPANCY }
 }
 
 /// Returns the sites in descending order of the number of photo pixels of their lamps. Leaves out each site that
@@ -106,10 +114,13 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo or, if there are
-/// none, its first lamp.
-fn sharpest(site: &Site, exemplar: &Exemplar) -> Vec<usize> {
-    let clear = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
+/// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo, those with a design
+/// if there are any. Returns its first lamp if there is no whole lamp.
+fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
+    let whole = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
+    let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();
+    let any_design = whole().any(has_design);
+    let clear = || whole().filter(|l| !any_design || has_design(l));
     let most = clear().map(|l| l.weight).fold(0.0, f64::max);
     let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * most).map(|l| l.component).collect();
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }

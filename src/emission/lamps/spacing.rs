@@ -2,6 +2,7 @@
 //!
 //! If the lamps of a photo do not lie exactly on a lattice, the texture may show one lamp at two nearly equal places.
 
+use super::design::{Design, Designs};
 use super::instance::Instance;
 use crate::emission::exemplar::Exemplar;
 use glam::DVec2;
@@ -24,10 +25,22 @@ impl Frame {
     }
 }
 
+/// The box around a component as it is drawn.
+fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
+    match designs.of(component) {
+        Some((&Design { size, axis, .. }, fitted)) => {
+            Frame { centre: fitted.centre, size: axis.abs() * size.x + axis.perp().abs() * size.y }
+        }
+        None => {
+            let (low, high) = exemplar.components.list[component].bounds();
+            Frame { centre: (low + high) / 2.0, size: high - low }
+        }
+    }
+}
+
 /// Drops each copy that comes much closer to an earlier one than any two whole lamps of the photo do.
-pub fn keep_apart(exemplar: &Exemplar, instances: Vec<Instance>) -> Vec<Instance> {
-    let frame = |(low, high): (DVec2, DVec2)| Frame { centre: (low + high) / 2.0, size: high - low };
-    let frames: Vec<Frame> = exemplar.components.list.iter().map(|lamp| frame(lamp.bounds())).collect();
+pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instance>) -> Vec<Instance> {
+    let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();
     let gaps = whole.iter().enumerate().flat_map(|(n, one)| whole[n + 1..].iter().map(|other| one.gap(other)));
     let least = MIN_GAP_SHARE * gaps.fold(f64::INFINITY, f64::min);

@@ -1,6 +1,8 @@
-//! Tests of lamps that the border of the photo cuts, and of single lamps, which show no spacing.
+//! Tests of what a photo shows only in part: lamps that its border cuts, single lamps, which show no spacing, and
+//! patterns that end in view.
 
 use super::*;
+use crate::emission::lamps::design::Designs;
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::spacing;
 use crate::geometry::polygon;
@@ -119,7 +121,31 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
     let exemplar = Exemplar::new(&design.input(), 160.0, 0.0, Monitor::default().job()).unwrap();
     // The gap between the lamps is 41 pixels, so a gap of 21 between copies is allowed, and one of 20 is not.
     let copies = [0.0, 44.0, 45.0, 90.0, 0.5].map(|x| Instance { component: 0, shift: DVec2::new(x, 0.0) });
-    let kept = spacing::keep_apart(&exemplar, copies.to_vec());
+    let kept = spacing::keep_apart(&exemplar, &Designs::default(), copies.to_vec());
     let shifts: Vec<f64> = kept.iter().map(|copy| copy.shift.x).collect();
     assert_eq!(shifts, [0.0, 45.0, 90.0]);
+}
+
+#[test]
+fn a_pattern_continues_where_the_photo_shows_its_end() {
+    // The left part of the ceiling, as wide as two and a half periods, has no lamps.
+    let lamp = grid(40.0, 36.0, 14.0, 10.0);
+    let result = continued(&Design::new(240, 180, |x, y| x > 100.0 && lamp(x, y)));
+    let cells = (500.0 / 40.0) * (400.0 / 36.0);
+    let lamps = result.luminaires.iter().map(|lamp| lamp.area).sum::<f64>() / 140.0;
+    assert!((lamps / cells - 1.0).abs() < 0.1, "{lamps} lamps in {cells} cells, {:?}", result.law);
+    assert!(result.error < 0.1, "{}", result.error);
+}
+
+#[test]
+fn gaps_between_lamps_stay() {
+    // Every second lamp of the middle row is missing.
+    let lamp = grid(40.0, 36.0, 14.0, 10.0);
+    let result = continued(&Design::new(240, 180, |x, y| {
+        let [column, row] = [(x / 40.0).floor() as usize, (y / 36.0).floor() as usize];
+        lamp(x, y) && !(row == 2 && column % 2 == 1)
+    }));
+    let cells = (500.0 / 40.0) * (400.0 / 36.0);
+    let lamps = result.luminaires.iter().map(|lamp| lamp.area).sum::<f64>() / 140.0;
+    assert!((0.8..0.97).contains(&(lamps / cells)), "{lamps} lamps in {cells} cells");
 }
