@@ -1017,6 +1017,9 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
 /** The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the diameter. */
 #define LUXFER_DOUBT_HIDDEN 16
 
+/** Largest number of lamps that luxfer_pendants_find finds, and of suspensions. */
+#define LUXFER_MAX_PENDANTS 16
+
 /** The length that determines the size of lamps: a LUXFER_KNOWN_ value. */
 typedef int32_t luxfer_known;
 

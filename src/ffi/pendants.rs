@@ -64,6 +64,9 @@ pub const LUXFER_DOUBT_CUT: u32 = 8;
 /// The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the diameter.
 pub const LUXFER_DOUBT_HIDDEN: u32 = 16;
 
+/// Largest number of lamps that luxfer_pendants_find finds, and of suspensions.
+pub const LUXFER_MAX_PENDANTS: u32 = 16;
+
 /// Settings of the fit of bodies. Fill them with luxfer_pendants_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -271,8 +274,8 @@ versioned!(luxfer_pendant, [REPORT_SIZE], {
     }
 });
 
-/// Largest numbers of suspensions, which is that of lamps, and of places.
-const MAX_LAMPS: u32 = 16;
+const _: () = assert!(LUXFER_MAX_PENDANTS as usize == fixture::MAX_LAMPS);
+/// Largest number of places.
 const MAX_PLACES: u32 = 1024;
 /// Below this probability a kind is in doubt. [convention]
 const SURE: f64 = 0.9;
@@ -378,7 +381,7 @@ pub unsafe extern "C" fn luxfer_pendants_find(
         let photo = handle::borrow_in(context, photo, "photo")?;
         let mask = handle::borrow_in(context, mask, "mask")?;
         let (camera, shifted) = &settings.cameras(context, view, photo.image())?;
-        let suspensions = points::<2>(suspensions, suspension_count, 0, MAX_LAMPS, "suspension")?;
+        let suspensions = points::<2>(suspensions, suspension_count, 0, LUXFER_MAX_PENDANTS, "suspension")?;
         let suspensions = &suspensions.into_iter().map(DVec2::from_array).collect::<Vec<DVec2>>();
         let input = fixture::Input { camera, shifted, suspensions, known };
         let monitor = context.monitor();

@@ -163,7 +163,7 @@ inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context,
                                                          const Rectify &view = {},
                                                          Span<const std::array<double, 2>> suspensions = {},
                                                          const luxfer_pendants_params &params = PendantsParams()) {
-    std::vector<luxfer_pendant> lamps(16); // the library takes at most 16 lamps
+    std::vector<luxfer_pendant> lamps(LUXFER_MAX_PENDANTS);
     const double *places = suspensions.empty() ? nullptr : suspensions.data()->data();
     std::uint32_t count = 0;
     const luxfer_status status = luxfer_pendants_find(

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from .rectify import Rectify
     from .types import PendantsParams
 
-_CAPACITY = 16
-"""Largest number of lamps that the library takes."""
-
 
 def find_pendants(
     context: Context,
@@ -49,10 +46,11 @@ def find_pendants(
     if hooks.size and (hooks.ndim != 2 or hooks.shape[1] != 2):
         raise ValueError(f"suspensions has the shape (n, 2), not {hooks.shape}")
     place = _arrays.pointer(hooks, ctypes.c_double) if hooks.size else None
-    lamps, count = (_abi.luxfer_pendant * _CAPACITY)(), ctypes.c_uint32()
+    capacity, count = _abi.LUXFER_MAX_PENDANTS, ctypes.c_uint32()
+    lamps = (_abi.luxfer_pendant * capacity)()
     images = image_of(context, photo), image_of(context, mask)
     size = ctypes.sizeof(_abi.luxfer_pendant)
     call(
-        context, "luxfer_pendants_find", context, *images, view, place, hooks.size // 2, settings, lamps, size, _CAPACITY, count
+        context, "luxfer_pendants_find", context, *images, view, place, hooks.size // 2, settings, lamps, size, capacity, count
     )
     return [cast(Pendant, _params.report(lamp)) for lamp in lamps[: count.value]]
