@@ -168,6 +168,9 @@ impl Drop for Pool {
     }
 }
 
+// The parallel loops call their closures through `dyn`. rayon's code is then compiled once for each type of item and not
+// once for each closure, which would make up a sixth of the library's code.
+
 /// Calls `work(row, pixels)` for every row of an interleaved image, in parallel. Checks for cancellation before each
 /// row.
 pub fn for_rows<T: Send>(
@@ -175,6 +178,15 @@ pub fn for_rows<T: Send>(
     row_len: usize,
     job: Job,
     work: impl Fn(usize, &mut [T]) + Sync,
+) -> Result<()> {
+    for_rows_dyn(data, row_len, job, &work)
+}
+
+fn for_rows_dyn<T: Send>(
+    data: &mut [T],
+    row_len: usize,
+    job: Job,
+    work: &(dyn Fn(usize, &mut [T]) + Sync),
 ) -> Result<()> {
     if row_len == 0 || data.is_empty() {
         return job.check();
@@ -192,6 +204,15 @@ pub fn for_rows<T: Send>(
 /// Calls `work(first, items)` for every run of `length` items, in parallel; `first` is the index of the run's first
 /// item, and the last run may be shorter. Checks for cancellation before each run.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
+    for_runs_dyn(data, length, job, &work)
+}
+
+fn for_runs_dyn<T: Send>(
+    data: &mut [T],
+    length: usize,
+    job: Job,
+    work: &(dyn Fn(usize, &mut [T]) + Sync),
+) -> Result<()> {
     data.par_chunks_mut(length.max(1)).enumerate().try_for_each(|(run, items)| {
         job.check()?;
         work(run * length, items);
@@ -224,6 +245,10 @@ pub fn for_rows_of_three<T: Send>(
 /// Computes `work(i)` for `i` in `0..count`, in parallel. The results are in the order of `i` for any number of
 /// threads, so that a reduction over them is reproducible bit by bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
+    map_dyn(count, job, &work)
+}
+
+fn map_dyn<T: Send>(count: usize, job: Job, work: &(dyn Fn(usize) -> T + Sync)) -> Result<Vec<T>> {
     let done = AtomicUsize::new(0);
     let mut places = list_with_capacity(count)?;
     places.resize_with(count, || None);
