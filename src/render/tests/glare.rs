@@ -222,7 +222,7 @@ fn pictures_rate_as_the_luminaires_in_them() {
         let scene = room(luminaire, &places);
         let rating = rated(scene.clone(), EYE, 1 << 13);
         let camera = Camera { position: EYE.position, ..Camera::look_at(Vec3::ZERO, EYE.direction, 2.4) };
-        let params = crate::render::Params { width: 500, height: 500, samples: 4, ..Default::default() };
+        let params = crate::render::Params { width: 1000, height: 1000, samples: 4, ..Default::default() };
         let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
         let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0 }).unwrap();
         // Single bright pixels of noise count as sources; the luminaires are larger.
