@@ -124,8 +124,10 @@ class Player:
                 at = getattr(kind, field).offset
                 ctypes.c_void_p.from_buffer(room, at).value = self.value(argument)
             elif member.dims:
-                numbers = argument[2]
-                place = (TYPES[member.type] * len(numbers)).from_buffer(room, getattr(kind, field).offset)
+                element, numbers = type(getattr(value, field)), argument[2]
+                while issubclass(element, ctypes.Array):
+                    element = element._type_
+                place = (element * len(numbers)).from_buffer(room, getattr(kind, field).offset)
                 place[:] = numbers
             else:
                 setattr(value, field, argument[1])
