@@ -168,8 +168,8 @@ impl Drop for Pool {
     }
 }
 
-// The parallel loops call their closures through `dyn`. rayon's code is then compiled once for each type of item and not
-// once for each closure, which would make up a sixth of the library's code.
+// The parallel loops call their closures through `dyn`, so that rayon's code is compiled once for each type of item.
+// Compiled once for each closure, it was a sixth of the library's code before optimisation.
 
 /// Calls `work(row, pixels)` for every row of an interleaved image, in parallel. Checks for cancellation before each
 /// row.

@@ -55,6 +55,11 @@ impl Site {
         let seen = self.shown + self.unmarked;
         seen / (seen + self.holes).max(f64::MIN_POSITIVE)
     }
+
+    /// Whether the pattern of the site ends on any side.
+    pub fn ends(&self) -> bool {
+        self.cells != [DVec2::NEG_INFINITY, DVec2::INFINITY]
+    }
 }
 
 /// The sites of a lattice or a row.

@@ -136,17 +136,18 @@ impl Layer {
         })
     }
 
-    /// The statistics that the texture should have, with lengths in unwarped pixels: those of the exemplar where its
-    /// pattern has not ended, with the lamps of the designs.
+    /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the part of
+    /// the exemplar where the pattern has not ended, and corrected to the lamp areas of the designs.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
         // If the exemplar repeats as a whole, the exemplar itself is one period.
         let periods = match self.law {
             Law::Whole(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
-        let has_ended =
-            |p: DVec2| self.sites.as_ref().is_some_and(|sites| lattice_fill::has_ended(sites, &self.exemplar, p));
-        let shown = self.exemplar.statistics(unwarped, periods, has_ended);
+        let shown = match self.sites.as_ref().and_then(|sites| lattice_fill::end(sites, &self.exemplar)) {
+            Some(has_ended) => self.exemplar.statistics(unwarped, periods, has_ended),
+            None => self.exemplar.statistics(unwarped, periods, |_| false),
+        };
         // A lamp drawn from its design lacks the bloom of the photo, so correct the expected area.
         if self.is_clean() { shown.with_area(self.designs.area_ratio(&self.exemplar)) } else { shown }
     }

@@ -81,11 +81,12 @@ pub fn place(
     instances
 }
 
-/// Whether the pattern has ended before this position of the exemplar, although the texture continues it: at each site
-/// that gets a lamp in every cell.
-pub fn has_ended(sites: &Sites, exemplar: &Exemplar, position: DVec2) -> bool {
-    let mut filled = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).peekable();
-    filled.peek().is_some() && filled.all(|site| !sites.continues(site, position))
+/// The end of the pattern in the exemplar: a function that tells whether a position lies beyond the end of every site
+/// that gets a lamp in every cell. `None` if there is no such site, or if the pattern of one does not end.
+pub fn end<'a>(sites: &'a Sites, exemplar: &Exemplar) -> Option<impl Fn(DVec2) -> bool + use<'a>> {
+    let filled: Vec<&Site> = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).collect();
+    let all_end = !filled.is_empty() && filled.iter().all(|site| site.ends());
+    all_end.then(|| move |position| !filled.iter().any(|site| sites.continues(site, position)))
 }
 
 /// Whether a site gets a lamp in every cell. The panes of a luminous ceiling always do.
