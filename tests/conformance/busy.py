@@ -23,7 +23,7 @@ from script import Call, is_release
 from luxfer import _abi as abi
 
 #: Most rounds of a program. The least delay of a call counts: other programs may keep the processors busy.
-ROUNDS = 8
+ROUNDS = 24
 
 #: Seconds by which a job may delay a call.
 LIMIT = 0.05
