@@ -22,8 +22,8 @@ use std::time::Instant;
 /// The sums over all paths so far, for every pixel of the image.
 pub struct Accumulator<'a> {
     pub(super) world: &'a World,
-    /// A copy of `world`, updated after each pass with what its paths have learned about which lights reach the
-    /// surfaces in view.
+    /// A copy of `world`, in which the paths are traced. After each pass, it is updated by what the paths have shown:
+    /// which lights reach the surfaces in view.
     pub(super) learning: World,
     pub(super) camera_rays: CameraRays,
     pub(super) seed: u64,
@@ -48,7 +48,8 @@ impl<'a> Accumulator<'a> {
         Ok(Self { world, learning, camera_rays, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// Builds an accumulator for the pixels of one part of a distributed render, filled with the sums of this part.
+    /// Builds an accumulator for one part of a distributed render. It has the pixels of the part's rectangle, filled
+    /// with `sums`, the sums over the part's paths.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
         let mut accumulator = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
@@ -68,7 +69,7 @@ impl<'a> Accumulator<'a> {
         Ok(accumulator)
     }
 
-    /// Traces paths until every pixel has the number of paths that `pass` asks for; stops early at the deadline.
+    /// Traces paths until every pixel has the number of paths that `pass` asks for, or until the deadline.
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { learning, camera_rays, seed, grid, pixels, layers, discarded, .. } = self;
         let layers = layers.as_ref();
@@ -106,8 +107,9 @@ impl<'a> Accumulator<'a> {
         &self.pixels[tile * AREA + i]
     }
 
-    /// Returns the pixel itself, or, if it has no paths yet, the nearest pixel up and to the left that a coarser pass
-    /// covered.
+    /// Returns the pixel whose value the image shows at (`x`, `y`). If the pixel itself has no paths yet, this is a
+    /// pixel of a coarse pass, up and to the left: the low bits of both coordinates are cleared one by one until a
+    /// pixel has paths.
     pub(super) fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
         let (mut x, mut y, mut mask) = (x, y, !0);
         while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
@@ -117,8 +119,8 @@ impl<'a> Accumulator<'a> {
         (x, y)
     }
 
-    /// Returns, for each pixel of the image, the pixel whose value it shows ([`Accumulator::nearest`]): tile, index in
-    /// the tile, and number of paths.
+    /// Returns, for each pixel of the image, the pixel whose value the image shows there ([`Accumulator::nearest`]):
+    /// its tile, its index in the tile, and its number of paths.
     pub(super) fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
         let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
         exec::for_rows(&mut places, self.grid.width, job, |y, row| {
@@ -149,12 +151,12 @@ impl<'a> Accumulator<'a> {
         self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
     }
 
-    /// Returns two images, each from one half of the paths. They are equal at pixels that have a single path.
+    /// Returns two images, each from one half of the paths. Both are equal at pixels that have a single path.
     pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
         self.pair(job, Pixel::halves)
     }
 
-    /// Returns the variances of the two [`halves`](Self::halves), each from its own paths alone.
+    /// Returns the variances of the two [`halves`](Self::halves), each computed only from the paths of its half.
     pub fn half_variances(&self, job: Job) -> Result<[Image; 2]> {
         self.pair(job, Pixel::half_variances)
     }

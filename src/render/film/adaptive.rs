@@ -1,14 +1,16 @@
 //! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! 1. The first passes render a coarse image.
+//! 1. The first passes render a coarse image: they trace one path in each pixel of a coarse grid, then of finer grids,
+//!    until every pixel has a path.
 //! 2. The next passes give every pixel a few paths, then twice as many, and so on, since sample points are stratified
 //!    best at powers of two.
 //! 3. If there is an error target, the passes from [`MIN_UNIFORM_PATHS`] paths per pixel on are adaptive. Each of them
 //!    doubles the paths of the tiles with the largest ratio of required to present paths.
 //!
 //! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
-//! standard deviation of its paths, absolute or relative to the tile's radiance (Neyman 1934). If the target limits
-//! the error of each pixel, the number follows from the tile's own error.
+//! standard deviation of its paths (Neyman 1934). For a target on the relative error, this deviation is divided by the
+//! radiance of the pixel. If the target limits the error of each pixel, the required number follows from the errors of
+//! the tile's own pixels.
 //!
 //! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
 //! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring
@@ -26,22 +28,23 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Paths per pixel of the first pass after the coarse image is complete.
+/// Paths per pixel, in all, after the first pass that follows the coarse image.
 /// [convention: one path per replication (point sequence) of a pixel]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths per pixel before the first adaptive pass. [origin not recorded]
+/// Paths per pixel, in all, before the first adaptive pass. [origin not recorded]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
 /// caustic, or the glossy reflection of a small lamp) would take all paths. [origin not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// The error of a pixel is relative to its luminance. For pixels darker than this share of the image's mean, it is
-/// relative to this share of the mean. [convention: the target error is defined with it]
+/// The relative error of a pixel is its error divided by its luminance. If the luminance is less than this share of
+/// the image's mean radiance, the error is divided by this share of the mean instead. [convention: the target error is
+/// defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
 /// Decides the passes of a render, one after the other.
 pub struct AdaptiveSampler<'p> {
     params: &'p Params,
-    /// Pixel stride and paths per pixel of the last uniform pass.
+    /// Pixel stride (`stride`) and paths per pixel (`uniform_paths`) of the last uniform pass.
     stride: usize,
     uniform_paths: u32,
 }
@@ -92,7 +95,8 @@ impl<'p> AdaptiveSampler<'p> {
         let target_paths = self.target_paths(accumulator, &statistics, job)?;
         let whole = whole(&statistics);
 
-        // Sum up how many paths the tiles still need, within the limits set by `samples` and the time budget.
+        // Compute the budget of the pass: the paths that all tiles still need, or fewer if the time does not suffice.
+        // The image may get `allowed` more paths before its mean number per pixel reaches `samples`.
         let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
         let missing = |tile: usize| {
             (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)
@@ -151,7 +155,8 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(target_paths)
     }
 
-    /// Raises `target_paths` to the smallest allocation that meets a target for the error of the whole image.
+    /// Raises each tile's entry in `target_paths` to the tile's number in the allocation that meets `target`, an error
+    /// of the whole image, with the fewest paths. The allocation has on average at most `samples` paths per pixel.
     fn add_allocation(
         &self,
         accumulator: &Accumulator,
@@ -166,8 +171,10 @@ impl<'p> AdaptiveSampler<'p> {
         let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
             accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
-        // With n = k d paths per pixel, where d is the standard deviation of the tile and k a constant of the image,
-        // the mean square error is mean(s / (k d)), where s is the variance of single paths.
+        // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where
+        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a single path,
+        // the mean square error of the image is mean(s / (k d)). Find the k that meets the target, or the k that
+        // spends `samples` paths per pixel if that is smaller.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

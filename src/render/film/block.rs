@@ -1,8 +1,8 @@
 //! Blocks of pixels whose paths share secondary vertices (see `shared`).
 //!
 //! A replication is one of the four point sequences of a pixel. A block covers 4 × 2 pixels of a tile, or 2 × 4 pixels
-//! in every second replication. The alternation keeps the correlated errors of its pixels from showing as blocks. The
-//! division into blocks depends only on the replication and the position in the image.
+//! in every second replication. The errors of the pixels of a block are correlated; since the blocks alternate, they
+//! do not show in the image. The division into blocks depends only on the replication and the position in the image.
 
 use super::camera_rays::CameraRays;
 use super::grid::{AREA, TILE};
@@ -21,7 +21,7 @@ const BLOCKS: usize = AREA / MAX_SHARED;
 /// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
-/// A pixel of a block, with the length limit and the seed of its paths in one replication.
+/// A pixel of a block, with the length limit and the seed of its paths in one replication (point sequence).
 pub struct BlockPixel {
     /// Index of the pixel in its tile.
     pub pixel: usize,
@@ -38,13 +38,13 @@ impl BlockPixel {
     }
 }
 
-/// Returns the seed of the paths of the pixel at `at` in one replication.
+/// Returns the seed of one replication, that is, of one of the four point sequences of the pixel at `at`.
 pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
 
-/// Returns, for each block of a tile, the indices of its pixels in the tile. A block has 4 × 2 pixels in even
-/// replications, and 2 × 4 pixels in odd ones.
+/// Returns, for each block of a tile, the indices of its pixels in the tile. A block has 4 × 2 pixels in the even
+/// replications (point sequences), and 2 × 4 pixels in the odd ones.
 pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     let wide = replication.is_multiple_of(2);
     let (width, height) =
@@ -76,9 +76,10 @@ impl<'a> BlockTracer<'a> {
         self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
     }
 
-    /// Traces the paths with these indices, in one replication, for the pixels `members` of a block. Returns the sum
-    /// of the paths' radiance for each pixel. If there are recorders, each records the paths of its pixel. Paths whose
-    /// radiance is not finite are dropped; for each, `discarded` is called with the pixel's index in `members`.
+    /// Traces paths for the pixels `members` of a block: in each pixel, the paths with the numbers `indices` of one
+    /// replication (point sequence). Returns the sum of the paths' radiance for each pixel. If there are recorders,
+    /// each records the paths of its pixel. Paths whose radiance is not finite are dropped; for each, `discarded` is
+    /// called with the pixel's index in `members`.
     pub fn paths(
         &mut self,
         world: &World,

@@ -12,8 +12,9 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Returns the sum of the radiance of a pixel's paths with these indices. All callers use this one function, so that
-/// the inlined path tracer is compiled once.
+/// Returns the sum of the radiance of some paths through the pixel `at`: the paths with the numbers `indices` of the
+/// point sequence with seed `seed`. Paths whose radiance is not finite are dropped and counted. All callers use this
+/// one function, so that the path tracer, which is inlined into it, is compiled only once.
 pub fn paths(
     world: &World,
     camera_rays: &CameraRays,
@@ -59,7 +60,8 @@ fn radiance(
     }
 }
 
-/// A camera prepared for path tracing. The unnormalised direction through a pixel is linear in the pixel coordinates.
+/// A camera prepared for path tracing. The direction through the image point (x, y), in pixels, is corner + x right +
+/// y down before normalisation.
 pub struct CameraRays {
     position: Vec3,
     corner: Vec3,

@@ -25,8 +25,8 @@ impl Clock {
         Self { start: Instant::now(), budget, sampling: Duration::ZERO, publishing: Duration::ZERO, published: None }
     }
 
-    /// Runs a pass with a deadline that leaves time for publishing the final image. The first pass, which is coarse,
-    /// has no deadline, so that every render yields an image.
+    /// Runs a pass with a deadline that leaves time for publishing the final image. Before the first image is
+    /// published, passes have no deadline, so that every render yields an image.
     pub fn sample(&mut self, pass: impl FnOnce(Option<Instant>) -> Result<()>) -> Result<()> {
         let start = Instant::now();
         let deadline = self.budget.map(|b| self.start + b.saturating_sub(self.publishing));
@@ -45,8 +45,8 @@ impl Clock {
         value
     }
 
-    /// Whether to publish another image now: no image has been published yet, or enough time has passed since the last
-    /// one.
+    /// Whether to publish another image now. This is so if no image has been published yet, or if enough time has
+    /// passed since the last one (see [`PUBLISH_RATIO`]).
     pub fn is_publish_due(&self) -> bool {
         self.published.is_none_or(|published| published.elapsed() >= self.publishing * PUBLISH_RATIO)
     }

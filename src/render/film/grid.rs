@@ -68,8 +68,8 @@ impl Grid {
     }
 }
 
-/// Returns the distance between the pixels of the coarsest image along each axis: a power of two, in pixels of the
-/// full image.
+/// Returns the pixel stride of the coarsest pass, along each axis: the smallest power of two for which the pass covers
+/// at most [`COARSE_PIXELS`] pixels.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {

@@ -1,13 +1,15 @@
-//! Confidence intervals of pixels: they contain the true radiance of 95 % of the pixels.
+//! 95 % confidence intervals for the radiance of each pixel.
 //!
-//! The variance among a pixel's own four replications is a poor estimate. It has three degrees of freedom, and it is
-//! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96
-//! standard errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The
-//! variances of neighbouring pixels are almost independent of the pixel's mean, because only pixels of the same block
-//! share some paths (see `block`). The variances are therefore averaged over 7 × 7 pixels with binomial weights, as
-//! variances of single paths, because neighbours may have other numbers of paths. From
-//! 8 paths per pixel on, the resulting intervals contain the truth for 93 to 97 % of the pixels;
-//! `benches/error_control.rs` measures this coverage.
+//! The variance among a pixel's own four replications (point sequences) is a poor estimate for two reasons. It has
+//! only three degrees of freedom. And it is correlated with the mean: where no bright path has been found yet, both
+//! are too small. In rooms, mean ± 1.96 standard errors contains the truth for 66 to 83 % of the pixels, and with
+//! Student's factor for 78 to 93 %.
+//!
+//! The variances are therefore averaged over 7 × 7 pixels with binomial weights. The variances of the neighbours are
+//! almost independent of the pixel's mean, because only pixels of the same block share some paths (see `block`). Since
+//! neighbours may have other numbers of paths, the variance of a single path is averaged. From 8 paths per pixel on,
+//! the resulting intervals contain the truth for 93 to 97 % of the pixels; `benches/error_control.rs` measures this
+//! coverage.
 
 use super::pooling::pooled_by_paths;
 use crate::error::Result;

@@ -6,13 +6,13 @@
 //!   survival weights of Russian roulette.
 //! - `develop` assembles the images of a film; `interval` and `pooling` compute confidence intervals.
 //!
-//! A pass adds paths to each pixel until the pixel has a given number of paths. An interrupted pass therefore leaves a
-//! valid image, in which some pixels have fewer paths. The given numbers depend only on the pixels after the previous
-//! pass, so they are the same for any number of threads.
+//! A pass adds paths to each pixel until the pixel has a given number of paths. If a pass is interrupted, some pixels
+//! have fewer paths, but the image is valid. The given numbers depend only on the results of the previous pass, so
+//! they are the same for any number of threads.
 //!
-//! For renders in parts, `sums` adds up the paths of each pixel independently of all other pixels; the weights of
-//! Russian roulette then come from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of
-//! an image from a few of its tiles, which it selects by their `tile_moments`.
+//! For renders in parts, `sums` adds up the paths of one part of the image. A part has no previous passes and does not
+//! know the other parts, so the weights of Russian roulette come from a `prepass`. `pilot` predicts the cost and the
+//! error of an image from a few of its tiles, which it selects by their `tile_moments`.
 
 mod accumulator;
 mod adaptive;

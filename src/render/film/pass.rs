@@ -33,7 +33,7 @@ impl Pass {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 
-    /// Returns the mean number of paths per pixel of a tile, including pixels that the pass does not cover.
+    /// Returns the mean number of paths per pixel of a tile after the pass, with 0 for pixels that it does not cover.
     pub fn per_pixel(&self, tile: usize) -> f64 {
         f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
     }

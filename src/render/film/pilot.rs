@@ -8,10 +8,10 @@
 //! paths may miss the edge of a lamp in one tile but find it in the next, so the deviations are spread to neighbouring
 //! tiles.
 //!
-//! The interior of a lamp has no variance and is hardly ever selected, although it may have most of the image's light.
-//! The mean of the image is therefore taken from the first estimates of all tiles. The selected tiles only correct it,
-//! by the difference between their mean and their first estimates (the difference estimator of Särndal, Swensson and
-//! Wretman 1992).
+//! The interior of a lamp in view has no variance. Its tiles are hardly ever selected, although they may have most of
+//! the image's radiance. The mean of the image is therefore taken from the first few paths, which cover all tiles. The
+//! selected tiles only correct this mean, by the difference between their rendered means and the means from their
+//! first few paths (the difference estimator of Särndal, Swensson and Wretman 1992).
 //!
 //! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. The
 //! pilot run therefore measures the variance at three numbers of paths. It traces the largest number only in some of
@@ -75,7 +75,7 @@ pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
 /// A tile that the pilot run renders.
 struct PilotTile {
     tile: usize,
-    /// Number of the image's tiles that this tile represents.
+    /// Number of the image's tiles that this tile represents, computed from its selection probability.
     weight: f64,
     /// Number of pilot tiles that this tile represents in the third pass (`PATHS[2]` paths per pixel), which renders
     /// only some of the tiles; 0 if that pass leaves this tile out.
@@ -83,7 +83,7 @@ struct PilotTile {
     /// Mean radiance of the tile, estimated beforehand with few paths (`tile_moments`).
     expected: f64,
     pixels: [Pixel; AREA],
-    /// Number of paths of each pixel (`paths`), and total time in seconds for all paths of the tile (`seconds`).
+    /// Number of paths of each pixel (`paths`), and total time for all paths of the tile in seconds (`seconds`).
     paths: f64,
     seconds: f64,
 }
@@ -188,9 +188,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. Expensive tiles may be selected more often than others. The mean
-/// time of the pilot's paths is therefore corrected by a ratio: the mean time per path with the tiles weighted by how
-/// many tiles they represent, over the unweighted mean.
+/// Returns the time per path of the image in seconds: the time per path of the pilot tiles, times a correction, since
+/// expensive tiles may be selected more often than others. The correction is the mean time per path, with each tile
+/// weighted by the number of tiles that it represents, divided by the unweighted mean.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn systematic_samples_estimate_totals_without_bias() {
-        // Any estimated sum is unbiased; the estimated sum of the chances is exact in every sample.
+        // Any total is estimated without bias. The total of the chances themselves is exact in every sample.
         let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
         let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
         let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);

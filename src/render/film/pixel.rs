@@ -22,7 +22,8 @@ pub struct Pixel {
     count: u32,
 }
 
-/// Returns how many of the first `count` paths of a pixel belong to a replication.
+/// Returns how many of the first `count` paths of a pixel belong to a replication: path i belongs to replication
+/// i mod 4.
 pub fn paths_of_replication(count: u32, replication: u32) -> u32 {
     (count + REPLICATIONS - 1 - replication) / REPLICATIONS
 }

@@ -14,7 +14,8 @@ const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 pub fn pooled_by_paths(variance: &Image, paths: &Image, job: Job) -> Result<Image> {
     let (width, channels) = (variance.width, variance.channels);
     let most = paths.data.iter().fold(1f32, |most, &n| most.max(n));
-    // Use shares of the largest number: they are exactly 1 where all numbers are equal, and no product overflows.
+    // Divide the numbers of paths by the largest one. The quotients are exactly 1 if all pixels have equal numbers of
+    // paths, and their products with variances cannot overflow.
     let share = |x: usize, y: usize| paths.pixel(x, y)[0].max(1.0) / most;
     let mut single = Image::new(width, variance.height, channels)?;
     exec::for_rows(&mut single.data, width * channels, job, |y, row| {
@@ -95,7 +96,7 @@ mod tests {
         for (i, (pooled, own)) in pooled.data.iter().zip(&variance.data).enumerate() {
             assert!((pooled / own - 1.0).abs() < 1e-5, "{i}: {pooled}, {own}");
         }
-        // Without paths, nothing is known.
+        // Pixels without paths have unknown (infinite) variances, before and after pooling.
         let none = Image::from_fn(3, 3, |_, _| [0.0]).unwrap();
         let unknown = Image::from_fn(3, 3, |_, _| [f32::INFINITY]).unwrap();
         let pooled = pooled_by_paths(&unknown, &none, monitor.job()).unwrap();

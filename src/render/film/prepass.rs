@@ -48,8 +48,8 @@ impl<'a> Prepass<'a> {
         Ok(prepass)
     }
 
-    /// Returns the prepass for the paths of the tiles. They use `world`, which has learned from the paths over the
-    /// image.
+    /// Returns the prepass with `world` in place of its own world. `world` is a copy that has learned, from the paths
+    /// of [`Prepass::new`], which lights reach the surfaces in view.
     pub fn in_world(self, world: &'a World) -> Self {
         Self { world, ..self }
     }

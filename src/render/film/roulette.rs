@@ -3,8 +3,8 @@
 //!
 //! Errors matter relative to the radiance of the pixel: the same light changes a pixel in the shade more than a pixel
 //! under a lamp, and a black surface more than a white one. Paths of dark pixels are therefore continued with a higher
-//! probability. The weights come from earlier paths. Survival probabilities may depend on earlier paths without bias
-//! ([`super::super::sampler::Sampler::chance`]).
+//! probability. The weights come from earlier paths. This causes no bias, because the random number that decides on
+//! survival is independent of these paths ([`super::super::sampler::Sampler::chance`]).
 
 use super::grid::AREA;
 use super::pixel::Pixel;
@@ -14,8 +14,8 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// A mean is blended with a prior that counts as this number of paths. The prior of a pixel is the mean of its tile;
-/// the prior of a tile is the median of the image. [origin not recorded]
+/// A measured mean radiance is blended with a prior, which counts as this number of paths. The prior of a pixel is the
+/// mean of its tile; the prior of a tile is the median of the image. [origin not recorded]
 const PRIOR_PATHS: f64 = 8.0;
 /// Upper bound on the ratio of the median radiance to a pixel's radiance; its reciprocal is the lower bound. [origin
 /// not recorded]
@@ -72,7 +72,7 @@ impl RouletteWeights {
     pub fn weight(&self, pixel: &Pixel) -> Vec3 {
         let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
         let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));
-        // Use the weight 1 in channels whose median is 0, because the ratio says nothing there.
+        // Use the weight 1 in channels whose median radiance is 0: there, the ratio would be 0 or 0 / 0.
         DVec3::select(self.median_radiance.cmpgt(DVec3::ZERO), weight, DVec3::ONE).as_vec3()
     }
 }

@@ -67,10 +67,11 @@ impl Accumulator<'_> {
         Ok(whole(&self.relative_statistics(mean, job)?))
     }
 
-    /// Returns the statistics of each tile, in which errors are relative to the radiance of the pixel; `mean` is the
-    /// mean of the image. A pixel with a rare bright path has a large variance and a large mean. Its error is
-    /// therefore divided by a mean that excludes that path ([`Pixel::trimmed_mean`]), blended with the mean of the
-    /// tile if there are few paths.
+    /// Returns the statistics of each tile, with the error of each pixel multiplied by `mean` / radiance of the pixel.
+    /// `mean` is the mean radiance of the image. [`Statistics::error`] of the whole image, which divides by `mean`, is
+    /// then the relative error. The radiance of the pixel is estimated without its brightest and darkest replication
+    /// ([`Pixel::trimmed_mean`]), since a rare bright path would raise the variance and the mean alike. If the pixel
+    /// has few paths, the estimate is blended with the mean of the tile.
     pub fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
         let weight = |pixel: &Pixel, tile: f64| {
             let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
@@ -106,7 +107,8 @@ impl Accumulator<'_> {
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {
-                // Add standard errors rather than variances, because the noise of the channels is correlated.
+                // Convert to luminance the standard errors and not the variances, because the noise of the channels is
+                // correlated.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
                 if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }

@@ -1,9 +1,9 @@
-//! Lossless sums for one part of a render. A part is a rectangle of the image and a range of its pixels' paths. The
-//! sums of all parts together give the image.
+//! The sums of one part of a render. A part is a rectangle of the image and a range of its pixels' paths. The sums of
+//! all parts together give the image.
 //!
-//! The path with a given index in a pixel is the same in every part; it belongs to the same replication and has the
-//! same position in the point sequence. The sums are in f64, so that the f32 image hardly ever depends on how the
-//! paths are divided into parts or in which order the sums are added.
+//! The path with a given index in a pixel is the same in every part: it has the same place in the same point sequence.
+//! The sums are in f64, so that the f32 image hardly ever depends on how the paths are divided into parts, or on the
+//! order in which the sums are added.
 
 use super::block::{BlockPixel, BlockTracer, blocks};
 use super::camera_rays::CameraRays;
@@ -25,13 +25,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of radiance sums of a pixel: one for each channel of each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
-/// Number of paths of a pixel between two checks for cancellation. [convention]
+/// Number of paths of a replication (point sequence) between two checks for cancellation. [convention]
 const SLICE: u32 = 16;
 
 /// The sums of a part, for each of its pixels.
 pub struct Sums {
     part: Part,
-    /// First pixel of the tile that contains the part's first pixel; `grid` starts there.
+    /// Column and row, in the image, of the first pixel of `grid`. This is the corner of the tile that contains the
+    /// first pixel of the part.
     corner: [usize; 2],
     grid: Grid,
     /// How many numbers are stored per pixel: radiance sums, then the sums of the layers.
@@ -154,8 +155,8 @@ impl Sums {
         self.width
     }
 
-    /// Returns the radiance sum of each replication, and the sums of the layers. The list of replications begins with
-    /// the one that contains the part's first path, as `Pixel::of_sums` expects.
+    /// Returns the radiance sum of each replication (point sequence), and the sums of the layers. The list of
+    /// replications begins with the one that contains the part's first path, as `Pixel::of_sums` expects.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
         let (light, others) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;

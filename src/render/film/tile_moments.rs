@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Largest number of paths of all tiles together. If it is exceeded, each tile gets fewer paths, but at least
-/// `MIN_ALONG` × `MIN_ALONG`. [origin not recorded]
+/// Largest number of paths of all tiles together. If it is exceeded, the paths of each tile are reduced, but to no
+/// less than `MIN_ALONG` × `MIN_ALONG`. [origin not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile. Both are powers of two, as is the side of a tile.
 const MAX_ALONG: usize = TILE;
@@ -33,8 +33,9 @@ pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileM
 }
 
 impl TileMoments {
-    /// Traces one path through one pixel of each of `along` × `along` squares of a tile. Which pixel of a square is
-    /// used varies from square to square.
+    /// Divides a tile into `along` × `along` squares and traces one path through one pixel of each square. The
+    /// position of the pixel in its square varies from square to square. Beyond the image, the nearest pixel of the
+    /// image is used.
     fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
         let (left, top) = grid.corner(tile);
         let (mut sum, mut squares) = (0.0, 0.0);
