@@ -22,22 +22,22 @@ pub struct Receiver {
 pub struct Bounds {
     pub low: Vec3,
     pub high: Vec3,
-    /// The cone of the emission: unit axis (`axis`), and the angle to the axis beyond which no light is emitted
-    /// (`cone_angle`, in radians). The axis is 0 if the light may go in all directions.
+    /// The cone of the emission: its unit axis (`axis`), and the angle to the axis beyond which no light is emitted
+    /// (`cone_angle`, in radians). `axis` is 0 if the light may go in all directions.
     ///
-    /// Up to an angle of `cone_angle` - 90° to the axis, the bound on the intensity is the full intensity. At a larger
-    /// angle θ, it is the full intensity times cos(θ + 90° - `cone_angle`). With a cone angle of 90°, it falls with
-    /// the cosine, as for a flat surface.
+    /// At an angle θ to the axis, the bound on the intensity is `intensity` if θ ≤ `cone_angle` - 90°, and `intensity`
+    /// × cos(θ + 90° - `cone_angle`) otherwise. A flat surface has a cone angle of 90°, so that its bound is
+    /// `intensity` × cos θ. For narrower cones, the bound is scaled such that it is `intensity` at θ = 0.
     pub axis: Vec3,
     pub cone_angle: f32,
     /// Whether all lights of the cluster also emit backwards.
     pub two_sided: bool,
-    /// Sum of the lights' full luminous intensities in cd, mean of the channels.
+    /// Sum of the lights' full luminous intensities in cd, averaged over the channels.
     pub intensity: f32,
 }
 
-/// Cone angle of a light that may have its full intensity in all directions: full intensity reaches up to the cone
-/// angle minus 90°. [convention]
+/// Cone angle of a light that may have its full intensity in all directions: 180° + 90°, because the intensity is full
+/// up to the cone angle minus 90°. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
@@ -80,7 +80,8 @@ impl Bounds {
             let cosine = whole.axis.dot(part.axis);
             let cosine = if whole.two_sided { cosine.abs() } else { cosine };
             let one_way = whole.two_sided || !part.two_sided;
-            // Treat axes that agree up to rounding as equal, since most clusters are flat.
+            // Take axes that agree up to rounding as equal, because acos magnifies rounding errors near 1. Most
+            // clusters are flat, with equal axes.
             let angle = if cosine > 1.0 - 1e-6 { 0.0 } else { cosine.clamp(-1.0, 1.0).acos() };
             whole.cone_angle =
                 whole.cone_angle.max(if one_way { angle + part.cone_angle } else { FULL_SPHERE }).min(FULL_SPHERE);
@@ -122,13 +123,13 @@ pub struct BoundsLanes {
     /// from the centre to a corner.
     inverse_square: Lanes,
     axis: [Lanes; 3],
-    /// Half-extent of the box along the axis of the emission, or half the diagonal of the box if the cone angle is not
-    /// 90°. Divided by the distance, it is added to the cosine at the emitters.
+    /// Allowance for the extent of the box: divided by the distance, it is added to the cosine at the emitters. It is
+    /// the half-extent of the box along the axis if the cone angle is 90°, and half the diagonal of the box otherwise.
     box_extent: Lanes,
     /// -1 for two-sided lights, 1 for all others.
     back_sign: Lanes,
     /// Sine and cosine of `cone_angle` - 90° (`cone_rotation`), and the smallest cosine to the axis at which the bound
-    /// is the full intensity (`full_cosine`).
+    /// is the full intensity (`full_cosine`; 2 if there is none).
     cone_rotation: [Lanes; 2],
     full_cosine: Lanes,
     intensity: Lanes,
@@ -171,8 +172,8 @@ impl BoundsLanes {
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;
             lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
-            // For cones narrower than 90°, scale the intensity so that the bound on the cone's axis is the full
-            // intensity.
+            // In a cone narrower than 90°, the bound on the axis is the intensity times cos(90° - `cone_angle`).
+            // Divide by this cosine, so that the bound is the full intensity there.
             lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
         }
         lanes
@@ -188,8 +189,8 @@ impl BoundsLanes {
             let d = [self.centre[0][i] - p.x, self.centre[1][i] - p.y, self.centre[2][i] - p.z];
             let squared = larger(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], nearest);
             let inverse = 1.0 / squared.sqrt();
-            // Bound the cosine at the emitters. Its angle is the angle to the axis, reduced by `cone_angle` - 90° and
-            // by the extent of the box.
+            // Bound the cosine at the emitters by cos(θ + 90° - `cone_angle`) plus an allowance for the extent of the
+            // box. θ is the angle between the axis and the direction to the receiver.
             let cosine = -(self.axis[0][i] * d[0] + self.axis[1][i] * d[1] + self.axis[2][i] * d[2]) * inverse;
             let cosine = larger(cosine, cosine * self.back_sign[i]);
             let sine = larger(1.0 - cosine * cosine, 0.0).sqrt();

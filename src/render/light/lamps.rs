@@ -8,7 +8,7 @@ use crate::render::emissive::Emitters;
 
 /// The lamps of a scene that are emissive surfaces.
 pub struct Lamps {
-    /// For each piece of an emissive surface, the index of its lamp.
+    /// For each piece of an emissive surface (a triangle, or a tile of a textured triangle), the index of its lamp.
     of_pieces: Vec<u32>,
     /// Number of lamps.
     count: usize,
@@ -31,7 +31,8 @@ impl Lamps {
             let [a, b] = pair.map(|emitter| root(&mut parents, emitter));
             parents[a.max(b) as usize] = a.min(b);
         }
-        // Number the lamps that have pieces, and skip the others.
+        // Number the lamps in the order of their first pieces. A set of connected triangles without pieces is dark and
+        // not a lamp.
         let (mut of_roots, mut lamps) = (try_vec(count, u32::MAX)?, 0);
         let of_pieces = try_collect((0..pieces).map(|piece| {
             let lamp = &mut of_roots[root(&mut parents, emitters.emitter_of(piece) as u32) as usize];
@@ -43,9 +44,9 @@ impl Lamps {
         Ok(Self { of_pieces, count: lamps as usize })
     }
 
-    /// Returns the number of all lamps of the scene, and the number of hidden ones: lamps of which every light is
-    /// hidden. A connected luminous surface is one lamp, whose lights are its pieces; every punctual light and the
-    /// environment is a lamp of its own. `is_hidden` takes the number of a light in the [`Inventory`].
+    /// Returns the number of all lamps of the scene, and the number of hidden lamps. A lamp is hidden if all its
+    /// lights are hidden. A connected luminous surface is one lamp, whose lights are its pieces. Every punctual light
+    /// is a lamp of its own, and so is the environment. `is_hidden` takes the number of a light in the [`Inventory`].
     pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
         let mut surfaces = try_vec(self.count, true)?;
         self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));

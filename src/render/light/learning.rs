@@ -1,4 +1,4 @@
-//! Decides between the passes of a render which lights are unlikely to reach the surfaces in view, and therefore get a
+//! Between the passes of a render, decides which lights are unlikely to reach the surfaces in view. These lights get a
 //! selector of their own with few samples. Decisions follow from the samples counted so far (see [`super::reach`]).
 
 use super::Lights;
@@ -9,17 +9,18 @@ use crate::error::Result;
 use crate::render::vicinity::Places;
 use std::sync::Arc;
 
-/// Lights that are unlikely to reach the surfaces in view get a selector of their own only if they took at least this
-/// share of all light samples so far. With a smaller share, learning would save hardly any samples, because unlikely
-/// lights still get the share `UNLIKELY_SHARES` (in `reach`). The image then equals, to the last bit, the image without
-/// learning. [bench buildings]
+/// Unlikely lights get a selector of their own only if they took at least this share of all light samples so far. If
+/// they took less, the selector would save hardly any samples, because they still get the share `UNLIKELY_SHARES` (in
+/// `reach`). The render then keeps one selector for all lights, and its image equals, to the last bit, the image
+/// without learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
-/// Minimum number of light samples before the first decision, or half the number of lights if that is larger.
-/// [convention]
+/// The first decision is made after this number of light samples, or after half as many samples as there are lights if
+/// that is more. [convention]
 const FIRST_DECISION: u64 = 256;
-/// Maximum number of light samples between two decisions, or half the number of lights if that is larger. [convention]
+/// Maximum number of light samples between two decisions, or half the number of lights if that is more. [convention]
 const DECISION: u64 = 4096;
-/// Maximum share of arriving samples of infinitely distant lights in a scene that counts as closed. [convention]
+/// A scene counts as closed if at most this share of the samples of directional lights and of the environment arrives
+/// unoccluded. [convention]
 const MAX_OPEN: f64 = 0.25;
 
 impl Lights {
@@ -64,9 +65,10 @@ impl Lights {
         Ok(Some(lights))
     }
 
-    /// Returns the places of the receivers of the light samples counted so far, and the number of these samples.
-    /// Returns `None` if no places are recorded any more, or if the scene is open: if more than [`MAX_OPEN`] of the
-    /// samples of directional lights and of the environment arrive, many rays leave the surroundings of these places.
+    /// Returns the recorded positions of receivers, and the number of light samples counted so far. Returns `None` if
+    /// no positions are recorded any more. Also returns `None` if the scene is open: more than [`MAX_OPEN`] of the
+    /// samples of directional lights and of the environment arrive, so many rays leave the surroundings of these
+    /// positions.
     pub fn places(&self) -> Result<Option<(&Places, u64)>> {
         let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) else { return Ok(None) };
         let mut far = Evidence::default();

@@ -1,10 +1,14 @@
 //! Light sampling: selects one of a scene's lights, samples a point on it, and computes the pdf.
 //!
-//! A [`LightTree`] selects among the lights at a finite distance (pieces of emissive surfaces and of the faces of
-//! luminaires, points, spots and luminaires without faces) by their importance for the receiver. The directional
-//! lights form a second group, and the environment a third. Half of the probability is divided among the groups in
-//! proportion to their power, and half is divided equally. Power alone would ignore occlusion by walls and could leave
-//! a group with too few samples.
+//! The lights form three groups:
+//!
+//! 1. The lights at a finite distance: pieces of emissive surfaces and of the faces of luminaires, points, spots, and
+//!    luminaires without faces. A [`LightTree`] selects among them by their importance for the receiver.
+//! 2. The directional lights.
+//! 3. The environment.
+//!
+//! Half of the probability is divided among the groups in proportion to their power, and half is divided equally.
+//! Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
 pub(super) mod bounds;
 mod lamps;

@@ -7,11 +7,11 @@
 //! estimated probability that its next sample arrives is at least [`MIN_ARRIVAL`]. Otherwise it is *unlikely*.
 //!
 //! Likely and unlikely lights have a selector each. The unlikely lights together get a small share of the light
-//! samples ([`unlikely_share`]), the likely lights get the rest. Every light keeps a positive probability (a defensive
-//! mixture; Hesterberg 1995, "Weighted average importance sampling and defensive mixture distributions"), so the
-//! estimate remains unbiased. If a sample of an unlikely light arrives after all, its contribution is larger than it
-//! would be with one selector for all lights, at most by a factor of about the reciprocal of the share. The next
-//! decision ([`super::learning`]) then makes the light likely.
+//! samples ([`unlikely_share`]), and the likely lights get the rest. Every light keeps a positive probability, so the
+//! estimate remains unbiased (a defensive mixture; Hesterberg 1995, "Weighted average importance sampling and
+//! defensive mixture distributions"). If a sample of an unlikely light arrives after all, its contribution is larger
+//! than with one selector for all lights, by a factor of at most about 1 / share. The next decision
+//! ([`super::learning`]) then makes the light likely.
 //!
 //! Before a light has samples of its own, its probability follows from its neighbours in the light tree: if many of
 //! them are hidden, it is probably hidden too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright
@@ -135,11 +135,13 @@ pub fn unlikely_share(samples: u64) -> f64 {
     (UNLIKELY_ROOT / root).clamp(min, max)
 }
 
-/// Returns the factor on each light's importance: the square root of the probability that a sample of the light
-/// arrives, at least [`MIN_WEIGHT`], or 0 if the light is unlikely. The root minimises the variance if the probability
-/// is the same for all receivers. It is rounded to a power of two, so that one sample more or less seldom changes the
-/// weights, and lights whose samples nearly all arrive keep the weight 1. The probability is estimated from the light's
-/// own samples and a prior, which counts as one further sample.
+/// Returns the factor on each light's importance: √p, where p is the probability that a sample of the light arrives,
+/// or 0 if the light is unlikely.
+///
+/// - p is estimated from the light's own samples and a prior, which counts as one further sample.
+/// - √p minimises the variance if p is the same for all receivers.
+/// - √p is rounded to a power of two and is at least [`MIN_WEIGHT`]. Due to the rounding, one sample more or less
+///   seldom changes the factors, and lights whose samples nearly all arrive keep the factor 1.
 pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> Result<Vec<f32>> {
     let mut priors = try_vec(lights.len(), 1.0)?;
     neighbour_priors(tree, evidence, &mut priors)?;
@@ -154,8 +156,9 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
 }
 
 /// Sets the prior of each light of a tree: an estimate of the probability that a sample of the light arrives, from the
-/// samples of other lights near it in the tree. The prior is updated at each cluster from the root down to the light,
-/// with the samples of the cluster's children except the child that contains the light.
+/// samples of other lights near it in the tree. Priors are passed down from the root. A child of a cluster gets the
+/// prior (a + q) / (d + 1). Here q is the prior of the cluster, and d and a are the numbers of drawn and of arrived
+/// samples of the cluster's other children. Each of these children counts as at most [`MAX_WITNESS`] samples.
 fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
     // Add up the samples of each cluster, from the last cluster to the first: a cluster comes before the clusters
     // within it. A child counts as at most `MAX_WITNESS` samples.

@@ -78,7 +78,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Whether all samples are still counted, or only those of lights that are unlikely to reach the surfaces in view.
+    /// Whether the samples of all lights are still counted. If not, only the samples of lights that are unlikely to
+    /// reach the surfaces in view are counted.
     #[inline]
     pub fn counts_likely(&self) -> bool {
         self.counted < ENOUGH

@@ -161,7 +161,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // The mean of 1 / pdf over all samples is the solid angle of the lamp.
+                // The mean of 1 / pdf over all n samples is the solid angle of the lamp.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -171,8 +171,8 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
         }
     }
     assert!(counts[..8].iter().all(|&c| c > 100.0), "{counts:?}");
-    // The selection probability of the lamp is unknown: use the remainder after the other lights and the invalid
-    // samples.
+    // The probability with which the lamp is selected is not known in advance: take what remains after the other
+    // lights and the samples without a light.
     stated[8] = counts[8];
     stated[6] = f64::from(n) - stated.iter().sum::<f64>();
     assert_follows(&stated, &counts, 1, "kinds of lights");
@@ -254,7 +254,8 @@ fn any_number_of_threads_builds_the_same_tree() {
 
 #[test]
 fn regular_patterns_of_lamps_make_the_same_tree_at_any_scale() {
-    // Such lamps have splits of equal cost, and centres on the borders of bins.
+    // In a regular pattern, several splits have equal cost, and centres of lamps lie on borders of bins. The scale
+    // changes the rounding, which must not decide.
     let receivers = receivers(4, Vec3::splat(2.0), &mut Rng::new(44, &[]));
     let pmfs = |scale: f32, side: usize| {
         let lamp = |i: usize| {
@@ -397,7 +398,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere overhead: E = π L r² / d². Its facets make the irradiance less than 1 % smaller.
+    // A sphere overhead: E = π L r² / d². Its facets lie within the sphere and make the irradiance up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
@@ -412,7 +413,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
                 let first = sphere.positions.len() as u32;
                 sphere.positions.extend(t);
                 sphere.triangles.push([first, first + 1, first + 2]);
-                // Of a convex body, all triangles that face the receiver are visible.
+                // All triangles of a convex body that face the receiver are visible.
                 exact += if normal.dot(t[0]) < 0.0 && normal.length() > 1e-6 { lambert(&t) } else { 0.0 };
             }
         }
@@ -534,7 +535,8 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
         };
         disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
-    // Only points within rounding of a tile's border may disagree.
+    // Rounding may place a point beside the border of the tile from which it was sampled. Only such points may
+    // disagree.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
 }
 

@@ -16,12 +16,12 @@ use glam::{Vec3, Vec3A};
 const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. The splits of lamps
-/// in a regular pattern often have equal costs, up to rounding, which must not decide: a scaled scene gets the same
-/// tree, and so the same image. [rounding]
+/// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. Regular patterns
+/// of lamps often have splits of equal cost, whose computed costs differ only by rounding. Rounding must not decide
+/// between them, so that a scaled scene gets the same tree, and thus the same image. [rounding]
 const TIE: f32 = 1e-4;
-/// Added to a position in units of bins, so that a light on the border of two bins falls into the upper one, whichever
-/// way its position is rounded. [rounding]
+/// Offset, in bins, that is added to a position. A light on the border of two bins then falls into the upper bin,
+/// whichever way its position is rounded. [rounding]
 const BORDER: f32 = 1e-3;
 /// Clusters of at least this many lights are split in parallel.
 /// [convention: Embree's builders have the same threshold]
@@ -105,8 +105,8 @@ impl LightTree {
         Ok(tree)
     }
 
-    /// Appends the nodes of a cluster, parents before children. `slot` is the place of the cluster in its parent node.
-    /// Returns the entry for [`Node::children`], and the bounds of the cluster.
+    /// Appends the nodes of a cluster, parents before children. `slot` is the slot of the cluster in its parent node,
+    /// as in [`Node::parent_slot`]. Returns the entry for [`Node::children`], and the bounds of the cluster.
     fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
@@ -213,8 +213,9 @@ impl LightTree {
     }
 }
 
-/// Divides a cluster down to single lights, in parallel, and stores the clusters in `clusters`, the list of clusters
-/// from index `first` on. Returns the index of the cluster in the whole list.
+/// Divides the cluster of the lights `items` down to single lights, in parallel. `clusters` is the part of the list of
+/// clusters for these lights; it starts at index `first` of the whole list. Returns the index of the cluster in the
+/// whole list, or of its only light with the bit `LIGHT` set.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;
