@@ -26,9 +26,9 @@ pub struct Alphabet {
     pub scatters: Vec<Event>,
     /// Light events, at the light end of a path.
     pub lights: Vec<Event>,
-    /// Index of each mesh's class, which is also the index of the light event of the class.
+    /// For each mesh, the index of its class. The light event of the class has the same index in `lights`.
     class_of_mesh: Vec<u32>,
-    /// The lamps of each mesh, if an expression names one of them.
+    /// For each mesh, the lamps of its emission texture; `None` if no expression names one of them.
     lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,
@@ -37,7 +37,8 @@ pub struct Alphabet {
 /// The lamps of an emission texture: each connected patch of emissive texels has its own light event.
 struct Lamps {
     texture: Arc<LampTexture>,
-    /// Index of the light event of the texels outside all patches, followed by the index of each patch's light event.
+    /// Indices in [`Alphabet::lights`]: first of the light event of the texels outside all patches, then of the light
+    /// event of each patch.
     lights: Vec<u32>,
 }
 
@@ -155,8 +156,8 @@ fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTextur
     existing
 }
 
-/// Finds the emission textures whose lamps an expression may name, as in `'Ceiling#3'` (by mesh or by material).
-/// Returns them by the index of the material.
+/// Finds the emission textures whose lamps an expression may name, as in `'Ceiling#3'`; the name before `#` is that of
+/// a mesh or of a material. Returns the textures by the index of their material.
 fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],

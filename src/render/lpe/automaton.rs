@@ -26,7 +26,7 @@ const MAX_TRANSITIONS: usize = 20_000_000;
 pub struct Automaton {
     alphabet: Alphabet,
     start: u16,
-    /// The next state for each state, class of meshes and kind of scattering.
+    /// The next state for each state, class of meshes (which no expression distinguishes) and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
     /// For each state and light event: the index, in `lists`, of the list of expressions that accept a path which
     /// reaches this light in this state.
@@ -83,8 +83,8 @@ impl Automaton {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
-    /// Adds to `states` the states that follow after diffuse scattering at a mesh and, if `is_layered`, after glossy
-    /// scattering. Leaves out the dead state.
+    /// Adds to `states` the states that follow `state` after diffuse scattering at a mesh and, if `is_layered`, after
+    /// glossy scattering. Leaves out the dead state.
     pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
         let next = self.next(state, self.class(mesh));
         for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {
@@ -270,7 +270,8 @@ impl<'a> SubsetConstruction<'a> {
         }
     }
 
-    /// Visits all states that a path can reach after the camera event. Returns the state right after the camera event.
+    /// Finds all states that a path can reach after the camera event, and fills `next`, `ends` and `lists`. Returns
+    /// the state right after the camera event.
     fn explore(&mut self, start: u32) -> Result<u16> {
         let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
         let mut sets = vec![Vec::new()];

@@ -4,8 +4,9 @@
 //!
 //! An expression is a regular expression over the events of a light path. It is written in one of two orders:
 //!
-//! * Light first, as in the papers, from a light `L` to the eye `E`: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`, `LS*DE`. As
-//!   Heckbert has no other classes, `L` is any light here, and `S` is any scattering event that is not diffuse.
+//! * Light first, as in the papers, from a light `L` to the eye `E`: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`, `LS*DE`. In
+//!   this order, `L` is any light, and `S` is any scattering event that is not diffuse, as Heckbert's notation has no
+//!   further classes.
 //! * Camera first, as in Open Shading Language, from the camera `C`: `C<RD>L`, `C[GS]+.*<L.'Lamp'>`.
 //!
 //! | event | |
@@ -33,7 +34,8 @@
 //! opacity is below 1, there is no event.
 //!
 //! `parse` turns the text into a tree. `alphabet` numbers the events of the scene, and `automaton` compiles all
-//! expressions of a render over them. `path_tracker` tracks the states of a path in the automaton.
+//! expressions of a render into one automaton over these events. `path_tracker` tracks the states of a path in the
+//! automaton.
 
 mod alphabet;
 mod automaton;
@@ -50,7 +52,7 @@ use crate::error::Result;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EmitterAs {
     /// Surfaces are both `L` and `O`, and the environment is both `L` and `B`. `C<RD>L` is therefore all directly lit
-    /// diffuse reflection. In the sum of `L` and `O`, surfaces count twice.
+    /// diffuse reflection. If the images of an `L` and of an `O` expression are added, surfaces count twice.
     #[default]
     Both,
     /// All lights are `L` only.

@@ -102,7 +102,8 @@ impl EventSet {
 }
 
 impl Node {
-    /// Calls `see` for every label of the tree, with a flag that says whether an event must have the label to match.
+    /// Calls `see` with every label of the tree and a flag: true if the pattern asks for the label, false if it
+    /// excludes it.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
             Node::Event(set) => {

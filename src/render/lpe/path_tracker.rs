@@ -3,12 +3,12 @@
 //!
 //! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
 //! layers (Veach 1997, 9.2.4). A component therefore splits in two, in proportion to the values of the layers, channel
-//! by channel. Components with equal states are merged, so there are never more components than states, and none needs
-//! to be truncated. Components in the dead state are dropped. Once all components are in absorbing states, further
+//! by channel. Components with equal states are merged, so there are never more components than states. Components in
+//! the dead state are dropped. Once all components are in absorbing states, which scattering leaves unchanged, further
 //! scattering costs nothing.
 //!
-//! A subpath that several paths reuse is traced only once, and tracked separately for each state in which these paths
-//! may join it.
+//! A subpath that several paths reuse is traced only once. It is tracked separately for each of its initial states:
+//! the states in which these paths may join it.
 
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
@@ -48,8 +48,8 @@ pub struct PathTracker<'a> {
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
-    /// Light from the light event `rest_light` that has arrived since all states became absorbing. `flush_rest`
-    /// distributes it to the components.
+    /// Light that has arrived since all states became absorbing; all of it has the light event `rest_light`.
+    /// `flush_rest` distributes it to the components.
     rest: Vec3A,
     rest_light: usize,
 }
@@ -274,7 +274,7 @@ impl<'a> PathTracker<'a> {
     }
 }
 
-/// Adds light to the sum of a list of expressions; `offset` selects the initial state.
+/// Adds light to the sum of a list of expressions. `offset` is the index of the first sum of the initial state.
 #[inline(always)]
 fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {
@@ -282,7 +282,7 @@ fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     }
 }
 
-/// Adds the light of a recorded subpath that begins in `state`, multiplied by `importance`.
+/// Adds the light of a recorded subpath for the initial state `state`, multiplied by `importance`.
 #[inline(always)]
 fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome: &[PathOutcome]) {
     for PathOutcome { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {

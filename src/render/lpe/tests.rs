@@ -256,7 +256,8 @@ fn refused(text: &str) -> Error {
 
 #[test]
 fn expressions_with_too_many_states_are_refused() {
-    // For `C.*D.{12}L`, the automaton must remember the last 12 scattering events, which takes at least 2^12 states.
+    // For `C.*D.{12}L`, the automaton must remember which of the last 12 scattering events were diffuse, which takes
+    // at least 2^12 states.
     automaton(&["C.*D.{8}L"], EmitterAs::Both);
     for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
         let error = refused(text);
