@@ -64,8 +64,8 @@ fn smoothed(halves: &Halves, guide: &[Image; 3], strength: f32) -> denoise::Outp
     denoise::run(&input, &denoise::Params { strength }, Monitor::default().job()).unwrap()
 }
 
-/// A flat picture of `width` by `height` pixels: `light` by column, with Gaussian noise of standard deviation `sigma`
-/// in each half.
+/// A flat picture of `width` × `height` pixels as two halves. Column x has the radiance `light(x)`; each half has its
+/// own Gaussian noise of standard deviation `sigma`.
 fn flat(width: usize, height: usize, sigma: f32, light: impl Fn(usize) -> f32) -> Halves {
     let mut rng = crate::rng::Rng::new(3, &[]);
     let images = [0, 1].map(|_| {
@@ -173,7 +173,7 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
     // With path sharing, errors are small and correlated between neighbours, so that the filter gains less.
     assert!(after < before / 2.0, "from {before} to {after}");
-    // At the smallest strengths, the filter only averages the two halves.
+    // At a tiny strength, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
     // Even the first film, which is published after the coarse pass, has a preview.

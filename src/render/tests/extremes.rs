@@ -56,7 +56,7 @@ fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
 #[test]
 fn lamps_of_any_brightness_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
-    // Test lights of about 1e-9 and of about 1e9 cd/m². The factors are powers of two, so that scaling is exact.
+    // Scale all lights by about 1e-9 and by about 1e9. The factors are powers of two, so that scaling is exact.
     for light in [2f32.powi(-30), 2f32.powi(30)] {
         let film = render(&world(grown(1.0, light)), &viewer(), &SMALL());
         assert_eq!(differing(&unit.beauty, &film.beauty, light), 0.0, "{light}");
@@ -175,7 +175,8 @@ fn closed_white_rooms_end_with_the_right_energy() {
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
-    // Test emissive walls of albedo 0.998: an eighth of their light has scattered more than a thousand times.
+    // Test emissive walls of albedo 0.998: a share of 0.998^1000 = 0.135 of their light has scattered more than a
+    // thousand times.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.998, 0.2)], ..Scene::default() };
     let film = render(&world(scene), &camera, &Params { samples: 256, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);

@@ -7,7 +7,8 @@ use crate::render::illuminance::{self, CalculationPoints};
 use crate::render::sampler::Sampler;
 use std::f64::consts::{FRAC_PI_4, PI};
 
-/// A luminaire at the origin that shines down, with C = 0 along x, over a far black surface.
+/// A scene with a luminaire at the origin that shines down, with C = 0 along x. Its only mesh is a black square far
+/// away.
 fn hung(luminaire: Luminaire) -> Scene {
     Scene {
         meshes: vec![Mesh::parallelogram(Vec3::splat(-90.0), Vec3::X, Vec3::Z, 0)],
@@ -23,13 +24,13 @@ fn light_at(position: Vec3) -> PunctualLight {
     PunctualLight::Luminaire { position, axis, c0, colour, distribution: 0, is_point: false }
 }
 
-/// Converts a direction from the luminaire's angles, in degrees, to the scene.
+/// Returns the direction in the scene for the angles C (`c`) and γ (`gamma`) of the luminaire, in degrees.
 fn direction(c: f64, gamma: f64) -> Vec3 {
     let (c, gamma) = (c.to_radians(), gamma.to_radians());
     DVec3::new(gamma.sin() * c.cos(), -gamma.cos(), -gamma.sin() * c.sin()).as_vec3()
 }
 
-/// Returns the illuminance at a point in the air and its standard error.
+/// Returns the illuminance in lux at a point in the air, on a plane with the given normal, and its standard error.
 fn lux(world: &World, position: Vec3, normal: Vec3, per_batch: u32) -> (f64, f64) {
     let batches = 32;
     let means: Vec<f64> = (0..batches)
@@ -44,7 +45,8 @@ fn lux(world: &World, position: Vec3, normal: Vec3, per_batch: u32) -> (f64, f64
     (mean, (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt())
 }
 
-/// A luminaire whose intensity depends only on γ: `candela` maps the angle in radians to the intensity.
+/// A luminaire whose intensity depends only on γ: `candela` maps γ in radians to the intensity. A negative `size` is
+/// the diameter of a round opening.
 fn round(size: [f64; 3], candela: impl Fn(f64) -> f64) -> Luminaire {
     Luminaire {
         gammas: (0..=180).map(f64::from).collect(),
@@ -95,7 +97,7 @@ fn the_near_field_meets_closed_forms() {
     }
 }
 
-/// A distribution of 45 to 450 cd without any symmetry.
+/// A distribution of 50 to 450 cd without any symmetry.
 fn uneven(size: [f64; 3]) -> Luminaire {
     Luminaire {
         gammas: (0..=18).map(|i| f64::from(i) * 10.0).collect(),
@@ -116,7 +118,7 @@ const SHAPES: [[f64; 3]; 8] = [
     [-0.3, -0.2, -0.5],
 ];
 
-/// At a distance, the intensity is the measured one in all directions, whatever the shape of the faces.
+/// Far away, the illuminance is I / r² with the measured intensity I, in all directions and for all shapes of faces.
 #[test]
 fn the_far_field_is_the_measured_one() {
     for size in SHAPES {
@@ -161,7 +163,8 @@ fn flux_is_conserved() {
     }
 }
 
-/// A camera sees the faces with the luminance I / A, without noise.
+/// A camera sees the faces with the luminance I / A, without noise. I is the intensity towards the camera, and A is
+/// the area of the faces projected in this direction.
 #[test]
 fn pictures_show_the_luminance() {
     for size in SHAPES {
@@ -207,8 +210,8 @@ fn samples_cover_the_solid_angle() {
     assert!(error < 0.01 * expected);
 }
 
-/// Light samples of faces of all shapes state the pdf that [`light::Lights::surface_pdf`] returns, from which the MIS
-/// weights of paths that hit the faces follow.
+/// The pdf of a light sample on a face equals the pdf that [`light::Lights::surface_pdf`] returns for the sampled
+/// point. The MIS weights of paths that hit the faces are computed from the latter.
 #[test]
 fn samples_state_the_pdf_of_scattering_into_them() {
     let world = world(bright_room());
@@ -232,7 +235,7 @@ fn samples_state_the_pdf_of_scattering_into_them() {
     assert!(samples > 8000 && disagreed <= samples / 1000, "{disagreed} of {samples}");
 }
 
-/// A panel in the plane of the ceiling is neither hidden by the ceiling nor does it shine on it.
+/// A panel in the plane of the ceiling counts as in front of it: the ceiling hides neither the panel nor its light.
 #[test]
 fn a_panel_in_the_plane_of_the_ceiling_is_in_front_of_it() {
     let luminaire = round([0.6, 0.6, 0.0], |g| 1000.0 * 0.36 * g.cos().max(0.0));
@@ -245,20 +248,21 @@ fn a_panel_in_the_plane_of_the_ceiling_is_in_front_of_it() {
         let expected = 4.0 * PI * 1000.0 * parallel_form_factor(0.3, 0.3, 3.0);
         let (mean, error) = lux(&world, offset, Vec3::Y, 512);
         assert!((mean - expected).abs() < 4.0 * error + 1e-3 * expected, "{mean} ± {error}, expected {expected}");
-        // The panel covers a known share of the picture, and nothing else is seen.
+        // The picture shows the panel with its luminance of 1000 cd/m², and the black ceiling around it.
         let camera = Camera::look_at(offset + Vec3::new(1.5, 0.0, 0.5), offset + Vec3::Y * 3.0, 0.6);
         let film = render(&world, &camera, &Params { width: 48, height: 48, samples: 16, ..Params::default() });
         let data = &film.beauty.data;
         let whole = data.iter().filter(|v| (**v / 1000.0 - 1.0).abs() < 1e-3).count();
         let dark = data.iter().filter(|v| **v == 0.0).count();
         assert!(whole > 3 * 120 && dark > 3 * 1000, "{whole} {dark}");
-        // Pixels that are neither lie on the outline of the panel.
+        // All other pixels lie on the outline of the panel.
         assert!(data.len() - whole - dark < 3 * 4 * 48, "{whole} {dark}");
         assert!(data.iter().all(|v| *v < 1001.0));
     }
 }
 
-/// What hides a luminaire hides its light; there is no light inside of it.
+/// A closed box around a luminaire blocks its light, but only outside the box. Inside the faces of a luminaire, it is
+/// dark.
 #[test]
 fn hidden_faces_do_not_shine() {
     let mut scene = hung(uneven([1.2, 0.3, 0.1]));
@@ -280,7 +284,8 @@ fn hidden_faces_do_not_shine() {
     }
 }
 
-/// Openings of no size are points, huge ones are skies, and both light a surface as they should.
+/// Luminaires without size or of less than a millimetre shine as points. Luminaires of 10 km light a surface like a
+/// sky.
 #[test]
 fn sizes_may_be_extreme() {
     let lambertian = |size: [f64; 3], flux: f64| Luminaire::lambertian("", flux, size);
@@ -290,7 +295,7 @@ fn sizes_may_be_extreme() {
         let (mean, _) = lux(&world(scene), Vec3::NEG_Y, Vec3::Y, 16);
         assert!((mean / 1000.0 - 1.0).abs() < 1e-3, "{size:?}: {mean}");
     }
-    // A small opening of 2 mm is nearly a point.
+    // A luminaire of 2 mm has faces, but its light is nearly that of a point.
     let small = world(hung(lambertian([2e-3, 2e-3, 0.0], 1000.0 * PI)));
     assert!((lux(&small, Vec3::NEG_Y, Vec3::Y, 16).0 / 1000.0 - 1.0).abs() < 1e-3);
     // A panel of 10 km × 10 km with 100 lm/m² gives 100 lx everywhere below its middle.
@@ -306,7 +311,7 @@ fn sizes_may_be_extreme() {
     assert!(error.message.contains("light 0") && error.message.contains("luminance"), "{error}");
 }
 
-/// A dark luminaire is a black body, and a point is no body.
+/// A luminaire that emits no light still blocks light with its faces, unless it is treated as a point.
 #[test]
 fn dark_faces_block_light() {
     let behind = |change: &dyn Fn(&mut PunctualLight)| {
@@ -330,7 +335,7 @@ fn dark_faces_block_light() {
     assert!((point - 25.0).abs() < 1e-3, "{point}");
 }
 
-/// A room with luminaires of all shapes and white walls.
+/// A grey room with luminaires of all shapes.
 fn bright_room() -> Scene {
     let (x, y, z) = (Vec3::X * 6.0, Vec3::Y * 3.0, Vec3::Z * 8.0);
     let corners = [(Vec3::ZERO, z, x), (y, x, z), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y)];
@@ -361,8 +366,8 @@ fn any_number_of_threads_renders_the_same_bits() {
     assert!(one == film(2) && one == film(3));
 }
 
-/// The layers of single lights add up to the image, also where the image shows the luminaires themselves, and
-/// attributes of the faces are given.
+/// The layers of the single lights add up to the image, also in pixels that show the luminaires themselves. The object
+/// and material layers have numbers for the faces of luminaires.
 #[test]
 fn layers_and_attributes_know_the_luminaires() {
     let world = world(bright_room());
@@ -380,7 +385,8 @@ fn layers_and_attributes_know_the_luminaires() {
     for (sum, beauty) in sums.iter().zip(&film.beauty.data) {
         assert!((sum - f64::from(*beauty)).abs() < 1e-3 * (1.0 + f64::from(*beauty)), "{sum} {beauty}");
     }
-    // The centre shows light 1, which follows the six meshes.
+    // The centre shows the faces of light 1. Numbers start at 1. Object numbers of lights follow those of the six
+    // meshes; the material number of all faces follows that of the only material.
     let attributes = film.layers[SHAPES.len()..].iter().map(|layer| layer.image.pixel(16, 16)[0]);
     assert_eq!(attributes.collect::<Vec<_>>(), [6.0 + 1.0 + 1.0, 2.0]);
 }

@@ -4,7 +4,7 @@
 use super::place::room;
 use super::*;
 
-/// A small tile of ground with a corner at a position.
+/// A small square of ground with a corner at a position.
 fn tile(at: Vec3) -> Mesh {
     Mesh::parallelogram(at, Vec3::Z * 0.25, Vec3::X * 0.25, 0)
 }

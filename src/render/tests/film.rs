@@ -158,7 +158,8 @@ fn a_cancelled_render_leaves_what_was_published() {
         monitor.cancel();
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
-    // Only some pixels have paths. A pixel without paths shows the value of one that has.
+    // The render was cancelled after the coarse pass, which traced one path in every second pixel of every second row.
+    // The other pixels show the value of the pixel to the left and above that has a path.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");

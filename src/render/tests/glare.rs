@@ -37,8 +37,9 @@ fn panel() -> Luminaire {
 
 const EYE: Eye = Eye { position: Vec3::new(3.0, 1.2, 7.5), direction: Vec3::NEG_Z };
 
-/// A Lambertian panel hangs 3 m ahead of the eye and 1.5 m above it. By hand: `L = 3000 / π / 0.36`, `ω = 0.36 cos γ /
-/// r²`, and Guth's position index for τ = 0 and σ = 26.565°.
+/// A Lambertian panel of 3000 lm and area A = 0.36 m² hangs 3 m ahead of the eye and 1.5 m above it, at a distance of
+/// r = √11.25 m. By hand: the luminance is L = 3000 / π / A, the solid angle is ω = A cos γ / r², and Guth's position
+/// index p is that of the angles τ = 0 and σ = 26.565°.
 #[test]
 fn a_panel_rates_as_computed_by_hand() {
     let rating = rated(room(panel(), &[Vec3::new(3.0, 2.7, 4.5)]), EYE, 1024);
@@ -103,7 +104,7 @@ fn twenty_rooms_agree_with_independent_geometry() {
         }
         let direction = Vec3::new(random(91) - 0.5, 0.0, random(92) - 0.5);
         let eye = Eye { position: Vec3::new(1.0 + 4.0 * random(93), 1.2, 1.0 + 6.0 * random(94)), direction };
-        // Points do not hide each other.
+        // Treat the luminaires as points, which do not hide each other, because `independent` does not model hiding.
         for light in &mut scene.lights {
             if let PunctualLight::Luminaire { is_point, .. } = light {
                 *is_point = true;
@@ -132,7 +133,8 @@ fn the_background_is_the_indirect_illuminance() {
     let place = CalculationPoints::Grid { origin: EYE.position, across, down, normal: EYE.direction };
     let params = illuminance::Params { columns: 1, rows: 1, samples: 1 << 15, seed: 9 };
     let total = illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap();
-    // The panel has the luminance 3000 / π / A. At a point of it, the cosines are 1.5 / r and z / r.
+    // The panel of area A has the luminance L = 3000 / π / A. Sum up E = Σ L dA cos θ₁ cos θ₂ / r² over its 120 × 30
+    // cells, with the cosine 1.5 / r at the panel and z / r at the eye.
     let of_cell = |i: usize| {
         let (x, z) = ((i % 120) as f64 / 100.0 - 0.595, 3.0 - (i / 120) as f64 / 100.0 + 0.145);
         3000.0 / PI / 3600.0 * 1.5 * z / (x * x + z * z + 1.5 * 1.5).powi(2)
@@ -207,7 +209,8 @@ fn limits_have_clear_answers() {
     }
 }
 
-/// The picture of a room shows its luminaires, so the rating of the picture agrees with that of the luminaires.
+/// The picture of a room shows its luminaires, so the rating of the picture agrees with the rating computed from the
+/// luminaires.
 #[test]
 fn pictures_rate_as_the_luminaires_in_them() {
     use crate::photometry::glare;
@@ -225,11 +228,11 @@ fn pictures_rate_as_the_luminaires_in_them() {
         let params = crate::render::Params { width: 1000, height: 1000, samples: 4, ..Default::default() };
         let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
         let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0 }).unwrap();
-        // Single bright pixels of noise count as sources; the luminaires are larger.
+        // Bright pixels of noise count as small sources, too. Count only the large sources, which are the luminaires.
         let large = seen.sources.iter().filter(|s| s.solid_angle > 1e-3).count();
         assert_eq!((large, rating.sources.len(), film.unseen_lights), (3, 3, 0), "{name}");
         assert!((seen.ugr - rating.ugr).abs() < 0.5, "{name}: {seen:?} {rating:?}");
-        // Compare the sources alone.
+        // Compare the sums over the sources alone, without the background luminance.
         let sums = [
             seen.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position.powi(2)).sum::<f64>(),
             rating.sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum(),

@@ -61,7 +61,7 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         moved.textures[0].wrap = [wrap; 2];
         moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = from + (to - from) * *uv);
         if wrap == crate::scene::Wrap::Mirror {
-            // Let u fall from 2 to 1: the mirrored copy of the texture then runs from left to right again.
+            // Reflect u and v at 2. They then rise from 2 to 3, where the texture is not mirrored.
             moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::splat(2.0) - (*uv - Vec2::splat(2.0)));
         }
         let (mean, own_error) = measure(&world(moved), &centre_of(0));

@@ -166,7 +166,7 @@ fn bounces_in_a_furnace_are_a_geometric_series() {
 
 #[test]
 fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
-    // In a white room seen from above, a lamp hangs over a floor. In each pixel, LDE is albedo × luminance × form
+    // A lamp hangs over a floor in a room with white or black walls. In each pixel, LDE is albedo × luminance × form
     // factor.
     let room = |albedo: f32| Scene {
         meshes: vec![

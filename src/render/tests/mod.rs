@@ -109,7 +109,8 @@ fn parallel_form_factor(a: f64, b: f64, c: f64) -> f64 {
 }
 
 /// Returns the form factor from a small facet to a perpendicular rectangle at distance `c`, which is `a` wide and `b`
-/// high.
+/// high. The rectangle stands on the facet's plane, and one of its lower corners is the foot of the perpendicular from
+/// the facet.
 fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let r = 1.0 / (1.0 + y * y).sqrt();

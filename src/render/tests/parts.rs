@@ -113,7 +113,7 @@ fn parts_are_the_same_on_any_number_of_threads_and_show_themselves() {
 fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
     let (world, params) = (world(everything()), Params { width: 24, height: 16, samples: 64, ..Params::default() });
     let (mut sums, mut squares, mut errors) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-    // A few renders with rare bright paths have most of the squared error, so its mean takes many renders.
+    // Most of the squared error comes from the few renders with rare bright paths, so its mean takes many renders.
     let count = 128;
     for seed in 0..count {
         let params = Params { seed: 100 + seed, ..params.clone() };

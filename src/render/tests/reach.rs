@@ -45,7 +45,7 @@ fn inside() -> Camera {
     Camera::look_at(Vec3::new(0.4, 1.4, 2.4), Vec3::new(2.6, 0.7, 1.0), 1.3)
 }
 
-/// Returns two worlds: one that learns which lights reach the view, and one that samples all lights alike.
+/// Returns two worlds: one that learns which lights reach the view, and one that does not learn.
 fn worlds(scene: Scene) -> [World; 2] {
     let learns = world(scene);
     let mut alike = learns.clone();
@@ -142,7 +142,7 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
     let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
     assert!(a.beauty == b.beauty && a.variance == b.variance && a.reach == b.reach);
-    // The structure of the surroundings is in use after a few hundred paths.
+    // After 1024 paths, the structure of the surroundings is in use.
     let has_vicinity = |world: &World| {
         let learning = world.learning().unwrap();
         let point = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::splat(0.3), front: true };
