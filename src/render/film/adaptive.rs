@@ -41,7 +41,7 @@ const MAX_TILE_RATIO: u32 = 64;
 /// defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
-/// Decides the passes of a render, one after the other.
+/// Chooses the passes of a render, one after the other.
 pub struct AdaptiveSampler<'p> {
     params: &'p Params,
     /// Pixel stride (`stride`) and paths per pixel (`uniform_paths`) of the last uniform pass.

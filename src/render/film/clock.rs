@@ -60,7 +60,7 @@ impl Clock {
         self.left().map(|left| left.as_secs_f64() / self.sampling.as_secs_f64().max(1e-9))
     }
 
-    /// Returns the spent share of the budget; 0 without a budget.
+    /// Returns the share of the time budget that has passed, at most 1; 0 without a budget.
     pub fn spent(&self) -> f64 {
         self.budget.map_or(0.0, |b| (self.start.elapsed().as_secs_f64() / b.as_secs_f64()).min(1.0))
     }

@@ -11,7 +11,7 @@ pub const AREA: usize = TILE * TILE;
 /// Largest number of pixels in the coarsest image of a progressive render. [origin not recorded]
 const COARSE_PIXELS: usize = 1024;
 
-/// An image divided into tiles, row by row. The last tiles may extend beyond its right and lower borders.
+/// An image divided into tiles, row by row. The tiles of the last column and row may extend beyond the image.
 #[derive(Clone, Copy)]
 pub struct Grid {
     pub width: usize,

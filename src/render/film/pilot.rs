@@ -88,7 +88,8 @@ struct PilotTile {
     seconds: f64,
 }
 
-/// Sums over the pixels of a tile; radiance is averaged over the channels.
+/// Sums over the pixels of a pilot tile, and the weight of the tile. Radiance and its square are averaged over the
+/// channels.
 #[derive(Clone, Copy, Default)]
 struct TileSums {
     weight: f64,

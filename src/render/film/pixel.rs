@@ -1,12 +1,12 @@
 //! The estimate of one pixel: four independent replications of a point sequence. The differences between the
 //! replications give the error of the pixel.
 //!
-//! Owen scrambling makes the points of one sequence dependent on each other. Their variance therefore does not give
-//! the error of their mean, but the variance between independent scramblings does (Owen 1997). The paths of a pixel
-//! are dealt in turn to four independently scrambled replications. Each replication continues from pass to pass, which
-//! preserves its stratification at every power of two. With fewer replications, each would be stratified better; with
-//! more, the variance of a single pixel would be estimated more accurately. `interval` averages the variance over
-//! neighbouring pixels.
+//! Owen scrambling makes the points of one sequence dependent on each other. The variance among the points of a
+//! sequence therefore does not give the error of their mean. The variance among independently scrambled sequences does
+//! (Owen 1997). The paths of a pixel are dealt in turn to four independently scrambled replications. Each replication
+//! continues from pass to pass, which preserves its stratification at every power of two. With fewer replications,
+//! each would be stratified better; with more, the variance of a single pixel would be estimated more accurately.
+//! `interval` averages the variance over neighbouring pixels.
 
 use glam::{DVec3, Vec3};
 
@@ -38,8 +38,8 @@ impl Pixel {
         self.count
     }
 
-    /// Adds paths until the pixel has `count` paths. `path(replication, indices)` traces the paths of a replication
-    /// with these indices and returns the sum of their radiance.
+    /// Adds paths until the pixel has `count` paths. `path(replication, indices)` traces the paths with the given
+    /// indices of a replication, and returns the sum of their radiance.
     pub fn extend(&mut self, count: u32, mut path: impl FnMut(u32, std::ops::Range<u32>) -> DVec3) {
         for (replication, sum) in (0..REPLICATIONS).zip(&mut self.sums) {
             let indices = paths_of_replication(self.count, replication)..paths_of_replication(count, replication);
@@ -77,8 +77,8 @@ impl Pixel {
         })
     }
 
-    /// Returns the mean of the replications without the brightest and the darkest one, averaged over the channels. It
-    /// is robust against a single bright path.
+    /// Returns the mean radiance over the replications except the brightest and the darkest one, averaged over the
+    /// channels. A single bright path hardly changes it.
     pub fn trimmed_mean(&self) -> f64 {
         let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
             let paths = paths_of_replication(self.count, i as u32).max(1);

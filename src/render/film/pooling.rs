@@ -8,9 +8,10 @@ use crate::job::Job;
 /// Binomial weights of the pixels at distances 0, 1, 2 and 3 along an axis. [bench error_control]
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
-/// Returns the pooled variances of the pixels of an image. `paths` has the number of paths of each pixel. The pooled
-/// quantity is the variance of a single path, which is then divided by the pixel's own number of paths: a pixel with
-/// many paths does not get the variance of a neighbour with few paths. Pixels without paths count as having one.
+/// Returns the variances of the pixels of an image, pooled over neighbouring pixels. `paths` has the number of paths
+/// of each pixel; pixels without paths count as having one. Each variance is multiplied by the pixel's number of
+/// paths, which gives the variance of a single path. This is pooled, and divided by the pixel's own number of paths.
+/// So a pixel with many paths does not get the large variance of a neighbour with few paths.
 pub fn pooled_by_paths(variance: &Image, paths: &Image, job: Job) -> Result<Image> {
     let (width, channels) = (variance.width, variance.channels);
     let most = paths.data.iter().fold(1f32, |most, &n| most.max(n));

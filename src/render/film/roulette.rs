@@ -1,5 +1,5 @@
 //! Weights for the survival probabilities of Russian roulette. The weight of a pixel is the median radiance of the
-//! image relative to the radiance of the pixel.
+//! image divided by the radiance of the pixel.
 //!
 //! Errors matter relative to the radiance of the pixel: the same light changes a pixel in the shade more than a pixel
 //! under a lamp, and a black surface more than a white one. Paths of dark pixels are therefore continued with a higher
@@ -68,7 +68,8 @@ impl RouletteWeights {
         }
     }
 
-    /// Returns the median radiance of the image relative to the radiance of a pixel, per channel; always positive.
+    /// Returns the median radiance of the image divided by the radiance of a pixel, per channel, limited by
+    /// [`MAX_WEIGHT`].
     pub fn weight(&self, pixel: &Pixel) -> Vec3 {
         let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
         let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));

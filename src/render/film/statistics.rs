@@ -107,8 +107,8 @@ impl Accumulator<'_> {
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {
-                // Convert to luminance the standard errors and not the variances, because the noise of the channels is
-                // correlated.
+                // Take the luminance of the standard errors, not of the variances, because the noise of the channels
+                // is correlated.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
                 if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }

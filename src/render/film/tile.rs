@@ -36,7 +36,8 @@ pub struct Tile<'a> {
     number: usize,
     pixels: &'a mut [Pixel],
     roulette: Option<RouletteWeights>,
-    /// The totals of the layers for the pixels of the tile.
+    /// The sums of the layers (light path expressions and surface attributes) for the pixels of the tile, if there are
+    /// layers.
     totals: Option<TileTotals<'a>>,
     tracer: BlockTracer<'a>,
 }

@@ -117,7 +117,7 @@ type Lanes = [f32; LANES];
 #[repr(align(32))]
 pub struct BoundsLanes {
     centre: [Lanes; 3],
-    /// Half-extents of the box, widened by the rounding error of a point.
+    /// Half-extents of the box, widened by the rounding error of its coordinates.
     half: [Lanes; 3],
     /// Upper limit on 1 / squared distance, for receivers in or near the box: the reciprocal of the squared distance
     /// from the centre to a corner.
@@ -126,7 +126,7 @@ pub struct BoundsLanes {
     /// Allowance for the extent of the box: divided by the distance, it is added to the cosine at the emitters. It is
     /// the half-extent of the box along the axis if the cone angle is 90°, and half the diagonal of the box otherwise.
     box_extent: Lanes,
-    /// -1 for two-sided lights, 1 for all others.
+    /// -1 for two-sided lights, 1 for all others. The larger of the cosine and its product with this sign is used.
     back_sign: Lanes,
     /// Sine and cosine of `cone_angle` - 90° (`cone_rotation`), and the smallest cosine to the axis at which the bound
     /// is the full intensity (`full_cosine`; 2 if there is none).

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::image::{try_collect, try_vec, try_with_capacity};
 use crate::render::emissive::Emitters;
 
-/// The lamps of a scene that are emissive surfaces.
+/// The luminous surfaces of a scene, grouped into lamps.
 pub struct Lamps {
     /// For each piece of an emissive surface (a triangle, or a tile of a textured triangle), the index of its lamp.
     of_pieces: Vec<u32>,

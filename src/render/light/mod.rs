@@ -107,7 +107,7 @@ impl Lights {
             Some((sampler, mean)) => (Some(Arc::new(sampler)), mean),
             None => (None, 0.0),
         };
-        // Take the flux through the surface of a sphere around the scene as the environment's power.
+        // Take as the power of the environment its flux through the surface of a sphere around the scene.
         let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
         let power = mean * PI * 4.0 * PI * r2;
         let piece_flux = emitters.power;

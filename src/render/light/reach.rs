@@ -13,9 +13,9 @@
 //! than with one selector for all lights, by a factor of at most about 1 / share. The next decision
 //! ([`super::learning`]) then makes the light likely.
 //!
-//! Before a light has samples of its own, its probability follows from its neighbours in the light tree: if many of
-//! them are hidden, it is probably hidden too. A neighbour counts as at most [`MAX_WITNESS`] samples, because a bright
-//! light with many samples says little about a dim light without samples.
+//! Before a light has samples of its own, the probability that its samples arrive is estimated from its neighbours in
+//! the light tree: if many of them are hidden, the light is probably hidden too. A neighbour counts as at most
+//! [`MAX_WITNESS`] samples, because a bright light with many samples says little about a dim light without samples.
 //!
 //! A render that wastes few light samples on hidden lights keeps the selector of all lights. Its image is then the
 //! same, bit for bit, as without learning.
@@ -35,11 +35,12 @@ const MIN_ARRIVAL: f64 = 0.003;
 /// to a power of two. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.03, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
-/// A neighbour in the light tree counts as at most this many samples. If it has more, its counts of drawn and of
-/// arrived samples are scaled down by the same factor. [judged on 3 scenes]
+/// When the samples of a light's neighbours in the light tree serve to estimate whether its own samples arrive, each
+/// neighbour counts as at most this many samples. The counts of a neighbour with more samples, drawn and arrived, are
+/// scaled down by the same factor. [judged on 3 scenes]
 const MAX_WITNESS: f64 = 16.0;
 /// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
-/// arrives. The root is rounded to a power of two and counts as at least this value. [judged on 3 scenes]
+/// arrives. This factor is rounded to a power of two and is at least this value. [judged on 3 scenes]
 const MIN_WEIGHT: f64 = 0.125;
 /// Bit that marks an unlikely light in an entry of [`Split::places`].
 const UNLIKELY: u32 = 1 << 31;
@@ -160,8 +161,8 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
 /// prior (a + q) / (d + 1). Here q is the prior of the cluster, and d and a are the numbers of drawn and of arrived
 /// samples of the cluster's other children. Each of these children counts as at most [`MAX_WITNESS`] samples.
 fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
-    // Add up the samples of each cluster, from the last cluster to the first: a cluster comes before the clusters
-    // within it. A child counts as at most `MAX_WITNESS` samples.
+    // Add up the samples of each cluster, from the last cluster to the first, because a cluster has a lower index than
+    // the clusters within it. A child counts as at most `MAX_WITNESS` samples.
     let mut witnesses = try_vec(tree.clusters(), [0.0; 2])?;
     let of_child = |witnesses: &[[f64; 2]], child: Child| {
         let [drawn, arrived] = match child {

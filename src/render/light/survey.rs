@@ -18,7 +18,7 @@ pub const ENOUGH: u64 = 1 << 17;
 pub struct Survey {
     /// For each light, the number of its samples, and the number of its samples that were not occluded.
     counts: Vec<[AtomicU32; 2]>,
-    /// Positions of receivers.
+    /// A random selection of the positions of receivers.
     pub places: Places,
 }
 

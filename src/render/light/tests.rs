@@ -382,7 +382,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         }
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
-        // Half of the lights in a cluster face away from the floor, so some of the light samples carry no light. The
+        // About a third of the lights face away from the floor, so some of the light samples carry no light. The
         // measured error is 1.5 %.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }

@@ -14,7 +14,8 @@ use glam::{Vec3, Vec3A};
 
 /// Number of bins per axis; their borders are the candidate splits. [convention]
 const BINS: usize = 12;
-/// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
+/// From this depth on, splits halve the number of lights instead of minimising the heuristic. This limits the depth of
+/// the tree. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
 /// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. Regular patterns
 /// of lamps often have splits of equal cost, whose computed costs differ only by rounding. Rounding must not decide

@@ -28,10 +28,10 @@ pub struct Automaton {
     start: u16,
     /// The next state for each state, class of meshes (which no expression distinguishes) and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// For each state and light event: the index, in `lists`, of the list of expressions that accept a path which
-    /// reaches this light in this state.
+    /// For each state and light event: which list of `lists` names the expressions that accept a path which reaches
+    /// this light in this state.
     ends: Vec<u16>,
-    /// Lists of expressions: every path is accepted by exactly the expressions of one list. List 0 is empty.
+    /// Lists of expressions. For each path, the expressions that accept it form one of these lists; list 0 is empty.
     lists: Vec<Vec<u16>>,
     /// For each state, whether every scattering event leaves it unchanged.
     absorbing: Vec<bool>,
@@ -108,7 +108,7 @@ impl Automaton {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
     }
 
-    /// Returns the lists of expressions. Every path is accepted by exactly the expressions of one list.
+    /// Returns the lists of expressions. For each path, the expressions that accept it form one of these lists.
     pub fn lists(&self) -> &[Vec<u16>] {
         &self.lists
     }
@@ -129,7 +129,7 @@ impl Automaton {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
         // Group the states by the expressions that they accept. Then divide each group whose states lead to different
-        // groups, until no group divides any more.
+        // groups, and repeat this until all groups stay as they are.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {

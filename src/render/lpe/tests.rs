@@ -273,7 +273,8 @@ fn expressions_that_no_path_can_match_are_refused() {
     let error = refused("C<RD'Flor'>L");
     assert_eq!(error.kind, ErrorKind::NotFound);
     assert!(error.message.contains("'Flor'") && error.message.contains("'Floor'"), "{}", error.message);
-    // Test expressions with exponentially many states, and with more NFA states than anyone writes by hand.
+    // Test an expression with exponentially many states, and one whose nested repetitions have a huge number of NFA
+    // states.
     let states = format!("C.*D{}L", ".".repeat(20));
     assert!(refused(&states).message.contains("states"));
     assert!(refused("C((D{64}G){64}S){64}L").message.contains("states"));

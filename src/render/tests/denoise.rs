@@ -11,7 +11,7 @@ fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Ima
     images.try_into().unwrap()
 }
 
-/// Returns the mean of the squared errors, each divided by the squared true value plus a small constant.
+/// Returns the mean of the squared errors, each divided by the squared true value plus (1 % of the mean)².
 fn rel_mse(image: &Image, truth: &Image) -> f64 {
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));

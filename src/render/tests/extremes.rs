@@ -163,10 +163,11 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
-    // With white walls of albedo 1 and a lamp that reflects nothing, all radiances approach the radiance of the lamp.
+    // In a closed room with white walls of albedo 1 and a lamp that reflects nothing, all radiances equal the radiance
+    // of the lamp.
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
-    // Let the lamp cover nearly the whole ceiling. It emits downwards only.
+    // Let the lamp cover nearly the whole ceiling. It emits on both sides.
     scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
     let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
     assert_mean(&film, 100.0);

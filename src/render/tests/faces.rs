@@ -66,8 +66,8 @@ fn cylinder_form_factor(distance: f64, height: f64) -> f64 {
     2.0 * whole / PI
 }
 
-/// Faces of uniform luminance 1000 cd/m² light a point at 0.5 to 10 times their size as the closed forms demand: within
-/// four standard errors, and within 1 %.
+/// Faces of uniform luminance 1000 cd/m² light a point, at a distance of 0.5 to 10 times their size, as the closed
+/// forms demand: within four standard errors, and within 1 %.
 #[test]
 fn the_near_field_meets_closed_forms() {
     let luminance = 1000.0;
@@ -261,7 +261,7 @@ fn a_panel_in_the_plane_of_the_ceiling_is_in_front_of_it() {
     }
 }
 
-/// A closed box around a luminaire blocks its light, but only outside the box. Inside the faces of a luminaire, it is
+/// Outside a closed box around a luminaire it is dark; inside the box it is lit. Inside the luminaire itself it is
 /// dark.
 #[test]
 fn hidden_faces_do_not_shine() {
@@ -284,7 +284,7 @@ fn hidden_faces_do_not_shine() {
     }
 }
 
-/// Luminaires without size or of less than a millimetre shine as points. Luminaires of 10 km light a surface like a
+/// Luminaires without size, or smaller than a millimetre, shine as points. Luminaires of 10 km light a surface like a
 /// sky.
 #[test]
 fn sizes_may_be_extreme() {

@@ -1,4 +1,4 @@
-//! Tests of scenes that lie far from the origin but have an object near it, and of lamps of extreme shape or
+//! Tests of scenes that lie far from the origin, but have an object near the origin, and of lamps of extreme shape or
 //! brightness.
 
 use super::place::room;
@@ -42,7 +42,7 @@ fn points_in_air_see_the_light_near_them_however_far_the_scene_extends() {
         scene.meshes.extend(outlier.map(tile));
         let world = world(scene);
         let mut sum = Sum(DVec3::ZERO);
-        // Measure at a point 1 cm above the table.
+        // Measure at a point 8 mm above the table.
         let point = Vec3::new(2.5, 0.7578125, 1.5) + at;
         (0..1024).for_each(|i| irradiance_in_air(&world, point, Vec3::Y, 1, i, &mut sum));
         sum.0.x / 1024.0

@@ -196,8 +196,8 @@ fn limits_have_clear_answers() {
     shining.materials.push(matt(0.0, 500.0));
     shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
     assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
-    // Observers inside a luminous opening and observers that look straight up are refused, with a message that names
-    // the observer.
+    // Observers inside a luminous opening are refused with a message that names the observer. Observers that look
+    // straight up, or whose direction is invalid, are refused too.
     let scene = Arc::new(room(panel(), &[at]));
     let world = World::build(scene, Monitor::default().job()).unwrap();
     let refused =

@@ -117,7 +117,7 @@ fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
     (x.atan() - r * (x * r).atan()) / std::f64::consts::TAU
 }
 
-/// A small room with every feature of scenes: textures, mirror, glass, gloss, alpha, lamp, punctual light and sky.
+/// A small room with most features of scenes: textures, mirror, glass, gloss, alpha, lamp, punctual light and sky.
 fn everything() -> Scene {
     let image = Image::from_fn(16, 16, |x, y| {
         let lit = x % 4 == 1 && y % 4 == 2;
