@@ -66,9 +66,9 @@ impl Lights {
     }
 
     /// Returns the recorded positions of receivers, and the number of light samples counted so far. Returns `None` if
-    /// no positions are recorded any more. Also returns `None` if the scene is open: more than [`MAX_OPEN`] of the
-    /// samples of directional lights and of the environment arrive, so many rays leave the surroundings of these
-    /// positions.
+    /// no positions are recorded any more. Also returns `None` if the scene is open, which means that many rays leave
+    /// the surroundings of these positions: more than [`MAX_OPEN`] of the samples of directional lights and of the
+    /// environment arrive.
     pub fn places(&self) -> Result<Option<(&Places, u64)>> {
         let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) else { return Ok(None) };
         let mut far = Evidence::default();

@@ -36,7 +36,8 @@ fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     bins
 }
 
-/// Returns the critical value of chi-squared for one of `tests` tests (Wilson and Hilferty 1931).
+/// Returns the critical value of chi-squared for each of `tests` tests (Wilson and Hilferty 1931). The probability
+/// that any of them exceeds it by chance is [`CHANCE`].
 fn limit(degrees: f64, tests: usize) -> f64 {
     let chance = 1.0 - (1.0 - CHANCE).powf(1.0 / tests as f64);
     let (mut low, mut high) = (1.0, 10.0);
