@@ -73,7 +73,8 @@ impl<'p> AdaptiveSampler<'p> {
         if self.uniform_paths >= samples {
             return Ok(None);
         }
-        // Double the paths of all pixels, as far as the time budget allows.
+        // Give every pixel [`FIRST_PASS_PATHS`] paths, then double them in each pass, as far as the time budget
+        // allows.
         let doubled =
             if self.uniform_paths < FIRST_PASS_PATHS { FIRST_PASS_PATHS } else { self.uniform_paths.saturating_mul(2) };
         let affordable = clock.affordable_ratio().map_or(u32::MAX, |times| {

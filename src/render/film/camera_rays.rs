@@ -60,8 +60,8 @@ fn radiance(
     }
 }
 
-/// A camera prepared for path tracing. The direction through the image point (x, y), in pixels, is corner + x right +
-/// y down before normalisation.
+/// A camera prepared for path tracing. The direction through the image point (x, y), in pixels, is `corner` + x
+/// `right` + y `down` before normalisation.
 pub struct CameraRays {
     position: Vec3,
     corner: Vec3,

@@ -47,7 +47,7 @@ pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f
     (count > 0.0).then(|| (sum / count, paths))
 }
 
-/// Returns the weight, in `[0, 1)`, of a mean of `paths` paths against a prior that counts as [`PRIOR_PATHS`] paths.
+/// Returns the weight n / (n + [`PRIOR_PATHS`]), in `[0, 1)`, with which a mean of n paths is blended with its prior.
 pub fn shrinkage(paths: f64) -> f64 {
     paths / (paths + PRIOR_PATHS)
 }

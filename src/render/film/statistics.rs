@@ -27,9 +27,10 @@ pub struct Statistics {
     pub max_paths: u32,
     /// Sum, over the pixels, of the pixel's mean radiance, averaged over the channels.
     mean: f64,
-    /// Sum, over the pixels, of the variance of the pixel's mean radiance.
+    /// Sum, over the pixels, of the variance of the pixel's mean radiance, times the squared factor of
+    /// [`Accumulator::statistics`].
     variance: f64,
-    /// Sum, over the pixels, of the variance of the radiance of a single path.
+    /// Sum, over the pixels, of the variance of the radiance of a single path, times the same squared factor.
     pub path_variance: f64,
 }
 

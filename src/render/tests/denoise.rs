@@ -128,8 +128,9 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let error = (renders.iter().map(|(_, output)| mean(&square(&output.image))).sum::<f64>() / n).sqrt() / unit;
     let stated = (renders.iter().map(|(_, output)| output.error.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * error && stated < 1.4 * error, "error {stated} stated, {error} measured");
-    // Intervals hold less than the nominal 95 %, because the choice of the pass with the least estimated error is
-    // optimistic: 86 % of the pixels here (docs/notes/filter.md). The noise of the reference is allowed for.
+    // The intervals contain the truth for 86 % of the values here, and not for the nominal 95 %
+    // (docs/notes/filter.md). In each pixel, the filter takes the pass with the least estimated error, and the least
+    // of several estimates is too low on average. Here, the intervals are widened by the noise of the reference.
     let inside = |output: &denoise::Output| {
         let half_widths = output.interval.data.iter().zip(&reference.variance.data);
         let half_widths = half_widths.map(|(&own, variance)| own.hypot(1.96 * variance.sqrt()));
