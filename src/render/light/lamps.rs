@@ -8,7 +8,8 @@ use crate::render::emissive::Emitters;
 
 /// The luminous surfaces of a scene, grouped into lamps.
 pub struct Lamps {
-    /// For each piece of an emissive surface (a triangle, or a tile of a textured triangle), the index of its lamp.
+    /// For each piece of an emissive surface (a triangle, a tile of a textured triangle, or a patch of a luminaire's
+    /// face), the index of its lamp.
     of_pieces: Vec<u32>,
     /// Number of lamps.
     count: usize,

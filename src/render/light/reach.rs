@@ -30,9 +30,9 @@ use crate::image::try_vec;
 /// A light is unlikely if none of its samples has arrived and the estimated probability that the next one arrives is
 /// below this value. [judged on 3 scenes]
 const MIN_ARRIVAL: f64 = 0.003;
-/// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` divided by the square root of the
-/// number of samples already drawn from them, clamped to the range `UNLIKELY_SHARES`. The square root is rounded down
-/// to a power of two. [judged on 3 scenes]
+/// Share of the light samples that all unlikely lights together get: `UNLIKELY_ROOT` / √n, clamped to the range
+/// `UNLIKELY_SHARES`. Here n is the number of samples already drawn from these lights, and √n is rounded down to a
+/// power of two. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.03, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
 /// When the samples of a light's neighbours in the light tree serve to estimate whether its own samples arrive, each

@@ -9,14 +9,15 @@ use std::f64::consts::PI;
 
 /// The data of a scene's lights from which selectors are built. It numbers the lights in this order:
 ///
-/// 1. The pieces of emissive surfaces: triangles, or tiles of textured triangles.
+/// 1. The pieces of emissive surfaces: triangles, tiles of textured triangles, and patches of luminaires' faces.
 /// 2. The punctual lights at a finite distance.
 /// 3. One number for every punctual light of the scene; only those of directional lights are used.
 /// 4. The environment.
 pub struct Inventory {
     /// Bounds of the lights at a finite distance.
     pub bounds: Vec<Bounds>,
-    /// Number of pieces of emissive surfaces (triangles, or tiles of textured triangles).
+    /// Number of pieces of emissive surfaces (triangles, tiles of textured triangles, and patches of luminaires'
+    /// faces).
     pub pieces: usize,
     /// Flux of all pieces together, in lumens.
     pub piece_flux: f64,

@@ -120,7 +120,7 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let both = halves.mean();
     let (before, after) = (rel_mse(&both, &truth), rel_mse(&output.image, &truth));
     assert!(after < before / 5.0, "from {before} to {after}");
-    // The stated errors are true on average.
+    // On average over the renders, the stated error agrees with the measured error.
     let unit = mean(&truth.data);
     let square =
         |image: &Image| image.data.iter().zip(&truth.data).map(|(a, t)| (a - t) * (a - t)).collect::<Vec<f32>>();
