@@ -3,8 +3,8 @@
 
 use std::fmt;
 
-/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended; the values 0 to 6
-/// mean the same as in Embree and Open Image Denoise.
+/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended. The values 0 to 4 and
+/// 6 mean the same as in Embree and Open Image Denoise, where 5 stands for an unsupported device.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
@@ -28,12 +28,13 @@ pub enum ErrorKind {
     NotReady = 9,
     /// The library has a defect; please report it.
     Internal = 10,
-    /// The input is well formed but has no answer: no lines, a plane seen edge-on, one class of strokes only.
+    /// The input is valid but has no answer. Examples: a photo without straight lines, a plane seen edge-on, strokes of
+    /// only one class.
     Degenerate = 11,
     /// No surface, image or entry has the given name.
     NotFound = 12,
-    /// No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
-    /// needed.
+    /// The emission cannot produce the light of the target: no light path connects them, a material on the way absorbs
+    /// a whole channel, or the emission would have to be negative.
     Unreachable = 13,
 }
 
@@ -104,7 +105,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Returns the value, or an error if it does not lie in `[low, high]`; a NaN never does.
+/// Returns `value` if it lies in `[low, high]`, otherwise an error that calls it `name`. NaN gives an error.
 pub fn check_range<T: PartialOrd + fmt::Display>(name: &str, value: T, low: T, high: T) -> Result<T> {
     if value >= low && value <= high {
         Ok(value)

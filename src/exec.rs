@@ -1,7 +1,8 @@
 //! The library's own thread pool, and parallel loops whose results do not depend on the number of threads.
 //!
 //! rayon's global pool is never used, because it belongs to the host and cannot be shut down. When a rayon pool is
-//! dropped, it only tells its threads to end. [`Pool`] therefore keeps the handles of its threads and joins them.
+//! dropped, it only tells its threads to end and does not wait for them. [`Pool`] therefore keeps the handles of its
+//! threads and joins them.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
@@ -46,9 +47,9 @@ impl Pool {
         }
     }
 
-    /// Like [`run`](Self::run), but drops `work` and returns `None` if `is_cancelled` becomes true while all threads
-    /// are still busy with other work. `work` must not panic. When this function returns, `work` has been run or
-    /// dropped.
+    /// Like [`run`](Self::run), but can be cancelled while `work` waits for a free thread: if `is_cancelled` returns
+    /// true during this wait, drops `work` and returns `None`. Once `work` has begun, it runs to its end. `work` must
+    /// not panic.
     pub fn run_unless<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -85,8 +86,8 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
         self.changed.notify_all();
     }
 
-    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before the closure
-    /// runs.
+    /// Waits for the result. If `is_cancelled` returns true before a worker has begun the closure, drops the closure
+    /// and returns `None`.
     fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
         let mut state = lock(&self.state);
         loop {
@@ -169,7 +170,7 @@ impl Drop for Pool {
 }
 
 // The parallel loops call their closures through `dyn`, so that rayon's code is compiled once for each type of item.
-// Compiled once for each closure, it was a sixth of the library's code before optimisation.
+// When it was compiled once for each closure, it made up a sixth of the code that the compiler had to optimise.
 
 /// Calls `work(row, pixels)` for every row of an interleaved image, in parallel. Checks for cancellation before each
 /// row.
@@ -220,7 +221,8 @@ fn for_runs_dyn<T: Send>(
     })
 }
 
-/// Like [`for_rows`], for the same row of three images at once; rows have `row_len` items each.
+/// Like [`for_rows`], for three images of equal size: calls `work(y, [a, b, c])`, where `a`, `b` and `c` are row `y` of
+/// each image. A row has `row_len` items.
 pub fn for_rows_of_three<T: Send>(
     images: [&mut [T]; 3],
     row_len: usize,
@@ -278,7 +280,8 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
 /// milliseconds.
 const SERIAL_SORT: usize = 1 << 16;
 
-/// Number of items whose median is the pivot. The pivot's rank then has a standard deviation of 1.6 % of the items.
+/// Number of sampled items; their median is the pivot. The standard deviation of the pivot's rank is 0.5 / √1001 = 1.6
+/// % of the number of items.
 const SAMPLE: usize = 1001;
 
 /// Sorts in parallel and checks for cancellation. After cancellation, the order is unspecified.
@@ -391,7 +394,7 @@ mod tests {
     fn sorting_is_that_of_the_standard_library() {
         let count = 3 * SERIAL_SORT as u64;
         let random = |range: u64| (0..count).map(|i| crate::rng::mix(i) % range).collect::<Vec<_>>();
-        // Every item of the pivot's sample is 0, so the pivot leaves no item below it.
+        // All items that `partition` samples are 0. The pivot therefore is 0, and no item is below the pivot.
         let unlike_its_sample =
             (0..count).map(|i| if i % (count / SAMPLE as u64) == 0 { 0 } else { count - i }).collect();
         for mut numbers in

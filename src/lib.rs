@@ -9,9 +9,9 @@
 //! ```
 //!
 //! [`transfer`] runs the first pipeline and passes data between its stages. The stages do not depend on each other.
-//! [`plan`] chooses the settings of the last two stages of this pipeline for a target error or time. `ffi` is the C
-//! boundary, and the only module that deals with C. Both pipelines use these modules: [`scene`] (description, glTF,
-//! acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`],
+//! [`plan`] chooses settings for a target error or time: those of `relight` and `render`, or those of `stylize`. `ffi`
+//! is the C boundary, and the only module that deals with C. Both pipelines use these modules: [`scene`] (description,
+//! glTF, acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`],
 //! [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks the
 //! dependencies between modules.
 //!
@@ -22,12 +22,11 @@
 //! that are equal bit by bit.
 //!
 //! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB; for photometric light their
-//! luminance is in cd/m². Illuminance is in lux, flux in lumens. Images and rays use `f32`, geometry and solvers
-//! `f64`.
+//! luminance is in cd/m². Illuminance is in lux, flux in lumens. Images and rays use `f32`, geometry and solvers `f64`.
 //!
 //! References:
-//! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization; and for its last step
-//!   the adjoint light tracing of Lipp et al. 2024, which a linear solve replaces here.
+//! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization. The last step of this
+//!   paper is adjoint light tracing (Lipp et al. 2024); here a linear solve replaces it.
 //! - Fišer et al. 2016: StyLit, illumination-guided example-based stylization of 3D renderings.
 //! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled
 //!   functions.
@@ -87,6 +86,7 @@ pub mod transfer;
 
 pub mod plan;
 
-// The comments of `ffi` become a C header, so brackets in them are neither links nor tags.
+// The comments of `ffi` are copied into a C header, where `[...]` and `<...>` are plain text. Rustdoc must not warn
+// about them as broken links or HTML tags.
 #[allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
 pub mod ffi;

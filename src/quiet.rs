@@ -12,7 +12,8 @@ use std::panic;
 use std::sync::Once;
 use std::thread;
 
-// The variable has no destructor, so that a host can unload the library.
+// `Cell<bool>` has no destructor. A thread-local variable with a destructor would keep the host from unloading the
+// library.
 thread_local! {
     static IS_QUIET: Cell<bool> = const { Cell::new(false) };
 }
@@ -40,7 +41,7 @@ pub fn is_on() -> bool {
     IS_QUIET.get()
 }
 
-/// Calls a function of the host, during which panic messages are printed.
+/// Calls a function of the host. During the call, panics on this thread print their messages as usual.
 pub fn outside<T>(call: impl FnOnce() -> T) -> T {
     let _restored = Quiet { before: IS_QUIET.replace(false) };
     call()

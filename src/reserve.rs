@@ -4,14 +4,16 @@
 //! `LUXFER_OUT_OF_MEMORY`. Small allocations (names, messages, thread queues, rows in a codec) are infallible: if the
 //! system cannot serve one of them, Rust aborts the process, and the host with it. The library therefore keeps a
 //! reserve of 8 MiB, which occupies no physical memory until it is used. The reserve serves small allocations that the
-//! system cannot serve; every job of the process then ends at its next check. Third-party codecs and new threads
-//! cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`has_room`] tests
-//! whether the system has enough memory.
+//! system cannot serve; every job of the process then ends with an error at its next check. Third-party codecs and new
+//! threads cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`has_room`]
+//! tests whether the system has enough memory.
 //!
-//! The process can still be aborted in three cases: another thread takes the memory right after the test by
-//! [`has_room`]; the system cannot serve the 48 bytes that the standard library requests from it directly when a
-//! thread starts, or when a call of the library first fails on a thread; or it cannot serve the allocations of the
-//! system's C library when a thread first calls this library.
+//! The process can still be aborted in three cases:
+//!
+//! - Another thread takes the memory right after the test by [`has_room`].
+//! - The system cannot serve the 48 bytes that the standard library requests directly from the system, around the
+//!   reserve. It does so when a thread starts, and when a call of the library first fails on a thread.
+//! - The system cannot serve the memory that its C library requests when a thread first calls this library.
 //!
 //! Without the feature `reserve`, the program that links the library chooses the allocator.
 

@@ -1,5 +1,5 @@
-//! Counter-based random numbers. Each is a pure function of a seed and of coordinates, so that results do not depend
-//! on the order in which threads compute them.
+//! Counter-based random numbers. Each number is a pure function of a seed and of coordinates, such as a pixel's
+//! position. Results therefore do not depend on the order in which threads compute them.
 
 /// Hashes 64 bits so that every input bit affects every output bit (the finaliser of SplitMix64, Steele et al. 2014).
 #[inline]
@@ -45,7 +45,8 @@ impl Rng {
         (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
-    /// Returns a number uniform in `0..count` (Lemire 2019, without rejection: the bias is below `count / 2^64`).
+    /// Returns a uniform integer in `0..count` by multiplication (Lemire 2019). Without his rejection step,
+    /// probabilities deviate by a relative error of at most `count / 2^64`.
     pub fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.next_u64()) * count as u128) >> 64) as usize
     }

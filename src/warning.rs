@@ -21,13 +21,13 @@ pub enum Code {
     NotSquare = 4,
     /// Features: the shape of the room, found from lines in the photo, is uncertain, and there is no depth map.
     LayoutUncertain = 5,
-    /// Mask: much of it is unlike every stroke, or it leaves out regions that partly resemble the painted lamps.
+    /// Mask: much of the mask resembles no stroke, or regions outside it partly resemble the lamps that were painted.
     Unseen = 6,
     /// Mask: strokes of both classes cover the same pixels.
     ContradictoryStrokes = 7,
     /// Mask: strokes lie outside the photo.
     OffImageStrokes = 8,
-    /// Mask: its stated error is large.
+    /// Mask: the estimated error of the mask is large.
     UncertainMask = 9,
     /// Mask: it contains no pixel.
     EmptyMask = 10,
@@ -56,23 +56,27 @@ pub enum Code {
     NotRendered = 21,
     /// Mask of the lights: pixels painted as light are hardly brighter than pixels painted as plane.
     DimLamps = 22,
-    /// Emission: the texture differs more from the photo than a texture without light would.
+    /// Emission: the texture differs more from the photo than a texture without any light would.
     NoPattern = 23,
     /// Mask: it is only a proposal, because strokes that the segmentation needs were missing.
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: it has luminaires that shine from points, which pictures do not show.
+    /// Scene: some of its luminaires are points. They light the scene, but pictures do not show the luminaires
+    /// themselves.
     NotInPicture = 26,
-    /// Guides: the previous frame of a sequence lacks objects of the frame, so their motion is unknown.
+    /// Guides: some objects of this frame do not exist in the previous frame of the sequence, so their motion is
+    /// unknown.
     NoCounterpart = 27,
-    /// Stylisation: the motion disagrees with the guides of the two frames.
+    /// Stylisation: the given motion contradicts the guides, because it leads pixels to another surface of the previous
+    /// frame.
     MotionDisagrees = 28,
-    /// Stylisation: the exemplar, or its painted part, lacks light that the target shows.
+    /// Stylisation: the target shows illumination that does not occur in the exemplar, or not in the painted part of
+    /// it.
     LightNotPainted = 29,
-    /// Stylisation: places of the exemplar with equal light are painted in two ways.
+    /// Stylisation: in places of equal illumination, the exemplar is painted in two different ways.
     AmbiguousPaint = 30,
-    /// Stylisation: a small place of the artwork is unlike all places with similar light, such as a stain.
+    /// Stylisation: a small area of the artwork, such as a stain, differs from all other areas of similar illumination.
     Blemish = 31,
 }
 

@@ -37,8 +37,8 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     let mut items = items.into_iter();
     let promised = items.size_hint().0;
     let mut data = try_with_capacity(promised)?;
-    // The promised items fit into the reserved memory, so `extend` adds them without checking the capacity for each
-    // item, and the compiler may vectorise it.
+    // The vector has capacity for `promised` items. `extend` therefore adds this many without a check per item, and the
+    // compiler may vectorise it.
     data.extend(items.by_ref().take(promised));
     for item in items {
         try_push(&mut data, item)?;

@@ -12,7 +12,7 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value to a linear value. The curve continues above 1. It is odd: -v gives minus the result of v.
+/// Decodes one sRGB value `v` to a linear value `f(v)`. The curve continues above 1, and `f(-v) = -f(v)`.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
@@ -69,13 +69,12 @@ const fn relative_row(row: usize) -> [f64; 3] {
 /// Any other value gives a finite number or NaN.
 #[inline(always)]
 fn cube_root(t: f64) -> f64 {
-    // Improve estimates r of `t^(-1/3)`, because these steps need no division. With the error e = 1 - t r³, the exact
-    // value is
+    // Approximate r = t^(-1/3) by steps without division; then t^(1/3) = t r². With e = 1 - t r³, the exact value is
     //
-    // `r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …)`.
+    // r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …).
     //
-    // The first estimate divides the bits of exponent and mantissa by three and has |e| < 0.11; the second one has |e|
-    // < 6e-5.
+    // The first r comes from dividing the bits of the float (exponent and mantissa) by three: |e| < 0.11. A step in
+    // `f32` with terms up to e³ gives |e| < 6e-5. A step in `f64` with terms up to e² gives the result.
     let single = t as f32;
     let third = (single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32;
     let r = f32::from_bits(1_419_900_000u32.wrapping_sub(third as u32));

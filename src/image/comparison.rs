@@ -1,4 +1,4 @@
-//! Compares pixels with a tolerance: counts the wrong ones, and finds the one with the largest error.
+//! Compares pixels with a tolerance: counts the wrong pixels, and finds the pixel with the largest error.
 
 use crate::error::Result;
 use crate::exec;
@@ -11,7 +11,7 @@ pub struct Comparison {
     pub compared: usize,
     /// Number of these pixels whose error exceeds the tolerance.
     pub wrong: usize,
-    /// The pixel with the largest error; `None` if no pixel is wrong.
+    /// Column and row of the pixel with the largest error; `None` if no pixel is wrong.
     pub place: Option<[usize; 2]>,
 }
 

@@ -4,7 +4,7 @@
 pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).unwrap_or_default();
     std::iter::from_fn(move || {
-        // A marker begins with any number of 0xff bytes.
+        // A marker begins with one or more 0xff bytes.
         let at = rest.iter().position(|&b| b != 0xff)?;
         let (&marker, after) = rest.get(at..)?.split_first()?;
         // Stop at the start of a scan, which holds the pixels, or at bytes that are not a marker.

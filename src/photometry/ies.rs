@@ -1,5 +1,5 @@
-//! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with type C photometry. (Types A and B are for
-//! car lamps and floodlights.)
+//! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with type C photometry. Types A (car lamps) and
+//! B (floodlights) are refused.
 
 use super::lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use super::luminaire::Luminaire;
@@ -178,7 +178,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
         plain(&l.manufacturer)
     );
     let _ = write!(text, "[LUMINAIRE] {}\r\nTILT=NONE\r\n", plain(&l.name));
-    // A flux of -1 lumens declares absolute photometry.
+    // -1 lumens per lamp declares absolute photometry.
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { -1.0 };
     let planes = if round { 1 } else { l.planes.len() + 1 };
     let [length, width, height] = l.size;

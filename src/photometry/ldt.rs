@@ -73,11 +73,12 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     // Read the sizes in millimetres: first those of the housing, which are not used, then those of the luminous area.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
-    // The heights of the sides towards C = 0, 90, 180 and 270.
+    // Read the luminous heights of the four sides, which face towards C = 0, 90, 180 and 270.
     let heights = rows.list(4, "a height of the luminous area", 0.0, 1e7)?;
     let height = heights.iter().copied().fold(0.0, f64::max);
-    // EULUMDAT states the length along C = 90, so swap the sides. A round luminaire has its diameter as length and a
-    // width of 0; IES marks diameters by a negative sign.
+    // The length of EULUMDAT lies along C = 90, but the first dimension of `Luminaire::size` lies along C = 0: swap
+    // them. A round luminaire has its diameter as length, and a width of 0. `Luminaire::size` marks a diameter by a
+    // negative sign, as IES does.
     let size = if width == 0.0 { [-length, -length, height] } else { [width, length, height] }.map(|mm| mm / 1e3);
     let differ = width > 0.0 && heights.iter().any(|h| *h != height);
     let side_heights = differ.then(|| std::array::from_fn(|i| heights[i] / 1e3));
@@ -111,7 +112,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     Ok(luminaire)
 }
 
-/// The lamps with which a luminaire was measured.
+/// The lamps with which a luminaire was measured: their total flux in lumens, and the power in watts.
 struct LampSet {
     lumens: f64,
     watts: f64,
@@ -137,8 +138,8 @@ fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) ->
     Ok(first)
 }
 
-/// Returns the angles and the intensities of all C planes of the full circle, each a copy of the stored plane that
-/// equals it by symmetry.
+/// Returns the angles in degrees and the intensities in candela of all C planes of the full circle. Each plane is a
+/// copy of the stored plane that is symmetric to it. A rotationally symmetric luminaire gets a single plane.
 fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let single = symmetry == 1;
     let planes = angles.len();
@@ -318,7 +319,8 @@ mod tests {
         assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, l.size);
     }
 
-    /// A batten whose sides along C = 90 are luminous and whose ends are dark.
+    /// A batten that runs along C = 90. Its long sides, which face towards C = 0 and 180, are luminous; its ends are
+    /// dark.
     #[test]
     fn sides_keep_their_heights() {
         let batten =

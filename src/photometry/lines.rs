@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 /// Maximum size of a file in bytes: 16 for each of `MAX_VALUES` intensities.
 pub const MAX_BYTES: usize = 64 << 20;
-/// Maximum number of angles along either axis of a distribution, and maximum number of its intensities.
+/// Maximum number of angles γ and of C planes of a distribution (`MAX_ANGLES`), and maximum number of its intensities
+/// (`MAX_VALUES`).
 pub const MAX_ANGLES: usize = 4096;
 pub const MAX_VALUES: usize = 1 << 22;
 

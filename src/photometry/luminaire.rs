@@ -11,8 +11,8 @@ pub struct Luminaire {
     pub manufacturer: String,
     /// Vertical angles γ in degrees, ascending, within `[0, 180]`.
     pub gammas: Vec<f64>,
-    /// Angles C of the planes in degrees, ascending from 0 to below 360. They cover the full circle: no symmetry is
-    /// implied.
+    /// Angles C of the planes in degrees, ascending from 0 to below 360. They cover the full circle, without implied
+    /// symmetry; a single plane holds for all angles C.
     pub planes: Vec<f64>,
     /// Intensities in candela: for each plane in turn, one per vertical angle.
     pub candela: Vec<f64>,

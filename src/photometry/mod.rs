@@ -31,7 +31,8 @@ use crate::image::colour;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Luminous flux in lumens of a Lambertian emitter of uniform luminance (cd/m² per channel) and `area` in m².
+/// Luminous flux `π L A` in lumens of a Lambertian emitter. `L` is the luminance of `radiance` (cd/m² per channel,
+/// uniform), and `A` is `area` in m².
 pub fn flux(radiance: Vec3, area: f64) -> f64 {
     PI * f64::from(colour::luminance(radiance)) * area
 }

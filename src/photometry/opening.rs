@@ -10,7 +10,8 @@ use std::f64::consts::FRAC_PI_4;
 /// A point within this distance in metres of an opening counts as inside it; no eye is closer to a lamp. [convention]
 const CONTACT: f64 = 1e-3;
 
-/// An opening whose largest face has at most this area in m² is a point; the chip of an LED is larger. [convention]
+/// An opening counts as a point if its projected area (m²) along each axis is at most this. The chip of an LED is
+/// larger. [convention]
 const MIN_AREA: f64 = 1e-6;
 
 /// The shape of an opening, with sizes in metres.
@@ -20,8 +21,8 @@ pub enum Opening {
     /// luminous strips on the four sides that face along x, y, -x and -y (C = 0, 90, 180, 270). The strips begin at the
     /// face towards γ = 0.
     Box { size: DVec3, heights: [f64; 4] },
-    /// A cylinder along coordinate axis `axis`, with elliptic ends whose diameters lie along the next two axes; a flat
-    /// ellipse if `length` is 0.
+    /// A cylinder along the coordinate axis with index `axis`. Its ends are ellipses with their diameters along the
+    /// axes with indices `axis + 1` and `axis + 2`, modulo 3. If `length` is 0, it is a flat ellipse.
     Cylinder { axis: usize, length: f64, diameters: [f64; 2] },
     /// An ellipsoid with these diameters along x, y and z.
     Ellipsoid(DVec3),
@@ -91,8 +92,9 @@ impl Opening {
             Self::Box { size, heights } => box_faces(size, heights, direction),
             Self::Cylinder { axis, length, diameters } => cylinder(axis, length, diameters, direction),
             Self::Ellipsoid(diameters) => {
-                // The outline of an ellipsoid is the image of the outline of the unit ball, seen along the image of
-                // the direction.
+                // Scaling by the diameters maps a ball to the ellipsoid. Undo this scaling for the direction.
+                // Perpendicular to the result, the ball has a circle as its outline. Scale two perpendicular diameters
+                // of this circle: they become conjugate diameters of the ellipsoid's outline.
                 let of_ball = (direction / diameters).normalize_or(DVec3::Z).any_orthonormal_pair();
                 let sides = [of_ball.0 * diameters, of_ball.1 * diameters];
                 vec![Face { centre: DVec3::ZERO, sides, is_round: true }]
@@ -210,14 +212,14 @@ mod tests {
         near(seen([0.0, -0.4, 0.0], 77.0, 0.0), disc(0.4));
         near(seen([-0.4, -0.4, 0.5], 77.0, 90.0), 0.4 * 0.5);
         near(seen([-0.4, -0.4, -0.4], 12.0, 34.0), disc(0.4));
-        // A tube along C = 0 shows its end, or its side.
+        // From C = 0, a tube that runs along C = 0 shows its end. From C = 90 and from below it shows its side.
         near(seen([1.2, -0.026, -0.026], 0.0, 90.0), disc(0.026));
         near(seen([1.2, -0.026, -0.026], 90.0, 90.0), 1.2 * 0.026);
         near(seen([1.2, -0.026, -0.026], 90.0, 0.0), 1.2 * 0.026);
         near(seen([1.2, 0.0, -0.026], 0.0, 90.0), disc(0.026));
         near(seen([0.0, 1.2, -0.026], 0.0, 90.0), 1.2 * 0.026);
         near(seen([-0.6, 0.2, 0.0], 0.0, 0.0), FRAC_PI_4 * 0.6 * 0.2);
-        // An ellipsoid shows ellipses along its axes.
+        // Seen along one of its axes, an ellipsoid is an ellipse.
         near(seen([-0.6, -0.2, -0.3], 0.0, 0.0), FRAC_PI_4 * 0.6 * 0.2);
         near(seen([-0.6, -0.2, -0.3], 90.0, 90.0), FRAC_PI_4 * 0.6 * 0.3);
         seen([-0.6, -0.2, -0.3], 25.0, 70.0);

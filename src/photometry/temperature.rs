@@ -47,7 +47,7 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
     let mired = search(|mired| locus(1e6 / mired).distance_squared(uv));
     let kelvin = 1e6 / mired;
     let nearest = locus(kelvin);
-    // The side above the locus has larger v.
+    // A colour lies above the locus if its v is larger than that of the nearest blackbody.
     let side = if uv.y >= nearest.y { 1.0 } else { -1.0 };
     Temperature { kelvin, duv: side * uv.distance(nearest) }
 }
@@ -89,9 +89,10 @@ pub struct Fit {
     pub delta_e: f64,
 }
 
-/// Finds the temperature and strength of the blackbody light that brings a target's mean radiance closest to `target`.
-/// The target receives `background` from other lights, and `response` per unit of emission, all per channel. For each
-/// temperature the optimal strength has a closed form. `None` if no channel responds.
+/// Finds the temperature and strength of the blackbody light that brings a target's mean radiance closest to `target`,
+/// by least squares over the channels. The target receives `background` from other lights, and `response` per unit of
+/// emission, all per channel. For each temperature the optimal strength has a closed form. `None` if no channel
+/// responds.
 pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     let wanted = target - background;
     let at = |kelvin: f64| {

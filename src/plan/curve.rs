@@ -14,13 +14,13 @@ pub(super) struct Curve {
     pub points: [[f64; 2]; 3],
 }
 
-/// Minimum and maximum exponents with which squared errors fall with time: the minimum holds for independent samples,
-/// the maximum for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth
-/// functions"). [paper: Owen 1997]
+/// Minimum and maximum of the exponent p in error² ∝ time^-p. The minimum holds for independent samples, the maximum
+/// for scrambled nets on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth functions").
+/// [paper: Owen 1997]
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation. In the long run, edges dominate the error. For an edge across one sampling
-/// dimension, only the stratum that contains the edge contributes to the error, so the squared error falls as the
-/// square of the number of samples. [convention: exponent of a stratified step function]
+/// Maximum exponent p of the extrapolation. In the long run, edges dominate the error. If an edge crosses one sampling
+/// dimension, only the stratum that contains the edge contributes to the error. The squared error of n samples then
+/// falls as 1/n². [convention: exponent of a stratified step function]
 const MAX_EXTRAPOLATED: f64 = 2.0;
 
 /// Factor by which an allocation step lengthens the time of a stage. [convention]
@@ -55,9 +55,10 @@ impl Curve {
     }
 }
 
-/// Returns the time for each stage, in seconds. Each stage starts with its minimum time. Then small steps of time go
-/// to the stage in which they lower the sum of squared errors most, until the goal is reached or no stage can use more
-/// time. Since gains fall along every curve, no other allocation is better by more than a step.
+/// Returns the time for each stage, in seconds. Each stage starts with its minimum time. Small steps of time then go,
+/// one by one, to the stage in which they lower the sum of squared errors most. This ends when the goal is reached or
+/// no stage can use more time. Each further step on a curve gains less than the one before, so the result is optimal to
+/// within one step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {

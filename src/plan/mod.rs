@@ -67,7 +67,7 @@ pub struct Expected {
 /// A clock: returns the time since an arbitrary origin.
 pub type Clock<'a> = &'a (dyn Fn() -> Duration + Sync);
 
-/// Returns the wall clock, which starts at 0.
+/// Returns a wall clock that reads 0 now.
 pub fn wall() -> impl Fn() -> Duration + Sync {
     let start = Instant::now();
     move || start.elapsed()
@@ -80,7 +80,8 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// A stage that stops at a target error may cost at most this many times the expected cost. [origin not recorded]
+/// If a stage stops at a target error, the number of its paths is limited to this multiple of the expected number.
+/// [origin not recorded]
 const MAX_COST: f64 = 4.0;
 /// A stage with a time budget may take at most this many times the expected time. [origin not recorded]
 const MAX_OVERTIME: f64 = 1.25;

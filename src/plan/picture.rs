@@ -65,9 +65,10 @@ impl Picture {
 
     /// Returns the expected error after `paths` paths per pixel with uniform sampling.
     ///
-    /// The paths of each replication (point sequence of a pixel) form nets whose sizes are powers of two. The curve
-    /// holds for a single net. Other numbers of paths combine several nets, whose errors are treated as independent,
-    /// so a few paths beyond a whole net may even increase the error.
+    /// The paths of a pixel are divided among its replications (independent point sequences), and the paths of each
+    /// replication among nets of 1, 2, 4, 8, … points. The curve holds if each replication has a single net. For other
+    /// numbers of paths, the errors σ of the nets are added as independent errors: error² = Σ (nᵢ / paths)² σ²(nᵢ),
+    /// where nᵢ is the number of points of net i. A few paths beyond a whole net may therefore even increase the error.
     fn error(&self, paths: u32) -> f64 {
         let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
         let square = |points: f64| replications * curve.square(self.seconds(replications * points));
@@ -75,7 +76,8 @@ impl Picture {
     }
 
     /// Returns the factor by which adaptive sampling reduces the number of paths needed for a given error. The pilot
-    /// measures the ideal reduction; doubling the paths of tiles one by one achieves its square root.
+    /// measures the reduction for an ideal allocation of paths. The renderer doubles the paths of whole tiles instead,
+    /// and achieves about the square root of the ideal factor.
     fn saved(&self) -> f64 {
         self.pilot.adaptive_gain.sqrt()
     }

@@ -13,7 +13,7 @@ use glam::Vec3;
 /// that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Constant that is XORed with the seed of the solution, so that the trials trace different random paths.
+/// Constant that is XORed with the seed of the solution, so that the trials trace other random paths than the solution.
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
 /// must supply it. [convention]
@@ -33,9 +33,11 @@ pub(super) struct Strength {
 }
 
 impl Strength {
-    /// Runs the trials for an emitting material and the triangles of the target. All trials but the first solve for
-    /// the radiance that the target currently has. If the emission is the only light, the relative error does not
-    /// depend on the radiance solved for.
+    /// Runs the trials for an emitting material and the triangles of the target.
+    ///
+    /// The first trial only measures the current radiance of the target. The other trials are timed, and solve for this
+    /// radiance. The choice of the radiance matters little: the solution is (target - b) / r, where b is the radiance
+    /// from other lights and r the response. For b = 0 its relative error does not depend on the target.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,

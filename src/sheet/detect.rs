@@ -15,7 +15,7 @@ const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
 /// Maximum number of candidates.
 const MAX_CANDIDATES: usize = 24;
 /// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
-/// mark. Two periods of a square wave have a share of 0.81. [origin not recorded]
+/// mark. An ideal mark gives two periods of a square wave, with a share of 8 / π² = 0.81. [origin not recorded]
 const MIN_HARMONIC: f64 = 0.55;
 /// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness.
 /// [origin not recorded]
@@ -49,7 +49,8 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
             }
         }
     }
-    // Where several scales find a mark, keep the strongest.
+    // Among candidates closer than six pixels of the reduced image, keep the strongest: several scales find the same
+    // mark.
     found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     let apart = 6.0 * scale.max_element();
     let mut kept: Vec<Candidate> = Vec::new();
@@ -61,7 +62,8 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     Ok(kept)
 }
 
-/// Finds saddles of brightness: local maxima of the negated determinant of the Hessian.
+/// Returns column and row of each saddle of brightness in an image that was blurred by `sigma`. A saddle is a local
+/// maximum of the response σ⁴ (Ixy² - Ixx Iyy), the negated determinant of the Hessian, normalised for scale.
 fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let (width, height) = (image.width, image.height);
     let mut response = Image::new(width, height, 1)?;
@@ -101,8 +103,8 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
 /// Minimum response of a saddle; the response of an ideal mark is about 0.01. [origin not recorded]
 const MIN_RESPONSE: f32 = 2e-4;
 
-/// Returns the strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if the
-/// pattern is absent.
+/// Returns how strongly two dark and two bright quadrants alternate on a circle around a position: the amplitude of the
+/// second harmonic times its share of the variance. Returns 0 if either is too small for a mark.
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     const STEPS: usize = 32;
     let value = |i: usize| {
@@ -121,9 +123,10 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
-/// Refines a saddle to sub-pixel precision: finds the point for which each surrounding gradient is perpendicular to
-/// the direction from its pixel to the point (Förstner and Gülch 1987). `None` if the gradients do not determine the
-/// point or the iteration diverges.
+/// Refines a saddle to sub-pixel precision (Förstner and Gülch 1987). At the corner q of black and white quadrants, the
+/// gradient g at each surrounding point p is perpendicular to p - q. The result minimises Σ w (g · (p - q))², with
+/// weights w that fall with the distance. `None` if the gradients do not determine q, or if the iteration leaves the
+/// radius.
 pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {

@@ -11,8 +11,9 @@ use glam::DVec2;
 
 /// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
-/// Maximum distance between a mark and its predicted position, as a share of the larger distance between opposite
-/// corner marks (`extent`): for predictions by the first map, and by the refined map. [origin not recorded]
+/// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the
+/// larger distance between opposite corner marks). The first tolerance is for the map through four candidates, the
+/// final one for the least-squares map. [origin not recorded]
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
@@ -23,7 +24,8 @@ pub struct Fit {
     pub marks: Vec<usize>,
     /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Number of photo pixels per page pixel, along a side.
+    /// Length in the photo per length on the page, in photo pixels per page pixel: `extent` divided by the diagonal of
+    /// the page.
     pub scale: f64,
 }
 
@@ -75,8 +77,9 @@ struct Guess {
     misfit: f64,
 }
 
-/// Finds the map under which most marks coincide with candidates. Each quadruple of candidates is tried as the four
-/// corners and as the four midpoints of the sides: if one mark is missing, the corners or the midpoints are complete.
+/// Finds the map from page to photo under which most marks coincide with candidates. Tries every quadruple of
+/// candidates as the four corner marks and as the four midpoint marks, each in four rotations. If one mark is missing,
+/// the corners or the midpoints are still complete.
 fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
@@ -115,7 +118,8 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     (0..4).all(|i| turns(i) > 1.0).then_some(ordered)
 }
 
-/// Finds the marks that coincide with candidates under a map.
+/// Returns the marks whose position, mapped to the photo by `map`, lies near a candidate, and the sum of their squared
+/// distances.
 fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     let tolerance = FIRST_TOLERANCE * extent(page, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);

@@ -1,10 +1,10 @@
 //! Print sheets (StyLit, section 4.2). The exemplar is printed at low contrast between alignment marks, for an artist
 //! to paint over. A photo or scan of the painted sheet is then registered to the exemplar by its marks.
 //!
-//! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which is
-//! invariant under perspective and can be located to a small fraction of a pixel. Ten marks surround the picture: at
-//! the corners, at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks
-//! suffice.
+//! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which can be
+//! located to a small fraction of a pixel. Perspective maps the corner to the corner of the seen mark, unlike the
+//! centre of a plain disk. Ten marks surround the picture: at the corners, at the midpoints of the sides, and two more
+//! that determine the orientation of the sheet. Six marks suffice.
 //!
 //! `page` lays out the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
 //! [`align`] resamples the photo and removes uneven illumination, which it measures on the white of the marks.
@@ -97,7 +97,8 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
     if params.even_light {
         even_light(&mut image, photo, &page, &found, width, height, job.part(0.95, 1.0))?;
     }
-    // A map with eight parameters fitted to n points has the expected error residual · √(8 / 2n).
+    // The map has eight parameters and is fitted to n points, which have 2n coordinates. Its expected error therefore
+    // is residual · √(8 / 2n).
     let scale = page.size[0] / width as f64 * found.scale;
     let error = found.residual * (8.0 / (2.0 * found.marks.len() as f64)).sqrt() / scale;
     job.report(1.0);

@@ -6,13 +6,13 @@ use crate::geometry::Homography;
 use crate::image::MAX_SIDE;
 use glam::{DMat3, DVec2};
 
-/// Radius of a mark, and its distance from the picture, in millimetres. [convention]
+/// Radius of a mark, and minimum distance between its edge and the picture, in millimetres. [convention]
 const RADIUS: f64 = 4.5;
 const CLEARANCE: f64 = 2.5;
 
-/// Positions of the marks on the border of a rectangle, as shares of its sides: four corners and four midpoints of
-/// sides, each in cyclic order, and two marks that break the symmetry, so that no rotation or reflection maps the
-/// marks onto themselves. [convention]
+/// Positions of the marks on the border of a rectangle, as shares of its sides. First come the four corners and the
+/// four midpoints of sides, each in cyclic order. The last two marks break the symmetry, so that no rotation or
+/// reflection maps the marks onto themselves. [convention]
 const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.0],
     [1.0, 0.0],

@@ -3,7 +3,7 @@ use crate::error::ErrorKind;
 use crate::job::Monitor;
 use crate::rng::Rng;
 
-/// A picture with soft shapes.
+/// A picture of 160 × 120 pixels: a shaded disc on a plain ground.
 fn picture() -> Image {
     Image::from_fn(160, 120, |x, y| {
         let r = (x as f32 - 80.0).hypot(y as f32 - 60.0) / 45.0;
@@ -133,7 +133,8 @@ fn photos_without_a_sheet_are_an_error() {
     }
 }
 
-/// The paper curves by four pixels of the sheet from its middle to its sides.
+/// Simulates a curled sheet: its columns are displaced vertically by 4 x² pixels, where x runs from -1 at the left edge
+/// to 1 at the right edge.
 #[test]
 fn a_curled_sheet_shows_in_the_residual() {
     let params = params();

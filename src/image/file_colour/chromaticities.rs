@@ -134,8 +134,8 @@ mod tests {
             Chromaticities::of_code(9).unwrap().to_rec709().unwrap(),
             [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]],
         );
-        // CIE XYZ to Rec.709. Its own white (1, 1, 1) maps to white. With D65 as white, compare with the published
-        // matrix.
+        // Code point 10 stands for CIE XYZ, with the white (1, 1, 1). Check that `to_rec709` maps this white to white.
+        // With D65 as white, compare with the published matrix from CIE XYZ to Rec.709.
         let xyz = Chromaticities::of_code(10).unwrap();
         assert!((xyz.to_rec709().unwrap() * DVec3::ONE - DVec3::ONE).abs().max_element() < 1e-9);
         assert_near(
