@@ -12,7 +12,8 @@
 //! For sequences, [`motion`] computes the position of each pixel in the previous frame, from the surface points that
 //! the pixels show (`surfaces`).
 //!
-//! Not modelled: motion of what is seen in mirrors and through panes, whose pixels move as the mirror or pane does.
+//! Not modelled: the motion of objects that are seen in a mirror or through a pane. Their pixels get the motion of the
+//! mirror or of the pane itself.
 
 mod edges;
 mod motion;
@@ -36,11 +37,14 @@ use crate::scene::Camera;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The light components, each with a name and its light path expression in Heckbert's notation. "Full" is all light.
-/// "Direct" has one diffuse reflection. "Specular" is light that comes by way of one glossy surface, mirror or clear
-/// pane. "Indirect" ends with at least two diffuse reflections, which is colour bleeding. "Two bounces" has one or two
-/// diffuse reflections, which distinguishes shadows. "Caustics" is light that reaches a diffuse surface by way of
-/// glossy surfaces, mirrors or clear panes.
+/// The light components, each with a name and its light path expression in Heckbert's notation:
+///
+/// - Full: all light.
+/// - Direct: one diffuse reflection.
+/// - Specular: one reflection or transmission at a glossy surface, mirror or clear pane.
+/// - Indirect: the path ends with at least two diffuse reflections before the camera (colour bleeding).
+/// - Two bounces: one or two diffuse reflections. Unlike direct light, it shows detail in shadows.
+/// - Caustics: one or more glossy surfaces, mirrors or clear panes, then one diffuse reflection.
 pub const LIGHT: [(&str, &str); 6] = [
     ("full", "L.*E"),
     ("direct", "LDE"),

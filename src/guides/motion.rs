@@ -20,11 +20,10 @@ const DEPTH_TOLERANCE: f32 = 0.02;
 /// The motion between two frames.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// The displacement in pixels from each pixel to the position of its surface point in the previous frame: two
-    /// channels, NaN where the previous frame does not show the point.
+    /// The displacement in pixels from each pixel to the position of its surface point in the previous frame. The two
+    /// channels are x (right) and y (down), NaN where the previous frame does not show the point.
     pub image: Image,
-    /// The objects of the frame that the previous frame lacks, or that have other triangles there, as far as pixels
-    /// show them.
+    /// The visible objects of the frame without counterpart in the previous frame; see [`Surfaces::counterparts`].
     pub unmatched: Vec<Unmatched>,
 }
 
@@ -32,9 +31,9 @@ pub struct Motion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmatched {
     pub name: String,
-    /// Number of pixels that show it.
+    /// Number of pixels that show the object.
     pub pixels: usize,
-    /// One of these pixels.
+    /// Column and row of one of these pixels.
     pub place: [usize; 2],
 }
 
@@ -59,8 +58,9 @@ pub fn motion(now: &Surfaces, before: &Surfaces, job: Job) -> Result<Motion> {
     Ok(Motion { image, unmatched: frames.unmatched()? })
 }
 
-/// A motion is wrong if it differs by more than this number of pixels from the true motion of the pixel and of its
-/// neighbours. At silhouettes, renderers choose either surface. [convention]
+/// The motion of a pixel is wrong if it differs by more than this number of pixels from the true motion of the pixel
+/// and from the true motion of each of its neighbours. The neighbours count, because at silhouettes a renderer may give
+/// a pixel the motion of either surface. [convention]
 const MAX_ERROR: f32 = 1.0;
 
 /// Compares a given motion with the true motion of the surfaces, where both are known.
@@ -81,7 +81,7 @@ pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> 
             let exact = exact.pixel(x, y);
             (given[0] - exact[0]).hypot(given[1] - exact[1])
         };
-        // The minimum ignores NaN. It is infinite if the given motion is NaN.
+        // `f32::min` ignores NaN, so the minimum is infinite if the given motion is NaN. Such pixels are left out.
         let least = neighbourhood([x, y], size).map(error).fold(f32::INFINITY, f32::min);
         least.is_finite().then_some(least)
     })
@@ -148,8 +148,9 @@ impl Surfaces {
         self.points[y as usize * self.width + x as usize].as_ref()
     }
 
-    /// Returns the depth of the surface that the pixel at a position shows: at the pixel's centre, or at the position
-    /// itself on the plane of the triangle, whichever is larger. On a surface seen at a flat angle the two differ.
+    /// Returns the larger of two depths of the surface that the pixel at a position shows: the depth at the pixel's
+    /// centre, and the depth of the triangle's plane at the position itself. On a surface seen at a grazing angle, the
+    /// two differ. Returns infinity if the pixel shows no surface.
     fn depth_near(&self, [x, y]: [f32; 2]) -> f32 {
         let triangle =
             self.at([x, y]).and_then(|point| Some((point, self.shapes[point.mesh as usize].triangle(point)?)));

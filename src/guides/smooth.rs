@@ -38,8 +38,9 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. `range_weight` computes the
-    /// factor of a weight that depends on the brightness of the two pixels in `guide`.
+    /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. The weight of a neighbour
+    /// contains the factor `range_weight(a, b)`, where `a` and `b` are the luminances of the centre pixel and of the
+    /// neighbour in the image `guide`.
     fn average(
         &self,
         light: &Image,

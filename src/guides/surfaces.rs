@@ -1,5 +1,6 @@
-//! The surface point that each pixel of a frame shows: its triangle and its position on it. [`motion`](super::motion)
-//! finds these points in another frame, in which the objects may have moved or changed their shape.
+//! The surface point that each pixel of a frame shows: a triangle, and a position on that triangle.
+//! [`motion`](super::motion) finds these points in another frame, in which the objects may have moved or changed their
+//! shape.
 
 use crate::error::Result;
 use crate::exec;
@@ -40,7 +41,8 @@ pub struct Shape {
     pub name: String,
     /// Number of vertices.
     pub count: usize,
-    /// Hash of the triangles' indices. If it is equal in two frames, a vertex index means the same point in both.
+    /// Hash of the triangles' vertex indices. If it is equal in two frames, a vertex index is taken to mean the same
+    /// point of the mesh in both frames.
     topology: u64,
     /// Positions of the vertices; empty if no pixel shows the mesh.
     positions: Vec<Vec3>,
@@ -92,9 +94,10 @@ impl Surfaces {
         Ok(Self { width, height, points, shapes, camera: camera.clone() })
     }
 
-    /// Finds the counterpart of each of this frame's meshes in another frame: the mesh of equal name and triangles.
-    /// Meshes that share both, such as the copies of a chair, correspond in their order. `None` for a mesh without
-    /// counterpart, and for copies whose number differs.
+    /// For each mesh of this frame, returns the index of its counterpart in another frame: the mesh with the same name,
+    /// number of vertices and triangle indices. If several meshes share all three, such as copies of a chair, the first
+    /// corresponds to the first, and so on. `None` for a mesh without counterpart, and for copies if the other frame
+    /// has another number of them.
     pub fn counterparts(&self, other: &Self) -> Vec<Option<u32>> {
         let (here, there) = (self.by_key(), other.by_key());
         let mut found = vec![None; self.shapes.len()];

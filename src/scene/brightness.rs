@@ -58,8 +58,8 @@ impl Scene {
     }
 }
 
-/// Checks the texels of an image times `factor`. Where a channel of `factor` is 0, that channel of the image may have
-/// any value.
+/// Checks that each texel of an image times `factor` is at most [`MAX_LIGHT`]. Where a channel of `factor` is 0, that
+/// channel of the image may have any finite value. `what` names the product in the error.
 fn check_texels(what: &str, image: &Image, factor: Vec3) -> Result<()> {
     let limits: [f32; 3] = factor.to_array().map(|f| if f > 0.0 { MAX_LIGHT / f } else { f32::MAX });
     let colours = image.channels.min(3);

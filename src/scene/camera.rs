@@ -31,8 +31,8 @@ impl Camera {
         self.forward + right * ((2.0 * x - 1.0) * half * aspect) + self.up * ((1.0 - 2.0 * y) * half)
     }
 
-    /// Returns the direction's position in the image, as [`Camera::direction`] takes it, and its length along the
-    /// viewing direction; `None` for a direction that points away from the image.
+    /// The inverse of [`Camera::direction`]: returns the image position (x, y) to which a direction projects, and the
+    /// component of the direction along `forward`. Returns `None` unless this component is positive.
     pub fn project(&self, direction: Vec3, aspect: f32) -> Option<([f32; 2], f32)> {
         let half = (self.fov_y / 2.0).tan();
         let depth = direction.dot(self.forward);

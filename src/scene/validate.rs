@@ -202,7 +202,7 @@ fn check_image(image: &Image) -> Result<()> {
     }
 }
 
-/// Refuses negative samples: emitted light and reflectance cannot be negative.
+/// Refuses negative samples in an image of emitted light.
 fn check_positive(image: &Image) -> Result<()> {
     match image.data.iter().position(|&v| v < 0.0) {
         Some(i) => {

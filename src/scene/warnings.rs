@@ -32,9 +32,9 @@ const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimet
 /// once too often. [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
-/// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate: half a millimetre,
-/// which `f32` reaches 4 km from the origin. With coarser values, walls, lamps and panes that lie close together would
-/// merge. [convention]
+/// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate: half a millimetre.
+/// Coordinates below 8192 m keep this limit (0.49 mm); from 8192 m on, the distance is 0.98 mm or more. With coarser values,
+/// walls, lamps and panes that lie close together would merge. [convention]
 pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {
@@ -52,8 +52,8 @@ impl Scene {
             .collect()
     }
 
-    /// Warns if the importer moved the scene to an origin other than that of its file, or if the coordinates are so
-    /// large that `f32` has rounded them.
+    /// Warns if the importer moved the scene to an origin other than that of its file. Otherwise, warns if coordinates
+    /// are so large that neighbouring `f32` values differ by more than [`MAX_SPACING`].
     fn far_away(&self) -> Option<Warning> {
         if self.origin != DVec3::ZERO {
             let [x, y, z] = self.origin.to_array();
@@ -81,8 +81,8 @@ impl Scene {
         )
     }
 
-    /// Number of point lights, spot lights and luminaires without faces that emit. They shine from points, so they are
-    /// invisible in renderings.
+    /// Number of lights that shine from a point and are therefore invisible in renderings: point lights, spot lights,
+    /// and luminaires without faces. Lights with zero intensity do not count.
     pub fn unseen_lights(&self) -> usize {
         let is_unseen = |light: &&PunctualLight| match light {
             PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
@@ -96,9 +96,9 @@ impl Scene {
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// Warns if the scene has luminaires that shine from points, because their files state no luminous size or because
-    /// the caller wants it: they are invisible in renderings. Point and spot lights raise no warning, because nobody
-    /// expects to see them in a rendering.
+    /// Warns if the scene has luminaires that shine from points, because they are invisible in renderings. A luminaire
+    /// shines from a point if its file states no luminous size, or if the caller asked for it (`is_point`). Point and
+    /// spot lights raise no warning, because nobody expects to see them in a rendering.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
             PunctualLight::Luminaire { position, colour, .. }
@@ -251,7 +251,7 @@ mod tests {
             let (axis, c0, colour) = (Vec3::NEG_Y, Vec3::X, Vec3::ONE);
             PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point }
         };
-        // A luminaire with faces is in the picture, unless it is to be a point.
+        // Distribution 1 has a luminous size, so its luminaire is visible, unless `is_point` is true.
         let sizes = [[0.0; 3], [0.6, 0.6, 0.0]];
         scene.distributions = sizes.map(|size| Luminaire::lambertian("", 1000.0, size).into()).into();
         scene.lights.push(luminaire(1, false));

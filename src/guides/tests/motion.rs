@@ -12,11 +12,12 @@ use std::sync::Arc;
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
-/// The camera of the closed forms: at the origin, along -z, with a focal length in pixels.
+/// The camera of all frames but those of the moving cameras: at the origin, looking along -z.
 fn camera() -> Camera {
     Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0)
 }
 
+/// Focal length of [`camera`] in pixels.
 fn focal_length() -> f32 {
     HEIGHT as f32 / 2.0 / (camera().fov_y / 2.0).tan()
 }
@@ -100,7 +101,8 @@ fn a_disc_that_turns_about_the_viewing_direction_moves_in_circles() {
 fn a_vertex_that_moves_deforms_the_motion_of_its_triangles_only() {
     let before = square("Cloth", Vec3::NEG_Z * 2.0, 0.9);
     let mut now = before.clone();
-    // The corner of the upper left triangle alone: (low, low), (high, high), (low, high).
+    // Move vertex 3, the top-left corner. Only the upper triangle contains it: its corners are low = (-0.9, -0.9),
+    // high = (0.9, 0.9) and the moved corner, (-0.9, 0.9).
     let shift = Vec3::new(-0.06, 0.09, 0.0);
     now.positions[3] += shift;
     let image = between(&frame(vec![now]), &frame(vec![before])).image;
@@ -112,8 +114,8 @@ fn a_vertex_that_moves_deforms_the_motion_of_its_triangles_only() {
             if px.abs().max(py.abs()) > 0.89 {
                 continue;
             }
-            // On the other triangle nothing moves. On this one, the motion grows with the weight w of the corner:
-            // p = low + (w (moved corner - low) + v (high - low)), solved for w.
+            // The lower triangle does not move. On the upper triangle, the motion is w times the shift, where w is the
+            // barycentric weight of the moved corner. Solve p = low + w (moved corner - low) + v (high - low) for w.
             let (a, b) = (Vec3::new(-0.06, 1.8 + 0.09, 0.0), Vec3::new(1.8, 1.8, 0.0));
             let (rx, ry) = (px + 0.9, py + 0.9);
             let w = ((rx * b.y - ry * b.x) / (a.x * b.y - a.y * b.x)).max(0.0);
@@ -162,7 +164,8 @@ fn the_background_moves_with_the_rotation_of_the_camera_alone() {
     turned.forward = Mat3::from_rotation_y(-angle) * turned.forward;
     let motion = between(&empty(&turned), &empty(&camera())).image;
     let [u, v] = [motion.pixel(WIDTH / 2, HEIGHT / 2)[0], motion.pixel(WIDTH / 2, HEIGHT / 2)[1]];
-    // The camera turns right, so a direction at x pixels from the centre was at f tan(angle + atan(x / f)).
+    // The camera turns right. A direction that is now x pixels right of the centre was f tan(angle + atan(x / f))
+    // pixels right of it before.
     let f = focal_length();
     let expected = f * (angle + (0.5 / f).atan()).tan() - 0.5;
     assert!((u - expected).abs() < 0.01 && v.abs() < 0.01, "{u} {v} {expected}");
@@ -223,14 +226,14 @@ fn a_given_motion_is_compared_with_the_true_one() {
     let exact = between(&now, &before).image;
     let right = check(&exact);
     assert!(right.wrong == 0 && right.place.is_none() && right.compared == defined(&exact), "{right:?}");
-    // Motion that takes the card for static is wrong on the card, but for a margin of a pixel.
+    // A motion of zero everywhere is wrong on the card, except within about one pixel of its outline.
     let static_scene = Image::new(WIDTH, HEIGHT, 2).unwrap();
     let wrong = check(&static_scene);
     let side = 0.6 * focal_length() / 2.0;
     assert!((wrong.wrong as f32 - side * side).abs() < 6.0 * side, "{wrong:?} {side}");
     let [x, y] = wrong.place.unwrap();
     assert!(exact.pixel(x, y)[0] < -1.0);
-    // Motion in the other direction, as of vectors from the previous frame to this one.
+    // Motion of the opposite sign, as if the vectors led from the previous frame to this one, is wrong.
     let mut opposite = exact.clone();
     opposite.data.iter_mut().for_each(|v| *v = -*v);
     assert!(check(&opposite).wrong > wrong.wrong / 2);

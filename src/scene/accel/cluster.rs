@@ -3,13 +3,13 @@
 //!
 //! The leaves arrive sorted by Morton code. Their list is split recursively at the highest bit in which the codes
 //! differ, that is, between the two halves of a cell of space. On the way back up, the clusters of two neighbouring
-//! ranges are merged until few are left. Two clusters merge if each is the other's best partner: the one with which it
-//! forms the smallest box.
+//! ranges are merged until at most [`FEW_CLUSTERS`] are left. The best partner of a cluster is the one with which it
+//! forms the box of smallest area. Two clusters merge if each is the best partner of the other.
 //!
-//! On regular grids, such as tessellated walls, many candidate partners form boxes of equal area. Among equals, a
-//! cluster prefers the partner whose index differs from its own in the lowest bits. This preference is mutual, so a
-//! row of equal clusters merges in pairs. (If every cluster preferred the first equal partner, hardly any two would
-//! choose each other, and the merges would be irregular.)
+//! On regular grids, such as tessellated walls, many candidate partners form boxes of equal area. In such a tie,
+//! cluster `i` prefers the partner `j` with the smallest `i XOR j`. This preference is mutual, so a row of equal
+//! clusters merges in pairs: 0 with 1, 2 with 3, and so on. (If every cluster preferred the first equal partner,
+//! hardly any two would choose each other.)
 
 use super::lanes::{Baseline, Lanes};
 use super::leaves::Leaves;
@@ -27,8 +27,8 @@ const SEARCH_RADIUS: usize = 8;
 /// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Mask of the low bits of a float. In the area of a candidate pair of clusters, these bits are replaced by the XOR of
-/// the two clusters' indices. From them and its own index, a cluster recovers the index of its partner.
+/// Mask of the low bits of a float. In the area of the box around two clusters `i` and `j`, these bits are replaced by
+/// `i XOR j`. From these bits and its own index, a cluster recovers the index of its partner.
 const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
 /// Builds the tree over all leaves. There must be at least one leaf.
@@ -170,15 +170,16 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut NewPairs, few: usize, level
 
 const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 
-/// Bounds of the clusters' boxes in SoA layout. Sentinel boxes on both sides are too large to be chosen as partners.
+/// Bounds of the clusters' boxes in SoA layout: three rows of lower and three rows of upper bounds. Before the first
+/// and after the last cluster lie sentinel boxes, which are too large to be chosen as partners.
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
 /// Half the side of a sentinel box. It is larger than any coordinate: scaled scenes have an extent of about 1, and lie
 /// at most about 2^24 from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
-/// The entry `[i / LANES][k][i % LANES]` holds the bits in which the index of cluster `i` differs from the index of
-/// its neighbour, `i - SEARCH_RADIUS + k`.
+/// The entry `[i / LANES][k][i % LANES]` is `i XOR j` within [`PARTNER_BITS`], where `j = i - SEARCH_RADIUS + k` is the
+/// index of a neighbour of cluster `i`.
 static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
     let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
@@ -201,8 +202,8 @@ impl Boxes {
         boxes
     }
 
-    /// Loads the boxes of `clusters`. If more clusters were loaded before (`before` of them), the surplus boxes become
-    /// sentinels.
+    /// Loads the boxes of `clusters`. `before` is the number of clusters loaded by the previous call; boxes beyond the
+    /// new clusters become sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());

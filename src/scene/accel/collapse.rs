@@ -1,6 +1,7 @@
 //! Collapses the binary tree into nodes of eight children, minimising the expected cost of a ray (Ylitie, Karras and
 //! Laine 2017, section 3.1).
 //!
+//! A wide node has up to eight children; a wide subtree is a packet of triangles, or a wide node with all below it.
 //! First, `costs` computes for each binary subtree the minimum expected cost of representing it by one to seven wide
 //! subtrees. Then this module follows the optimal choices from the root down and writes the wide nodes.
 //!

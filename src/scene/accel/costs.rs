@@ -1,4 +1,5 @@
-//! Expected traversal cost of each subtree of the binary tree when it is represented by one to seven wide subtrees.
+//! Expected traversal cost of each subtree of the binary tree when it is represented by one to seven wide subtrees. A
+//! wide subtree is a packet of triangles, or a node of eight children with all below it.
 //!
 //! By the surface area heuristic, the probability that a ray which hits a parent's box also hits a child's box is the
 //! ratio of the child's surface area to the parent's. The costs of a subtree follow from those of its two halves
@@ -122,8 +123,8 @@ impl Binary {
     fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);
-        // `halves[i]` is the cost if `i + 2` wide subtrees in total represent the two halves. The cost of a leaf does
-        // not depend on the number.
+        // `halves[i]` is the cost if at most `i + 2` wide subtrees in total represent the two halves. A half that is a
+        // leaf takes one of them, and the other half takes the remaining `i + 1`.
         let halves = match (l.content, r.content) {
             (Content::Leaf(_), _) => r.cost.map(|cost| cost + l.cost[0]),
             (_, Content::Leaf(_)) => l.cost.map(|cost| cost + r.cost[0]),
@@ -149,8 +150,8 @@ impl Binary {
     }
 }
 
-/// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. The code has no branches,
-/// because their outcomes would be unpredictable.
+/// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. The code has no conditional
+/// jumps, because the processor could not predict them.
 fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {

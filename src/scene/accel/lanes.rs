@@ -27,7 +27,8 @@ pub(super) trait Lanes: Copy {
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
-    /// In each lane, replaces the bits that are set in `mask` by the same bits of `others`.
+    /// In each lane, replaces the bits that are set in `mask` by those of `others`, which must have no bits outside the
+    /// mask.
     fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self;
     /// `self * factor + term`, rounded once or twice depending on the processor. Use it only for bounds that have a
     /// margin.

@@ -24,8 +24,8 @@ const BITS: u32 = 21;
 const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
-    /// The leaves. Each holds one or two triangles, the first of which has the index `first_index`. The boxes are
-    /// multiplied by `scale`.
+    /// The leaves. Each holds one or two consecutive triangles, the first of which has the index `first_index`. The
+    /// boxes are multiplied by `scale`.
     pub list: Vec<Bvh2Node>,
     /// Morton codes of the box centres, each with its leaf's index in `list`, sorted.
     pub order: Vec<(u64, u32)>,
@@ -105,8 +105,9 @@ impl Chunk {
             chunk.low = chunk.low.min(this.min);
             chunk.high = chunk.high.max(this.max);
             let area = half_area(&this);
-            // Pair this triangle with the previous one if that lowers the expected cost. A ray tests a pair whenever
-            // it hits the common box, and single triangles whenever it hits their own boxes.
+            // Pair this triangle with the previous one if that lowers the expected cost of a ray. By the surface area
+            // heuristic, a pair costs the area of its common box, and two single triangles cost the sum of the areas
+            // of their boxes. Require a saving of a quarter. [origin not recorded]
             if let Some(before) = alone.take()
                 && let Some(leaf) = chunk.leaves.last_mut()
                 && let both = leaf.aabb().union(&this)
@@ -141,8 +142,8 @@ impl Grid {
         let extent = high.as_dvec3() - low.as_dvec3();
         let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
         let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
-        // Bound the extent from below: along an axis on which the scene is flat, all boxes then lie in one layer of
-        // cells.
+        // Bound the extent from below to avoid a division by zero. If the scene is flat along an axis, all boxes then
+        // lie in one layer of cells.
         let per_unit = (max_cell / (extent * scale).max(DVec3::splat(MIN_EXTENT))).as_vec3a();
         Self { scale: scale as f32, low: Vec3A::from(low) * scale as f32, per_unit }
     }
@@ -153,7 +154,7 @@ impl Grid {
     }
 }
 
-/// Spreads the lowest 21 bits of a number: two zero bits follow each of them.
+/// Moves bit `i` of a number to bit `3 i`, for its lowest 21 bits: 0b111 becomes 0b1001001.
 fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number & ((1 << BITS) - 1));
     bits = (bits | bits << 32) & 0x1f_0000_0000_ffff;

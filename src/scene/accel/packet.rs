@@ -92,9 +92,9 @@ impl Packet {
         [[sheared(0, 0), sheared(1, 0), sheared(2, 0)], [sheared(0, 1), sheared(1, 1), sheared(2, 1)], z]
     }
 
-    /// Computes the edge functions and recomputes the zeros among them without cancellation: products of two `f32` are
-    /// exact in `f64`, so the sign of their difference is exact. Starts from the corners again, so that the common
-    /// path need not keep intermediate values.
+    /// Computes the edge functions, and recomputes those that are zero in `f64`: there, products of two `f32` are
+    /// exact, so the sign of their difference is exact. The function starts from the corners again, so that its caller
+    /// need not keep intermediate values in registers for this rare case.
     #[cold]
     #[inline(never)]
     fn settled_edges<L: Lanes>(&self, ray: &TriangleRay) -> [L; 3] {
@@ -165,9 +165,11 @@ impl HitRows {
 
 /// A ray prepared for triangle tests. Its axes are permuted so that the dominant axis is the third.
 pub(super) struct TriangleRay {
-    /// The origin, with its coordinates in the order of `axes`. The entries of `shear` have the same order.
+    /// The origin, with its coordinates in the order of `axes`.
     origin: [f32; 3],
+    /// The three axes; the last one is the dominant axis.
     axes: [usize; 3],
+    /// `[dx / dz, dy / dz, 1 / dz]` for the direction (dx, dy, dz), with its components in the order of `axes`.
     shear: [f32; 3],
 }
 
@@ -176,7 +178,7 @@ impl TriangleRay {
     pub fn new(ray: &Aligned) -> Self {
         let z = ray.dominant_axis();
         let (origin, d, inverse) = (ray.origin.to_array(), ray.direction.to_array(), ray.inverse.to_array()[z]);
-        // Look up the two axes that follow z cyclically, in tables of two bits per entry: 1, 2, 0 and 2, 0, 1.
+        // Look up x = (z + 1) mod 3 and y = (z + 2) mod 3, in tables of two bits per entry: 1, 2, 0 and 2, 0, 1.
         let (x, y) = (0b00_10_01 >> (2 * z) & 3, 0b01_00_10 >> (2 * z) & 3);
         Self {
             origin: [origin[x], origin[y], origin[z]],

@@ -1,5 +1,5 @@
-//! The structure of a part of the scene: the triangles near a box. Rays that stay within the box find the same hits in
-//! it, in fewer steps.
+//! An acceleration structure for part of the scene: the triangles whose bounding boxes meet a given box. For rays that
+//! stay within that box, it gives the same hits as the structure of the whole scene, in fewer steps.
 
 use super::node::Node;
 use super::packet::Packet;
@@ -10,8 +10,8 @@ use crate::job::Job;
 use glam::Vec3;
 
 impl Accel {
-    /// Builds the structure of the triangles whose bounding boxes meet the box from `low` to `high`. The triangles
-    /// keep their indices. Returns `None` if there are more than `max`, or none.
+    /// Builds the structure of the triangles whose bounding boxes meet the box from `low` to `high`. Its hits have the
+    /// triangle indices of the whole structure. Returns `None` if no triangle meets the box, or more than `max` do.
     pub fn part(&self, [low, high]: [Vec3; 2], max: usize, job: Job) -> Result<Option<Self>> {
         let Some(found) = self.triangles_in([low, high], max) else { return Ok(None) };
         let ids = try_collect(found.iter().map(|&(id, _)| id))?;
@@ -20,8 +20,8 @@ impl Accel {
         Ok(Some(part))
     }
 
-    /// Returns the triangles whose bounding boxes meet a box, by ascending index; `None` if there are more than `max`,
-    /// or none.
+    /// Returns the indices and corners of the triangles whose bounding boxes meet a box, by ascending index. Returns
+    /// `None` if no triangle meets the box, or more than `max` do.
     fn triangles_in(&self, [low, high]: [Vec3; 2], max: usize) -> Option<Vec<(u32, [Vec3; 3])>> {
         let meets = |from: Vec3, to: Vec3| from.cmple(high).all() && to.cmpge(low).all();
         let mut found = Vec::new();

@@ -7,8 +7,8 @@
 //! 2. Make these moves one after another, largest gain first. Skip a move if an earlier move of the round has changed
 //!    one of its nodes.
 //!
-//! The search order differs from the paper: of two children the more promising is entered first, and neither child is
-//! entered if it promises no gain.
+//! The search order differs from the paper: of two children, the one with the larger possible gain is searched first.
+//! A child below which no position can beat the best one so far is skipped.
 
 use super::pages;
 use super::tree::{Pair, Tree, half_area};
@@ -62,8 +62,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// Returns an area threshold for each share of the nodes. The nodes whose area is at least the threshold make up
-    /// at most this share. Thresholds are boundaries of histogram bins, so fewer nodes may reach them.
+    /// For each given share of the nodes, returns a threshold of half the surface area. At most this share of all nodes
+    /// reach the threshold. It can be fewer, because thresholds are boundaries of histogram bins.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
@@ -127,9 +127,9 @@ impl<'a> Reinsertion<'a> {
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // `gained` is the half area saved by removing the subtree, counted from its parent up to `pivot`. `rest` is
-        // the box of the nodes below `pivot` without the subtree; it becomes `None` when a box on the way up does not
-        // shrink.
+        // `gained` is the half area saved by removing the subtree, summed over the boxes from its parent up to
+        // `pivot`. `rest` is the box of all nodes below `pivot` except the subtree. It becomes `None` once a box on
+        // the way up does not shrink, because then no box above shrinks either.
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {

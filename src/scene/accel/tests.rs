@@ -171,8 +171,8 @@ fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
     assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
 }
 
-/// A room of twelve large triangles with a finely divided block in it. The tree is large enough to be built in parts,
-/// which differ much in size.
+/// A room of twelve large triangles with a finely divided block in it. The tree is large enough to be collapsed in
+/// parallel parts, whose boxes differ much in size.
 fn room_with_block() -> Vec<[Vec3; 3]> {
     let mut triangles = tessellated_box(1, Vec3::splat(-3.0), Vec3::splat(3.0));
     triangles.extend(tessellated_box(34, Vec3::new(-0.5, -3.0, 0.2), Vec3::new(0.7, 0.4, 1.1)));
@@ -234,7 +234,7 @@ fn a_part_gives_the_hits_of_the_whole_within_its_box() {
         let segment = Ray { origin: from, direction: to - from, t_max: 1.0 };
         assert_eq!(part.closest(&segment, |_| true), whole.closest(&segment, |_| true));
         assert_eq!(part.occluded(&segment, |_| true), whole.occluded(&segment, |_| true));
-        // A hit within the box is also the nearest of a longer ray.
+        // For a ray without end, the nearest hit of the whole structure is also this hit within the box.
         let ray = Ray::new(from, to - from);
         match part.closest(&ray, |_| true).filter(|hit| hit.t < 1.0) {
             Some(hit) => hits += usize::from(whole.closest(&ray, |_| true) == Some(hit)),
@@ -331,8 +331,9 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
 }
 
-/// Builds the acceleration structure over three million triangles in a room; then over the same triangles and one more
-/// that is so far away that the whole room lies in a single cell of the Morton grid.
+/// Builds the acceleration structure over three million triangles in a room, once without and once with a distant
+/// triangle. The distant triangle makes the cells of the Morton grid so large (0.1 m) that hundreds of triangles share
+/// a cell and thus a code.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_cancel_is_answered_within_50_ms_while_three_million_triangles_are_built() {

@@ -35,7 +35,7 @@ pub struct File<'a> {
     /// The bytes of each buffer. `None` for a buffer without data, which is unused or is the fallback of compressed
     /// buffer views.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
-    /// The decoded compressed buffer views, each with its index, in ascending order.
+    /// The decoded bytes of each compressed buffer view, with the index of the view, sorted by index.
     unpacked: Vec<(usize, Vec<u8>)>,
     folder: Folder<'a>,
 }
@@ -178,7 +178,8 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     json.map(|json| (json, binary)).ok_or_else(|| Error::format("the GLB file has no JSON chunk"))
 }
 
-/// Decodes a URI to a relative path. An error if the path leads out of the folder, unless `is_open`.
+/// Decodes a URI to the path of a file. A path that leads out of the folder, such as an absolute path, is an error
+/// unless `is_open` is true.
 fn relative_path(uri: &str, is_open: bool) -> Result<PathBuf> {
     let broken = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
     let refused = |why: &str| Error::new(ErrorKind::Unsupported, format!("the external file {uri:?} {why}"));

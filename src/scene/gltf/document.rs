@@ -9,7 +9,7 @@ use glam::DVec3;
 use gltf::json::Root;
 use serde_json::{Map, Number, Value, json};
 
-/// Limit below which `f64` represents every integer: 2^53. [rounding]
+/// `f64` represents every integer up to this one, 2^53. [rounding]
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// The JSON of a file as the crate `gltf` represents it, and information that this representation lacks.
@@ -69,8 +69,11 @@ fn check_version(document: &Value) -> Result<()> {
     }
 }
 
-/// Removes `extras`, which may have any type, and turns whole numbers that are written as floats into integers. The extra
-/// property [`features::IS_POINT`] becomes a property of the object itself.
+/// Changes JSON that the crate `gltf` would not parse, in a value and all values below it:
+///
+/// - `extras` are removed, because they may have any type. The one property of `extras` that the importer uses,
+///   [`features::IS_POINT`], becomes a property of the object itself.
+/// - Whole numbers that are written as floats, such as `3.0`, become integers.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(members) => {

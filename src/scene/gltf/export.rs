@@ -10,7 +10,7 @@ use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, Text
 use glam::{DVec3, Mat3, Quat, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-/// Enumeration values of the glTF specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
+/// Enumeration values of accessors and buffer views (glTF 2.0, sections 5.1.3 and 5.11.5).
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
@@ -21,8 +21,8 @@ const NEAR: f32 = 0.01;
 
 /// Encodes a scene as GLB, with one node per mesh, camera and light, and textures as embedded PNG.
 ///
-/// An emission texture brighter than 1 is divided by its peak, and `KHR_materials_emissive_strength` carries the
-/// factor; PNG stores the texture with 8 bits per channel. The distributions of luminaires are embedded as IES files
+/// An emission texture brighter than 1 is divided by its peak, and the emission factor is multiplied by that peak. An
+/// emission factor above 1 is stored with `KHR_materials_emissive_strength`. PNG has 8 bits per channel. The distributions of luminaires are embedded as IES files
 /// (`EXT_lights_ies`). Meshes without triangles and the environment are left out, because glTF cannot represent them.
 ///
 /// Errors: those of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
@@ -184,7 +184,8 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes a luminaire as a node with `EXT_lights_ies`. Its axis is -z of the node, and C = 0 is x of the node.
+    /// Writes a luminaire as a node with `EXT_lights_ies`. In the coordinates of the node, the luminaire's axis is -z,
+    /// and its direction C = 0 is +x.
     fn luminaire(
         &mut self,
         scene: &Scene,
@@ -248,7 +249,8 @@ impl Writer {
             out["normalTexture"]["scale"] = material.normal_scale.into();
         }
 
-        // Scale the texture and the emission factor to peaks of 1; the strength carries the product of both scales.
+        // glTF limits texture values and `emissiveFactor` to 1. Divide the texture by its peak, and multiply the factor
+        // by that peak. If the factor then exceeds 1, divide it by its own peak, which becomes the emissive strength.
         let mut extensions = Map::new();
         let mut emission = material.emission;
         if let Some(reference) = material.emission_texture {

@@ -7,7 +7,8 @@ use serde_json::Value;
 
 /// Measured luminaires as IES files.
 pub const IES: &str = "EXT_lights_ies";
-/// Property, of the extras of a luminaire, that is true if it shines from a point although it has a luminous size.
+/// Name of a property in the `extras` of a luminaire. If it is true, the luminaire shines from a point, even if its IES
+/// file states a luminous size.
 pub const IS_POINT: &str = "isPoint";
 /// Many instances of one node's mesh.
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";

@@ -179,8 +179,8 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Adds a luminaire whose axis is -z of its node and whose C = 0 direction is x of its node. Each IES profile is
-    /// read only once.
+    /// Adds a luminaire. In the coordinates of its node, the luminaire's axis is -z and its direction C = 0 is +x. Each
+    /// IES profile is read only once.
     fn luminaire(&mut self, reference: &Value, transform: DMat4) -> Result<()> {
         let extensions = self.file.root.extensions.as_ref();
         let profiles =
@@ -338,8 +338,8 @@ impl Importer<'_> {
         })
     }
 
-    /// Returns the material and the vertex colours of a primitive. If all vertices share one colour, the material is a
-    /// copy multiplied by that colour, and there are no vertex colours.
+    /// Returns the material and the vertex colours of a primitive. If all vertices share one colour, there are no
+    /// vertex colours, and the material is a copy multiplied by that colour (the original if the colour is white).
     fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
         let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
@@ -420,8 +420,8 @@ fn map_indexed<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) 
     Ok(out)
 }
 
-/// Returns the matrix that transforms normals: the inverse transpose times the determinant. Unlike the inverse it
-/// stays finite if the transform scales an axis to 0.
+/// Returns the matrix that transforms normals: the inverse transpose times the determinant. Unlike the inverse
+/// transpose, this matrix stays finite if the transform scales an axis to 0.
 fn cofactor(transform: DMat4) -> DMat3 {
     let linear = DMat3::from_mat4(transform);
     DMat3::from_cols(

@@ -69,7 +69,8 @@ impl<'a> Materials<'a> {
         };
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
-        // An index of 0 means a surface that reflects everything; treat it as the default index, 1.5.
+        // An index of refraction of 0 means a surface that reflects everything (`KHR_materials_ior`). Treat it as the
+        // default, 1.5.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),

@@ -15,11 +15,11 @@ use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 /// A scene within this distance in metres of the origin of its file keeps that origin: `f32` resolves 0.015 mm there.
-/// New origins are multiples of this distance. [convention]
+/// The coordinates of a new origin are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
-/// A scene counts as far from the origin if its distance along an axis exceeds this multiple of its half-extent
-/// ([`detail`]). [convention]
+/// The scene's origin moves along an axis if the scene's distance along this axis is at least this multiple of its
+/// half-extent ([`detail`]), and at least [`GRID`]. [convention]
 const FAR: f64 = 4.0;
 
 /// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin

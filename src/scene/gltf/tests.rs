@@ -185,7 +185,7 @@ fn luminaires_are_unchanged_by_export_and_import() {
         assert!(a.iter().zip(b).all(|(a, b)| near(*a, b)), "{a:?} {b:?}");
         assert_eq!(measured_a, measured_b);
     }
-    // A caller may make points of all luminaires.
+    // With `point_luminaires`, all luminaires shine from points.
     let options = super::Options { point_luminaires: true, ..super::Options::default() };
     let points = super::import(&glb, None, options).unwrap().lights;
     assert!(points.iter().all(|light| matches!(light, PunctualLight::Luminaire { is_point: true, .. })));

@@ -17,8 +17,7 @@ use glam::{DVec2, DVec3};
 /// Cosine of 15 degrees: triangles inclined by less than this angle count as level. [convention]
 const LEVEL: f64 = 0.965_925_826;
 
-/// If a name contains a word for a ceiling, this share of the distance between the score and 1 is added to the score.
-/// [convention]
+/// If a name contains a word for a ceiling, the score `s` becomes `s + NAMED (1 - s)`. [convention]
 const NAMED: f64 = 0.5;
 
 /// Words for a ceiling in lower case, in several languages.

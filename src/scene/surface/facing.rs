@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 /// Number of rays cast from each side of each plane.
 const RAYS: usize = 128;
-/// Number of triangles of a [`Chunk`], which share one bounding box.
+/// Maximum number of triangles in a [`Chunk`].
 const CHUNK: usize = 64;
 /// Weight of the cameras: the score of a side is multiplied by 1 plus this weight times the share of cameras in front
 /// of the side. [origin not recorded]
@@ -96,7 +96,8 @@ fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> 
     seen / RAYS as f64
 }
 
-/// Consecutive triangles of one mesh with their bounding box. Neighbours in a file are mostly neighbours in space.
+/// Up to [`CHUNK`] consecutive triangles of one mesh, with their common bounding box. The box is small, because
+/// triangles that are neighbours in a file are mostly neighbours in space.
 struct Chunk {
     mesh: usize,
     triangles: std::ops::Range<usize>,
@@ -125,7 +126,8 @@ fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Op
     let inverse = direction.recip();
     let mut closest = f32::INFINITY;
     for chunk in chunks {
-        // Slab test. `max` and `min` ignore the NaN that arises if the ray lies in the plane of a face.
+        // Slab test. A ray that lies exactly in the plane of a face of the box gives NaN (0 × ∞), and may miss the box;
+        // this is negligible for random directions.
         let (a, b) = ((chunk.low - origin) * inverse, (chunk.high - origin) * inverse);
         let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
         if near > far || near > closest {

@@ -6,8 +6,8 @@ use crate::scene::Scene;
 /// Maximum number of names that an error message lists.
 const LISTED: usize = 10;
 
-/// Returns the meshes of the object with the given name, or else of the material. Meshes without triangles are
-/// ignored.
+/// Returns the indices of the meshes of the object with the given name, or else of the material with that name, by the
+/// rules of [`super::find`]. Meshes without triangles are ignored.
 pub fn find(scene: &Scene, name: &str) -> Result<Vec<usize>> {
     let objects: Vec<(usize, &str)> = scene
         .meshes
@@ -57,7 +57,8 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     names.filter(|n| !n.is_empty() && seen.insert(*n)).collect()
 }
 
-/// Sorts names by their similarity to the wanted name: the share of common letter pairs (Dice 1945).
+/// Sorts names by their similarity to the wanted name, most similar first. The similarity is Dice's coefficient of the
+/// pairs of adjacent letters: 2 × common pairs / all pairs of both names (Dice 1945).
 fn closest<'a>(wanted: &str, mut names: Vec<&'a str>) -> Vec<&'a str> {
     let pairs = |text: &str| -> Vec<(char, char)> { text.chars().zip(text.chars().skip(1)).collect() };
     let target = pairs(wanted);

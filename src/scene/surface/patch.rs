@@ -15,13 +15,14 @@ const OFFSET: f64 = 5e-4;
 const DIRECTION_CELL: f64 = 0.035;
 /// Maximum number of directions along which planes are searched, in order of decreasing area.
 const DIRECTIONS: usize = 32;
-/// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane. [origin not
-/// recorded]
+/// Maximum number of planes returned.
 const PLANES: usize = 16;
+/// Minimum area of a plane relative to the area of the largest plane. [origin not recorded]
 const MIN_AREA: f64 = 0.05;
 
 /// A triangle counts as sloped if it is inclined to the plane by 5 to 75 degrees; these are the cosines of 75 and 5
-/// degrees. Steeper triangles are the edges of a slab, flatter ones belong to the plane. [convention: luxfer_surface]
+/// degrees. Steeper triangles are the edges of a slab; triangles of smaller inclination count as parallel to the plane.
+/// [convention: luxfer_surface]
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Triangles that lie in one plane, within tolerances.
@@ -49,9 +50,9 @@ struct Facet {
 
 /// Returns the planes of the triangles, largest first, without small planes.
 ///
-/// First the directions of the normals are accumulated in the cells of a grid, weighted by area. Their signs are
-/// ignored, since sheets may be wound either way. Then, along the direction of each cell of large area, planes are
-/// found by their offsets.
+/// First the normals are accumulated in the cells of a grid of directions, weighted by area. Opposite normals count as
+/// one direction, since sheets may be wound either way. Then, for each cell of large area, the triangles with this
+/// normal are sorted by their offset along it, and triangles of about equal offset form a plane.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));

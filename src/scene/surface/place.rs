@@ -19,8 +19,8 @@ pub struct Placed {
 /// set of texture coordinates and a copy of its material that emits `strength × texture` in cd/m².
 ///
 /// The front of the patch faces the room, and only the front emits. The original meshes keep their indices and their
-/// other triangles. A patch that spans several meshes takes the material of the mesh with the largest share of its
-/// area.
+/// other triangles. A patch that spans several meshes copies the material of the mesh that contributes most of the
+/// patch's area.
 ///
 /// Errors: `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
@@ -113,8 +113,9 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     patch
 }
 
-/// Adds a horizontal sheet of diffuse white on top of the scene's bounding box, for models without a ceiling. Returns
-/// the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no horizontal extent.
+/// Adds a horizontal sheet on top of the scene's bounding box, for models without a ceiling. The sheet is diffuse with
+/// a reflectance of 0.8. Returns the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no
+/// horizontal extent.
 pub fn cover(scene: &mut Scene, name: &str) -> Result<usize> {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in &scene.meshes {

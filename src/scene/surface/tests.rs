@@ -162,7 +162,8 @@ fn one_plane_of_many_small_triangles_is_one_patch() {
     let surface = find(&scene, "Vault").unwrap();
     assert!((surface.normal - Vec3::NEG_Y).length() < 1e-3);
     assert!((surface.size.y - 4.0).abs() < 1e-3 && surface.size.x >= 3.0 && surface.size.x <= 3.6, "{}", surface.size);
-    // Each flank has six strips with slopes 0.075, 0.225, ... The first slopes by 4.3 degrees, below the limit of 5.
+    // Each flank has six strips with slopes 0.075, 0.225, ... The first is inclined by 4.3 degrees, less than the 5
+    // degrees from which `bent` counts triangles.
     let strip = |k: i32| 4.0 * 0.25 * f64::hypot(1.0, 0.075 * f64::from(2 * k + 1));
     let flanks: f64 = 2.0 * (1..6).map(strip).sum::<f64>();
     assert!((f64::from(surface.bent) - flanks).abs() < 1e-3, "{} of {flanks}", surface.bent);

@@ -198,7 +198,7 @@ fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
             let settings = json!({
                 "buffer": buffer, "byteLength": stream.len(), "byteStride": stride, "count": count, "mode": mode,
             });
-            // The view itself refers to a fallback buffer without data.
+            // Buffer 1 does not exist yet: the fallback buffer is added below, and its index replaces the 1.
             let view = json!({ "buffer": 1, "byteLength": count * stride, "extensions": { "EXT_meshopt_compression": settings } });
             let views = f["bufferViews"].as_array_mut().unwrap();
             views.push(view);
@@ -208,7 +208,7 @@ fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
         let (positions, uvs) =
             (add(&positions, "ATTRIBUTES", SIDE * SIDE, 12), add(&uvs, "ATTRIBUTES", SIDE * SIDE, 8));
         let indices_view = add(&packed, mode, indices.len(), 4);
-        // Add the fallback buffer without data, and let the views refer to it.
+        // Add the fallback buffer, which has no data, and let the compressed views refer to it.
         let length = SIDE * SIDE * 20 + 4 * indices.len();
         let fallback =
             json!({ "byteLength": length, "extensions": { "EXT_meshopt_compression": { "fallback": true } } });

@@ -289,16 +289,16 @@ fn instances_are_meshes_of_their_own() {
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("1048576 meshes"), "{error}");
 }
 
-/// Two joints move the corners of a triangle: each joint one corner, and both together the third.
+/// The joints of the skin are nodes 1 and 2. Node 1 moves the first corner of a triangle, node 2 the second, and both
+/// with equal weights the third.
 #[test]
 fn a_skin_is_bent_by_its_joints_at_rest() {
-    // Node 1 moves the first corner, node 2 the second, and both with equal weights the third.
     let file = |joint: f32, matrices: usize| {
         triangle_file(|f| {
             let joints = add_floats(f, "VEC4", 3, &[0.0, 0.0, 0.0, 0.0, joint, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
             let weights = add_floats(f, "VEC4", 3, &[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]);
             let normals = add_floats(f, "VEC3", 3, &[0.0, 0.0, 1.0].repeat(3));
-            // In the bind pose, node 2 is one metre to the right of node 1.
+            // In the bind pose, node 1 is at the origin and node 2 at (1, 0, 0).
             let unit = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
             let moved = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0];
             let inverse = add_floats(f, "MAT4", matrices, &[unit, moved].concat()[..16 * matrices]);
