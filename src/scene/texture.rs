@@ -121,7 +121,7 @@ mod tests {
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Clamp, u)), [0.0, 0.0, 3.0, 3.0]);
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Mirror, u)), [0.0, 0.0, 3.0, 3.0]);
         assert!(at(Wrap::Repeat, f32::NAN).is_finite() && at(Wrap::Clamp, f32::INFINITY).is_finite());
-        // Interpolation between texel centres, across the wrapping seam and far outside the image.
+        // Check the interpolation between texel centres, across the border of the image and far outside it.
         let between = |wrap, u| {
             Texture { name: String::new(), image: image.clone(), wrap: [wrap; 2] }.sample(Vec2::new(u, 0.5)).x
         };

@@ -33,8 +33,8 @@ const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimet
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
 /// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate: half a millimetre.
-/// Coordinates below 8192 m keep this limit (0.49 mm); from 8192 m on, the distance is 0.98 mm or more. With coarser values,
-/// walls, lamps and panes that lie close together would merge. [convention]
+/// Coordinates below 8192 m keep this limit (0.49 mm); from 8192 m on, the distance is 0.98 mm or more. With coarser
+/// values, walls, lamps and panes that lie close together would merge. [convention]
 pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {

@@ -22,8 +22,9 @@ const NEAR: f32 = 0.01;
 /// Encodes a scene as GLB, with one node per mesh, camera and light, and textures as embedded PNG.
 ///
 /// An emission texture brighter than 1 is divided by its peak, and the emission factor is multiplied by that peak. An
-/// emission factor above 1 is stored with `KHR_materials_emissive_strength`. PNG has 8 bits per channel. The distributions of luminaires are embedded as IES files
-/// (`EXT_lights_ies`). Meshes without triangles and the environment are left out, because glTF cannot represent them.
+/// emission factor above 1 is stored with `KHR_materials_emissive_strength`. PNG has 8 bits per channel. The
+/// distributions of luminaires are embedded as IES files (`EXT_lights_ies`). Meshes without triangles and the
+/// environment are left out, because glTF cannot represent them.
 ///
 /// Errors: those of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
 /// GiB.

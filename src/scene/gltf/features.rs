@@ -5,24 +5,25 @@ use crate::scene::unrendered::{Unrendered, note};
 use gltf::json::extensions::material::PbrSpecularGlossiness;
 use serde_json::Value;
 
-/// Measured luminaires as IES files.
+/// Extension for measured luminaires as IES files.
 pub const IES: &str = "EXT_lights_ies";
 /// Name of a property in the `extras` of a luminaire. If it is true, the luminaire shines from a point, even if its IES
 /// file states a luminous size.
 pub const IS_POINT: &str = "isPoint";
-/// Many instances of one node's mesh.
+/// Extension for many instances of a node's mesh, each with its own transform.
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
-/// Primitives in Draco's compression.
+/// Extension for primitives in Draco's compression.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
-/// Buffer views in meshoptimizer's compression, which has two extension names.
+/// The two names of the extension for buffer views in meshoptimizer's compression.
 pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
-/// Textures in WebP files.
+/// Extension for textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
 
-/// Materials of the specular-glossiness workflow.
+/// Extension for materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Extensions that a file may require. Of a material with variants, only the default variant is read.
+/// Extensions that this importer reads, so that a file may list them as required. Of a material with variants, only the
+/// default variant is read.
 pub const READ: [&str; 15] = [
     DRACO,
     IES,
@@ -159,7 +160,7 @@ fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> 
     }
 }
 
-/// Textures in Basis Universal files, which are not read.
+/// Extension for textures in Basis Universal files, which this importer does not read.
 const BASISU: &str = "KHR_texture_basisu";
 
 fn texture(list: &mut Vec<Unrendered>, texture: &Value, place: &dyn Fn() -> String) {

@@ -140,7 +140,7 @@ impl<'a> Materials<'a> {
             references.iter_mut().zip(colours.images(size)?.into_iter().zip(["base colour", "metallic-roughness"]))
         {
             *reference = Some(TextureRef { texture: self.textures.len(), ..place });
-            // Give each converted texture a key of its own, so that no other use shares it.
+            // Give each converted texture a key of its own, so that no other texture reference shares it.
             self.keys.push((Source::Converted(self.keys.len()), Encoding::Linear, wrap));
             self.textures.push(Texture { name: format!("Converted {name}"), image, wrap });
         }
