@@ -114,8 +114,9 @@ fn a_vertex_that_moves_deforms_the_motion_of_its_triangles_only() {
             if px.abs().max(py.abs()) > 0.89 {
                 continue;
             }
-            // The lower triangle does not move. On the upper triangle, the motion is w times the shift, where w is the
-            // barycentric weight of the moved corner. Solve p = low + w (moved corner - low) + v (high - low) for w.
+            // The lower triangle does not move. On the upper triangle, a point moved by w times the shift, where w is
+            // the barycentric weight of the moved corner; the motion leads back, by -w times the shift. Solve
+            // p = low + w (moved corner - low) + v (high - low) for w.
             let (a, b) = (Vec3::new(-0.06, 1.8 + 0.09, 0.0), Vec3::new(1.8, 1.8, 0.0));
             let (rx, ry) = (px + 0.9, py + 0.9);
             let w = ((rx * b.y - ry * b.x) / (a.x * b.y - a.y * b.x)).max(0.0);

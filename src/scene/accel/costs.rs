@@ -64,7 +64,7 @@ impl Branch {
     }
 
     /// Estimated number of cache lines for this branch's packets and nodes. Full packets would fill 5 lines for every
-    /// 8 triangles; the estimate is twice as much, because packets are rarely full and nodes add a tenth.
+    /// 8 triangles; the estimate is twice as much, because packets are rarely full and nodes need lines too.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }

@@ -1,5 +1,5 @@
-//! The leaves of the binary tree. Each holds one triangle, or two triangles that form a quadrilateral. The leaves are
-//! sorted by Morton code, so that neighbours in space are neighbours in the list.
+//! The leaves of the binary tree. Each holds one triangle, or two consecutive triangles with nearly the same box. The
+//! leaves are ordered by Morton code, so that neighbours in space are neighbours in this order.
 //!
 //! Meshes store the two halves of a quadrilateral consecutively. Their boxes nearly coincide, so almost every ray that
 //! hits one box hits both, and separate leaves would save nothing. Shared leaves halve the work of building the tree.

@@ -31,7 +31,8 @@ pub fn is_convertible(settings: &PbrSpecularGlossiness) -> bool {
     }
 }
 
-/// Returns the index of the texture coordinates that a texture uses, and the five numbers of its texture transform.
+/// Returns the index of the set of texture coordinates that a texture uses, and the five numbers of its texture
+/// transform: offset (x, y), rotation and scale (x, y).
 fn coordinates(info: &texture::Info) -> (u32, Option<[f32; 5]>) {
     let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
     let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);

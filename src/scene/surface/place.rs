@@ -67,7 +67,7 @@ fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     if area > 0.0 { Ok(mesh) } else { Err(Error::argument("surface has no triangles with an area; find it again")) }
 }
 
-/// Moves the surface's triangles out of their meshes into a new flat mesh.
+/// Moves the surface's triangles out of their meshes into a new, flat-shaded mesh, and returns that mesh.
 fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     let mut patch = Mesh::default();
     let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
