@@ -4,8 +4,8 @@
 //! crate is based, `zune-jpeg`.
 //!
 //! By the convention of Adobe Photoshop, which every reader follows, a stored value of 255 means no ink (libjpeg,
-//! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes the inverse of the stored cyan, magenta and
-//! yellow as R, G and B; black is stored as in CMYK files.
+//! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes R, G and B, which are 255 minus the cyan,
+//! magenta and yellow that a CMYK file would store. Black is stored as in CMYK files.
 
 use super::Image;
 use super::containers::jpeg_segments;

@@ -32,7 +32,8 @@ pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.context(path.display()))
 }
 
-/// Decodes a picture file in memory. Rows, columns and colour space stay as stored.
+/// Decodes a picture file in memory to linear values. The picture is not turned upright, and its colours are not
+/// converted from the space that the file states: integers of [`Encoding::Srgb`] count as sRGB.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     match Format::of(bytes)? {
         Format::Exr => Ok(openexr::decode(bytes)?.0),
@@ -43,7 +44,7 @@ pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
 }
 
 /// Decodes a picture file in memory, turns it upright by its EXIF orientation, and converts its colours to linear
-/// Rec.709.
+/// Rec.709. Data ([`Encoding::Linear`]) are not converted.
 pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     let format = Format::of(bytes)?;
     let exif = match format {
@@ -68,7 +69,8 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     Ok(Photo { image, metadata })
 }
 
-/// Converts linear colours from the space that their file states to linear Rec.709; returns how this was done.
+/// Converts linear colours from the space that their file states to linear Rec.709. Also returns how the colours were
+/// interpreted.
 fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
     let colour = match space {
         _ if encoding == Encoding::Linear => FileColour::Data,

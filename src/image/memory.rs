@@ -66,9 +66,9 @@ fn webp(file: &[u8], width: usize, height: usize) -> usize {
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
-    // Lossless files and files with alpha or animation. Per pixel: RGBA, twice for animations; the transforms; and for
-    // each block of 4 x 4 pixels the index of its code tables. Per byte of the file: code tables, of which the
-    // shortest take 12 bytes in the file and 4 KiB in memory.
+    // Lossless files, and files with alpha or animation, need more. Per pixel: RGBA (for animations two copies), the
+    // transforms, and for each block of 4 x 4 pixels the index of its code tables. Per byte of the file: code tables,
+    // of which the shortest take 12 bytes in the file and 4 KiB in memory.
     11 * width * height + 400 * file.len() + lossy
 }
 

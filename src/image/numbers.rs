@@ -150,8 +150,8 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
     let list = ex::AnyChannels::sort(list);
-    // Use run-length compression. The low digits of the stored sums are noise; stronger compression would take as long
-    // as tracing the paths.
+    // Use run-length compression, because it is fast. The stored numbers are sums over random light paths. Their low
+    // digits are noise, on which stronger compression would take as long as tracing the paths.
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));

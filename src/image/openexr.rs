@@ -195,8 +195,9 @@ pub struct Layer<'a> {
     pub channels: &'a [&'a str],
 }
 
-/// Encodes layers of equal size as a single-part OpenEXR file of 32-bit floats. Channels are named `layer.channel`,
-/// and the file states the chromaticities of Rec.709. `notes` are text attributes of the header, as (name, text).
+/// Encodes layers of equal size as a single-part OpenEXR file of 32-bit floats. Channels are named `layer.channel`. The
+/// file states the chromaticities of Rec.709 if one of its channels is called `R`. `notes` are text attributes of the
+/// header, as (name, text).
 pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
     // Store texts as UTF-8, as OpenEXR prescribes.
@@ -238,7 +239,7 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     Ok(out.into_inner())
 }
 
-/// Returns the chromaticities of Rec.709, which every written file states.
+/// Returns the chromaticities of Rec.709 as an attribute of the file.
 fn rec709() -> attribute::Chromaticities {
     let point = |[x, y]: [f64; 2]| ex::Vec2(x as f32, y as f32);
     let [red, green, blue] = Chromaticities::REC709.primaries.map(point);
@@ -333,7 +334,8 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // Red of a picture in XYZ whose only component is X. The white is D65, with or without a stated neutral.
+        // Read a pixel of an XYZ picture with X = 1 and Y = Z = 0, and check its red. The white is D65, with or without
+        // a stated neutral.
         for neutral in [None, Some(point(0.3127, 0.3290))] {
             let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(attribute::Chromaticities {

@@ -104,8 +104,9 @@ impl Inks {
         self.to_rec709 * if self.is_lab { xyz(colour) } else { colour }
     }
 
-    /// Interpolates in magenta, yellow and black at one grid point of cyan. The path through the tetrahedron starts in
-    /// the low corner of `cell` and follows the axes in descending order of their fractions `part`.
+    /// Interpolates in magenta, yellow and black at one grid point of cyan. Starts with the colour at the low corner of
+    /// `cell`. Then steps along one axis after another, in descending order of their fractions `part`, and adds the
+    /// difference of colour along each step times the fraction.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));
@@ -180,7 +181,7 @@ mod tests {
         for amounts in [[0.0, 0.7, 0.2, 0.5], [1.0, 0.1, 0.9, 0.0]] {
             assert!((inks.colour(amounts) - 0.1842).abs().max_element() < 1e-3, "{amounts:?}");
         }
-        // Amounts between the grid points, and damaged amounts.
+        // Test amounts between the grid points, and amounts that are NaN or outside `[0, 1]`.
         assert!((inks.colour([0.25, 0.0, 0.0, 0.25]).y - ((65.625f32 + 16.0) / 116.0).powi(3)).abs() < 2e-3);
         assert_eq!(inks.colour([f32::NAN, 2.0, -1.0, 0.0]), inks.colour([0.0, 1.0, 0.0, 0.0]));
     }

@@ -12,7 +12,8 @@ use crate::image::containers::png_chunks;
 /// Factor by which `gAMA` and `cHRM` multiply the numbers that they store. [convention: PNG]
 const UNIT: f64 = 100_000.0;
 
-/// Plausible exponents in `gAMA`; other exponents are ignored. [convention]
+/// Plausible exponents of the transfer curve, which are the reciprocals of the numbers in `gAMA`. Other exponents are
+/// ignored. [convention]
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// Returns the content of the first chunk named `wanted` before the pixels.

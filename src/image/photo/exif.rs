@@ -30,7 +30,7 @@ mod tag {
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// If a 16-bit sensitivity tag has this value, the number is too large for the tag and is stored in another one.
+/// If the sensitivity tag, which has 16 bits, has this value, the sensitivity is larger and is stored in another tag.
 /// [convention: Exif]
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 

@@ -72,8 +72,8 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     to
 }
 
-/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order that the samples then
-/// have.
+/// Undoes the predictor of a row in place, with scratch memory `spare` of the same length. Returns the byte order that
+/// the samples then have.
 pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
     let samples = layout.samples;
     match (layout.predictor, layout.depth.bits() / 8) {

@@ -373,8 +373,8 @@ fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Resu
     }
 }
 
-/// Returns the kind of alpha, if the sample after the colours is alpha. A tag states this; without the tag, the fourth
-/// of four samples is alpha.
+/// Returns the kind of alpha if the first sample after the colours is alpha. The tag ExtraSamples states whether it is.
+/// Without this tag, a sample after the colours counts as unassociated alpha. Palettes and CMYK never have alpha.
 fn alpha(directory: &Directory, colour: Colour, samples: usize) -> Result<Option<Alpha>> {
     let colours = match colour {
         Colour::Grey { .. } | Colour::Palette(_) => 1,
