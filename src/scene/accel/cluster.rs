@@ -218,9 +218,9 @@ impl Boxes {
         }
     }
 
-    /// Chooses for each cluster the neighbour with which it forms the smallest box. Returns the area of that box as a
-    /// float whose low bits ([`PARTNER_BITS`]) hold the XOR of the two indices. Areas are compared through their bits,
-    /// because non-negative floats sort as their bits do.
+    /// Chooses for each cluster the neighbour with which it forms the smallest box. Returns half the area of that box
+    /// as a float whose low bits ([`PARTNER_BITS`]) hold the XOR of the two indices. Non-negative floats sort as their
+    /// bits do, so the smaller XOR wins if two areas agree in all higher bits.
     fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW_CLUSTERS] {
         match level {
             // SAFETY: the processor supports this level and all levels below it.
