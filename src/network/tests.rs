@@ -251,7 +251,8 @@ fn images_are_rearranged_resized_and_pooled() {
     expect(node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
 }
 
-/// A network with all the operators that compute shapes.
+/// A small network: a convolution whose result is resized to the size of the input. The nodes Shape, Slice and Concat
+/// compute this size. The output does not depend on the last node, Sin.
 fn small() -> Writer {
     let weights = noise(5, &[4, 3, 3, 3]);
     Writer::new(13, &[1, 3, 16, 16])

@@ -1,9 +1,9 @@
 //! The luminous faces of an opening as triangles, for renderings: rectangles, discs, and the sides of boxes, cylinders
 //! and ellipsoids.
 //!
-//! Polyhedra approximate curved faces. Their size is chosen so that their mean projected area over all directions equals
-//! the mean of [`Opening::projected_area`]; flat faces have exactly that area in every direction. Points are in the
-//! coordinates of the luminaire, as in [`super::opening`].
+//! A flat face has the same projected area as in [`Opening::projected_area`] in every direction. A polyhedron
+//! approximates a curved face; it is scaled such that its projected area is correct on average over all directions.
+//! Points are in the coordinates of the luminaire, as in [`super::opening`].
 
 use super::opening::Opening;
 use glam::DVec3;
@@ -45,9 +45,9 @@ pub struct Emits {
 }
 
 impl Faces {
-    /// Returns the faces of an opening. Flat faces are moved outwards by `gap` metres, so that a face lies before a
-    /// ceiling or a wall in its plane. An opening without height has a face only on the sides to which the luminaire
-    /// emits; a dark luminaire has the one towards γ = 0.
+    /// Returns the faces of an opening. Flat faces are moved outwards by `gap` metres, in front of a ceiling or a wall
+    /// that lies in the same plane. An opening without height has a face only on the sides to which the luminaire
+    /// emits; if the luminaire is dark, only the face towards γ = 0.
     pub fn new(opening: &Opening, emits: Emits, gap: f64) -> Self {
         let mut faces = Self::default();
         let is_luminous = |normal: DVec3| match normal.z {
@@ -55,7 +55,7 @@ impl Faces {
             -1.0 => emits.backwards,
             _ => emits.forwards || emits.backwards,
         };
-        // A flat opening emits to one side, or to both.
+        // A flat opening has no face on a side to which the luminaire does not emit.
         let is_left_out = |normal: DVec3| match normal.z {
             1.0 => !emits.forwards && emits.backwards,
             -1.0 => !emits.backwards,
@@ -115,8 +115,8 @@ impl Faces {
         self.end_patch(first, is_luminous);
     }
 
-    /// Adds the side of a box that faces along `normal`, an axis of either sign. The upper parts of its vertical sides
-    /// may be dark.
+    /// Adds the side of a box that faces along `normal`, an axis of either sign. A vertical side is luminous up to its
+    /// height in `heights`, counted from the face towards γ = 0, and dark beyond.
     fn add_side(&mut self, size: DVec3, heights: [f64; 4], normal: DVec3, gap: f64, is_luminous: bool) {
         let axis = (0..3).find(|&i| normal[i] != 0.0).unwrap_or(0);
         let [next, last] = [(axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
@@ -127,7 +127,7 @@ impl Faces {
             return self.add_rectangle(centre, half, is_luminous);
         }
         let luminous = heights[axis + if normal[axis] > 0.0 { 0 } else { 2 }];
-        // The luminous part begins at the face towards γ = 0, which is the last along z.
+        // The luminous part begins at the face towards γ = 0, which is at the largest z.
         for (low, high, is_luminous) in [(size.z - luminous, size.z, is_luminous), (0.0, size.z - luminous, false)] {
             let share = if size.z > 0.0 { (high - low) / size.z } else { 0.0 };
             let part = half.map(|half| DVec3::new(half.x, half.y, half.z * share));
@@ -136,7 +136,8 @@ impl Faces {
         }
     }
 
-    /// Adds an ellipse with the area of the given diameters, perpendicular to the first of the directions.
+    /// Adds a polygon that stands for an ellipse with the given diameters and has its area. `directions` are the normal
+    /// and the directions of the diameters.
     fn add_disc(
         &mut self,
         centre: DVec3,
@@ -145,7 +146,7 @@ impl Faces {
         is_forwards: bool,
         is_luminous: bool,
     ) {
-        // Enlarge the polygon to the area of the ellipse.
+        // Enlarge the inscribed polygon to the area of the ellipse.
         let step = TAU / SIDES as f64;
         let ring = Ring { directions, diameters, scale: (step / step.sin()).sqrt() };
         let first = self.triangles.len();
@@ -160,7 +161,8 @@ impl Faces {
 
     /// Adds the side of an elliptic cylinder.
     fn add_tube(&mut self, length: f64, directions: [DVec3; 3], diameters: [f64; 2], is_luminous: bool) {
-        // Enlarge the polygon to the perimeter of the ellipse: its mean width is then that of the ellipse.
+        // Enlarge the inscribed polygon to the perimeter of the ellipse. Both then have the same mean width over all
+        // directions, since the mean width of a convex curve is its perimeter / π (Cauchy).
         let half_step = PI / SIDES as f64;
         let ring = Ring { directions, diameters, scale: half_step / half_step.sin() };
         let ends: Vec<[u32; 2]> = (0..SIDES)
@@ -176,7 +178,8 @@ impl Faces {
         }
     }
 
-    /// Adds an ellipsoid: a divided icosahedron, with the surface of the ball and then stretched.
+    /// Adds an ellipsoid: a divided icosahedron, scaled to the surface area of a ball and then stretched along the
+    /// axes.
     fn add_ellipsoid(&mut self, diameters: DVec3, is_luminous: bool) {
         let mut unit = Vec::new();
         for corners in icosahedron() {
@@ -184,7 +187,8 @@ impl Faces {
         }
         let area: f64 = unit.iter().map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum();
         let scale = diameters / 2.0 * (4.0 * PI / area).sqrt();
-        // Neighbouring triangles share their corners. Add 0, which turns -0 into +0.
+        // Neighbouring triangles share their corners. Equal corners are found by their bits, so add 0, which turns -0
+        // into +0.
         let mut known = BTreeMap::new();
         for patch in unit.chunks(1 << (2 * DIVISIONS)) {
             let first = self.triangles.len();
@@ -257,7 +261,8 @@ mod tests {
 
     const BOTH: Emits = Emits { forwards: true, backwards: true };
 
-    /// Returns the area of the luminous faces as seen from a direction; the shapes are convex.
+    /// Returns the area of the luminous faces as seen from a direction. The shapes are convex, so no face hides
+    /// another.
     fn seen(faces: &Faces, direction: DVec3) -> f64 {
         let luminous = faces.patches.iter().filter(|patch| patch.is_luminous);
         luminous.flat_map(|patch| patch.triangles.clone()).map(|t| faces.area(t).dot(direction).max(0.0)).sum()
@@ -271,8 +276,9 @@ mod tests {
         })
     }
 
-    /// Flat faces have exactly the projected areas of the closed forms, and curved faces have them on average. The least
-    /// width of a polygon of 64 sides is (π / 64)² / 3 = 8.03e-4 smaller than that of a circle of equal mean width.
+    /// Flat faces have exactly the projected areas of the closed forms, and curved faces have them on average. The
+    /// smallest width of a polygon of 64 sides is (π / 64)² / 3 = 8.03e-4 smaller than that of a circle of equal mean
+    /// width.
     #[test]
     fn faces_have_the_projected_areas_of_their_opening() {
         for (size, heights, tolerance) in [
@@ -297,7 +303,7 @@ mod tests {
                 (sum, count) = (sum + off, count + 1);
             }
             assert!(worst < tolerance && (sum / f64::from(count)).abs() < 2e-4, "{size:?}: {worst} {sum}");
-            // The sides of the faces point outwards.
+            // The triangles face outwards.
             let is_outwards = |t: usize| faces.area(t).dot(faces.points[faces.triangles[t][0] as usize]) > 0.0;
             assert!((0..faces.triangles.len()).all(is_outwards), "{size:?}");
             assert_eq!(faces.patches.last().unwrap().triangles.end, faces.triangles.len());

@@ -307,7 +307,8 @@ mod tests {
         assert_eq!([0.0, 0.5, 1500.0, 2e7, 1e-5].map(text), ["0", "0.5", "1500", "2e7", "1e-5"]);
     }
 
-    /// Beside images of any size, the bar is dark at the bottom and light at the top, and it has labels.
+    /// The bar is dark at the bottom and light at the top, and it has labels. Images that are too small for labels are
+    /// accepted as well.
     #[test]
     fn the_bar_is_drawn() {
         let image = Image::from_fn(200, 300, |x, y| [(x * y) as f32]).unwrap();

@@ -45,7 +45,8 @@ pub struct Source {
     pub position: f64,
 }
 
-/// Sums over the pixels of a region.
+/// Sums over the pixels of a region, with their luminance L and solid angle ω: Σ ω, Σ L ω, and Σ L ω times the
+/// direction.
 #[derive(Clone, Copy, Default)]
 struct Patch {
     solid_angle: f64,

@@ -280,7 +280,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
             let out = spread.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
             Ok(Tensor::integers(spread.shape, out))
         }
-        // The exponent of a float may be an integer.
+        // A float may be raised to an integer power.
         (Data::Floats(_), Data::Integers(b)) if op == Binary::Pow => {
             let b = try_collect(b.iter().map(|&v| v as f32))?;
             pair(op, left, &Tensor::floats(right.shape.clone(), b), call)
