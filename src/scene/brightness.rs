@@ -62,16 +62,34 @@ impl Scene {
 /// channel of the image may have any finite value. `what` names the product in the error.
 fn check_texels(what: &str, image: &Image, factor: Vec3) -> Result<()> {
     let limits: [f32; 3] = factor.to_array().map(|f| if f > 0.0 { MAX_LIGHT / f } else { f32::MAX });
-    let colours = image.channels.min(3);
-    for (i, pixel) in image.data.chunks_exact(image.channels.max(1)).enumerate() {
-        let is_allowed = |(value, limit): (&f32, f32)| *value <= limit;
-        if !pixel[..colours].iter().zip(limits.iter().copied()).all(is_allowed) {
-            let (x, y) = (i % image.width, i / image.width);
-            let value = pixel[..colours].iter().copied().fold(0.0, f32::max);
+    for i in 0..image.width * image.height {
+        let (x, y) = (i % image.width, i / image.width);
+        let value = image.rgb(x, y);
+        if !value.to_array().iter().zip(limits).all(|(value, limit)| *value <= limit) {
+            let value = value.max_element();
             return Err(Error::argument(format!(
                 "{what} is {value:e} times {factor} at pixel ({x}, {y}); each channel must be at most {MAX_LIGHT:e}"
             )));
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_channel_of_a_product_has_the_limit_also_where_the_image_is_grey() {
+        for channels in [1, 3] {
+            let image = Image::from_fn(2, 2, |x, _| [if x == 0 { 1.0 } else { 10.0 }; 3]).unwrap();
+            let image = if channels == 1 { image.channel(0).unwrap() } else { image };
+            let check = |factor| check_texels("light", &image, factor);
+            assert!(check(Vec3::splat(0.09 * MAX_LIGHT)).is_ok());
+            assert!(check(Vec3::new(0.0, 0.0, 0.09 * MAX_LIGHT)).is_ok());
+            for factor in [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| axis * (0.11 * MAX_LIGHT)) {
+                assert!(check(factor).unwrap_err().message.contains("at pixel (1, 0)"), "{channels} {factor}");
+            }
+        }
+    }
 }

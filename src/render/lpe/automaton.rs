@@ -350,6 +350,7 @@ impl<'a> SubsetConstruction<'a> {
 
 fn too_large() -> Error {
     Error::argument(format!(
-        "the expressions together need more than {MAX_STATES} states; shorten their repetitions or render them in groups"
+        "the expressions together need an automaton of more than {MAX_STATES} states, or too much work to build it; \
+         shorten their repetitions or render them in groups"
     ))
 }

@@ -173,7 +173,7 @@ fn a_cancelled_render_leaves_what_was_published() {
 }
 
 #[test]
-fn a_render_stops_when_it_is_good_enough_or_out_of_time() {
+fn a_render_stops_when_it_is_good_enough() {
     let world = world(everything());
     let base = Params { width: 16, height: 16, samples: 1 << 20, ..Params::default() };
     let film = render(&world, &viewer(), &Params { target_error: 0.3, ..base.clone() });
