@@ -394,7 +394,8 @@ mod tests {
     fn sorting_is_that_of_the_standard_library() {
         let count = 3 * SERIAL_SORT as u64;
         let random = |range: u64| (0..count).map(|i| crate::rng::mix(i) % range).collect::<Vec<_>>();
-        // All items that `partition` samples are 0. The pivot therefore is 0, and no item is below the pivot.
+        // Every item that `partition` picks for its sample is 0. The pivot therefore is 0, and no item is below the
+        // pivot.
         let unlike_its_sample =
             (0..count).map(|i| if i % (count / SAMPLE as u64) == 0 { 0 } else { count - i }).collect();
         for mut numbers in

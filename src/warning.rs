@@ -13,7 +13,7 @@ use std::fmt;
 pub enum Code {
     /// View: the vanishing points do not determine the focal length, which was assumed.
     FocalAssumed = 1,
-    /// View: the directions of the room axes have a large stated error.
+    /// View: the estimated error of the room axes' directions is large.
     ViewUncertain = 2,
     /// View: the lens bends straight lines.
     LensDistortion = 3,
@@ -128,7 +128,8 @@ pub struct Warning {
     pub message: String,
     /// Describes the remedy.
     pub advice: String,
-    /// Position of the defect in the photo, in pixels.
+    /// Position of the defect, in pixels of the image that the warning is about: the photo, the frame of a sequence, or
+    /// the exemplar or target of a stylisation.
     pub place: Option<DVec2>,
 }
 
@@ -161,7 +162,7 @@ impl Warning {
         Self { code, severity, limit, message, advice: advice.into(), place: None }
     }
 
-    /// Returns this warning with a position in the photo, in pixels. A position that is not finite is dropped.
+    /// Returns this warning with the position of its defect, in pixels. A position that is not finite is dropped.
     pub fn at(self, place: Option<DVec2>) -> Self {
         Self { place: place.filter(|p| p.is_finite()), ..self }
     }

@@ -39,7 +39,7 @@ impl Comparison {
     }
 }
 
-/// A comparison of some pixels, and their largest error.
+/// A comparison of some pixels, and their largest error (at least the tolerance, if there are several pixels).
 struct Worst {
     found: Comparison,
     largest: f32,

@@ -60,7 +60,7 @@ pub(super) fn scanlines(columns: usize) -> usize {
 /// Bytes for decoding the pixels of a WebP file, in addition to the picture itself.
 fn webp(file: &[u8], width: usize, height: usize) -> usize {
     let has = |wanted: &[u8; 4]| riff_chunks(file).any(|(name, _)| name == wanted);
-    // Lossy files: Y, U and V in blocks of 16 pixels, and the partitions of the file, one of which may claim 2^24
+    // Lossy files need Y, U and V in blocks of 16 pixels, and the partitions of the file, one of which may claim 2^24
     // bytes.
     let lossy = 2 * (width + 16) * (height + 16) + 3 * file.len() + (17 << 20);
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {

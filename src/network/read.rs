@@ -202,7 +202,8 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
         (7, Some(raw)) => integers_of(raw_items(raw, i64::from_le_bytes)?),
         (1 | 11, None) => floats_of(floats),
         (10, None) => floats_of(try_collect(integers.into_iter().map(|bits| half(bits as u16)))?),
-        // Negative 32-bit integers are encoded as 64-bit varints.
+        // Protocol Buffers encode negative 32-bit integers as 64-bit varints, so all integer types are already `i64`
+        // here.
         (2 | 3 | 6 | 7 | 9, None) => integers_of(integers),
         _ => return Err(unsupported(format_args!("tensors of type {kind}"))),
     };

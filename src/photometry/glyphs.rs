@@ -8,8 +8,7 @@ pub const WIDTH: usize = 3;
 pub const HEIGHT: usize = 5;
 pub const ADVANCE: usize = WIDTH + 1;
 
-/// Returns the rows of a glyph from the top. The three low bits of each row are its dots; the leftmost dot is the
-/// highest of them.
+/// Returns the rows of a glyph from the top. The three lowest bits of a row are its dots, from left to right.
 fn rows(letter: char) -> [u8; HEIGHT] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

@@ -16,6 +16,8 @@ pub struct Lines {
 }
 
 impl Lines {
+    /// Decodes the bytes of a file to text.
+    ///
     /// # Errors
     /// `Format` if the file is too large or contains zero bytes.
     pub fn new(bytes: &[u8]) -> Result<Self> {

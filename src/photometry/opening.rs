@@ -62,7 +62,7 @@ impl Opening {
     /// dimension is a diameter. `side_heights` are the luminous heights of a box's sides towards C = 0, 90, 180 and
     /// 270, if they differ from its height. `None` for a luminaire without area, which is a point.
     pub fn new([x, y, z]: [f64; 3], side_heights: Option<[f64; 4]>) -> Option<Self> {
-        // A round opening may state only one of its diameters.
+        // If a round opening states only one diameter, it has this diameter along both axes.
         let (x, y) = match (x, y) {
             (0.0, d) if d < 0.0 => (d, d),
             (d, 0.0) if d < 0.0 => (d, d),

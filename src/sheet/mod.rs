@@ -2,9 +2,9 @@
 //! to paint over. A photo or scan of the painted sheet is then registered to the exemplar by its marks.
 //!
 //! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which can be
-//! located to a small fraction of a pixel. Perspective maps the corner to the corner of the seen mark, unlike the
-//! centre of a plain disk. Ten marks surround the picture: at the corners, at the midpoints of the sides, and two more
-//! that determine the orientation of the sheet. Six marks suffice.
+//! located to a small fraction of a pixel. In a perspective view it is still the corner of the quadrants, whereas the
+//! centre of a plain disk would no longer be the centre of its outline. Ten marks surround the picture: at the corners,
+//! at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks suffice.
 //!
 //! `page` lays out the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
 //! [`align`] resamples the photo and removes uneven illumination, which it measures on the white of the marks.

@@ -176,7 +176,8 @@ impl Padded {
     }
 }
 
-/// The input channels of one group, one plane after another, from the start of `values`.
+/// The input channels of one group. Their planes are stored one after another from the start of `values`; planes of
+/// other channels may follow.
 struct Planes<'a> {
     values: &'a [f32],
     height: usize,

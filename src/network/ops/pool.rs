@@ -6,7 +6,8 @@ use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// How windows are placed over an image.
+/// How windows are placed over an image. `strides` and `dilations` are in pixels, first along the columns, then along
+/// the rows.
 pub struct Window {
     pub strides: [usize; 2],
     pub dilations: [usize; 2],
