@@ -271,7 +271,7 @@ fn list_with_capacity<T>(count: usize) -> Result<Vec<T>> {
     reserve::list(count).ok_or_else(none)
 }
 
-/// Runs two closures, in parallel if a thread is free.
+/// Runs two closures, in parallel if a thread is free, and returns their results.
 pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(a, b)
 }

@@ -39,7 +39,8 @@ impl Comparison {
     }
 }
 
-/// A comparison of some pixels, and their largest error (at least the tolerance, if there are several pixels).
+/// A comparison of some pixels, and their largest error. Only errors above the tolerance matter, so a sum starts with
+/// the tolerance as its largest error.
 struct Worst {
     found: Comparison,
     largest: f32,

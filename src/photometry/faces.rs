@@ -229,7 +229,7 @@ fn icosahedron() -> Vec<[DVec3; 3]> {
                 .map(|[short, long]| (DVec3::AXES[axis] * short + DVec3::AXES[(axis + 1) % 3] * long).normalize())
         })
         .collect();
-    // Neighbouring corners are closer than all others.
+    // Two corners are joined by an edge if their distance is the smallest that occurs between corners.
     let edge = 4.0 / (1.0 + golden * golden);
     let is_edge = |a: DVec3, b: DVec3| a.distance_squared(b) < edge * 1.5;
     let mut triangles = Vec::new();

@@ -149,7 +149,8 @@ fn to_xyz() -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Standard illuminants have their published chromaticities (CIE 15, table T.3).
+    /// The published chromaticities of standard illuminants (CIE 15, table T.3) give their temperatures and distances
+    /// Duv.
     #[test]
     fn standard_illuminants() {
         for (xy, kelvin, duv) in [

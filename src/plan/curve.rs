@@ -42,7 +42,8 @@ impl Curve {
             return b.max(0.0);
         }
         let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
-        // Evaluate the power law from the middle point, and its continuation from the last point.
+        // Evaluate the power law, which passes through the middle point, up to the last point, and its continuation
+        // beyond.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }

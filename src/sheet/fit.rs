@@ -118,8 +118,8 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     (0..4).all(|i| turns(i) > 1.0).then_some(ordered)
 }
 
-/// Returns the marks whose position, mapped to the photo by `map`, lies near a candidate, and the sum of their squared
-/// distances.
+/// Returns the marks whose position, mapped to the photo by `map`, lies near a candidate. `misfit` is the sum of the
+/// squared distances between these marks and their candidates.
 fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     let tolerance = FIRST_TOLERANCE * extent(page, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);
