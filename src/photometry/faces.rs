@@ -87,7 +87,7 @@ impl Faces {
         faces
     }
 
-    /// Returns the normal of a triangle, whose length is the area of the triangle.
+    /// Returns the outward normal of a triangle, scaled to the length of the triangle's area in m².
     pub fn area(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|i| self.points[i as usize]);
         (b - a).cross(c - a) / 2.0
