@@ -1,11 +1,11 @@
-//! Expected values of Tukey's biweight for normally distributed residuals, from which the covariance of a vanishing
-//! point is computed. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0, so the means
-//! are over residuals below 1.
+//! Expected values of terms of Tukey's biweight, for normally distributed residuals. `sphere` computes the covariance
+//! of a vanishing point from them. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0,
+//! so all means are over residuals with `|r| < 1`.
 
 use std::sync::LazyLock;
 
 /// Means over normally distributed residuals `r` of known variance, where only residuals with `|r| < 1` count. All
-/// three means tend to 1 as the variance tends to 0, and fall as it grows.
+/// three means tend to 1 as the variance tends to 0, and fall as the variance grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
     /// Mean of `r²`, divided by the variance.

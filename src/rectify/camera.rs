@@ -118,8 +118,8 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: 
     Perspective { focal, axes, ..*camera }
 }
 
-/// Returns the relative standard deviation of an estimated focal length, from the vanishing points of the axes and the
-/// prior for photos in general.
+/// Returns the relative standard deviation of an estimated focal length. It combines the information of the vanishing
+/// points with the prior for photos without metadata ([`USUAL_SPREAD`]).
 pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let from_lines =
@@ -132,9 +132,14 @@ pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
-/// Estimates the logarithm of the focal length in pixels, and its standard deviation. Every pair of points that should
-/// be orthogonal gives an equation `(v1 - c) · (v2 - c) + f² w1 w2 = 0`, which is linear in f² and is weighted by the
-/// certainty of the pair's angle. `None` if the points do not determine the focal length.
+/// Estimates the logarithm of the focal length in pixels, and its standard deviation. `start` is a first guess in
+/// pixels. `None` if the points do not determine the focal length, or if it differs from `start` by more than a factor
+/// of 10.
+///
+/// The directions of two points `(v1, w1)` and `(v2, w2)` (homogeneous pixels) are orthogonal if
+/// `(v1 - w1 c) · (v2 - w2 c) + f² w1 w2 = 0`, where `c` is the principal point. Each pair gives one such equation,
+/// which is linear in f². Its weight is the inverse variance of the angle between the two directions. The iteration is
+/// needed because the weights depend on f.
 fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
     let mut square = start * start;
     let mut deviation = f64::INFINITY;

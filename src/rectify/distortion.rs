@@ -2,13 +2,14 @@
 //! "Straight lines have to be straight").
 //!
 //! Model: a lens shows at radius r the point that an ideal lens shows at r (1 - k r² / R²), where R is half the image
-//! diagonal. A straight line then appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the
-//! line passes the centre at distance d, its curvature is `2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient
-//! of the curve, divided by d, therefore yields one estimate of k per line. A robust mean over the many lines of a
-//! room rejects mouldings and vaults, which are curved themselves.
+//! diagonal. Let t run along a straight line, and let y be the distance from the centre across it. The line then
+//! appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes the centre at
+//! distance d, its curvature is `y″ = 2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the curve, y″ / 2,
+//! divided by d / R², therefore yields one estimate of k per line. A robust mean over the many lines of a room rejects
+//! mouldings and vaults, which are curved themselves.
 //!
 //! Lines that consist of several pieces (`edge_lines`) must be smooth as a whole: the tiles of a ceiling sag between
-//! their bars, so each edge of a tile is curved although the lens is not to blame.
+//! the bars that carry them, so each edge of a tile is curved even without any lens distortion.
 
 use super::edge_lines::{self, Edge};
 use super::gradient::{Gradients, SIGMA};
@@ -51,7 +52,7 @@ const BIWEIGHT_LIMIT: f64 = 4.685;
 const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Standard deviation of `Distortion::corner` caused by the deviation of real lenses from the model. It is the root
 /// mean square of the estimates over views cut out of panoramas: such views have no lens distortion apart from errors
-/// of stitching. Only views whose lines agree count. [bench: `tests/real_rectify.rs`]
+/// of stitching. [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -59,7 +60,7 @@ const MODEL_ERROR: f64 = 0.009;
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
     let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
     let edges: Vec<Edge> = segments.iter().filter_map(|s| trace(gradients, s)).collect();
-    // The pieces of a line that is no parabola as a whole tell nothing about the lens.
+    // Skip lines of several pieces that no single parabola fits: their pieces are curved themselves.
     let lines = edge_lines::lines(&edges).into_iter().filter(|pieces| pieces.len() == 1 || is_parabola(pieces));
     let estimates: Vec<LineEstimate> =
         lines.flatten().filter_map(|edge| LineEstimate::by(edge, centre, diagonal)).collect();
@@ -69,7 +70,7 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
 /// The estimate of k from one line, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
-    /// Estimate of k without the correction for the term `3 k d² / R²` of the curvature.
+    /// Estimate of k from the curvature without its term `3 k d² / R²`.
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
@@ -78,8 +79,8 @@ struct LineEstimate {
 }
 
 impl LineEstimate {
-    /// Returns the line's estimate of k, corrected for the term `3 k d² / R²` of the curvature. In this term, k is
-    /// replaced by its approximate value `nearly`.
+    /// Returns the line's estimate of k, corrected for the term `3 k d² / R²` of the curvature; `nearly` is the
+    /// approximate k for this term.
     fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
@@ -201,8 +202,8 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
-/// Returns the result of one step of the M-estimate: the mean over the lines within the biweight's limit around
-/// `corner`, with a standard deviation derived from their scatter.
+/// Returns the result of one step of the M-estimate: the weighted mean over the lines within the biweight's limit
+/// around `corner`, with a standard deviation derived from their scatter.
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);
@@ -287,7 +288,7 @@ mod tests {
         let tiles = tiles.unwrap();
         let found = measured(&tiles);
         assert!(found.is_none_or(|found| found.corner.abs() < 3.0 * found.error && found.error < 0.02), "{found:?}");
-        // Without the lines of the pieces, their curvature would count as distortion.
+        // Cross-check: if the pieces of the lines are not joined, the sag of the tiles looks like distortion.
         let monitor = Monitor::default();
         let luma = gradient::encoded_luma(&tiles, monitor.job()).unwrap();
         let gradients = gradient::gradients(&luma, monitor.job()).unwrap();

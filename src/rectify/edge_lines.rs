@@ -21,7 +21,7 @@ const MAX_STEP: f64 = 2.0;
 const MAX_TURN: f64 = 0.035;
 
 /// Groups edges that are pieces of one line, in their order along the line. The nearest pieces are joined first, and
-/// each end is joined once.
+/// each end is joined at most once.
 pub fn lines(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     let mut joints: Vec<(f64, usize, usize)> = Vec::new();
     for (i, edge) in edges.iter().enumerate() {

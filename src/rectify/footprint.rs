@@ -16,6 +16,7 @@ const MAX_DERIVATIVE: f32 = 1e8;
 pub struct Footprints {
     /// Whether the position lies inside the source and in front of the camera.
     pub is_seen: [bool; RUN],
+    /// Position of the centre of each pixel in the source, in source pixels.
     pub x: [f64; RUN],
     pub y: [f64; RUN],
     /// Length, in source pixels, of the two sides parallel to x.
@@ -24,7 +25,8 @@ pub struct Footprints {
     pub height: [f32; RUN],
     /// Distance by which the rows of the rectangle shift along x per source pixel along y.
     pub shear: [f32; RUN],
-    /// Squared major axis of the pixel's ellipse in the source, before it is widened to at least 1.
+    /// Squared length of the major axis of the ellipse onto which the map takes a circle of one output pixel in
+    /// diameter, before it is widened to at least one source pixel.
     pub longest: [f32; RUN],
 }
 

@@ -26,7 +26,8 @@ const SUPPRESSED: (usize, usize) = (4, 4);
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
 
-/// A line `cos(theta) x + sin(theta) y = rho` about the image centre, `theta` in `[0, pi)`.
+/// A line `cos(theta) x + sin(theta) y = rho`, where x and y are pixels relative to the image centre, and `theta` is
+/// in `[0, pi)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
     pub rho: f64,

@@ -15,9 +15,9 @@ use glam::{DMat3, DQuat, DVec3};
 /// image side: angles of view from 20 to 110 degrees. [origin not recorded]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side; of a
-/// landscape photo, it is the median of [`super::focal`], of a portrait photo, a longer focal length. `SEARCH_SPREAD`:
-/// standard deviation of the logarithm. [origin not recorded]
+/// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side. For a
+/// landscape photo it equals the median of [`super::focal`]; for a portrait photo it is longer, because that median is
+/// a share of the image width. `SEARCH_SPREAD`: standard deviation of the logarithm. [origin not recorded]
 pub const USUAL_FOCAL: f64 = 2.0 * USUAL_FOCAL_PER_WIDTH;
 const SEARCH_SPREAD: f64 = 0.4;
 
@@ -212,7 +212,8 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
                 continue;
             };
             // The residual is the sine of the angle between the line and the direction from its midpoint to p: l · p
-            // divided by the distance of p from the midpoint, with p = (dx, dy, dz / f). Compute its derivative.
+            // divided by the distance of p from the midpoint, with p = (dx, dy, dz / f). Compute the derivative of
+            // `l · p` with respect to the rotation vector and ln f, and treat the distance as constant.
             let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
             let distance = (p.truncate() - e.line.centre * p.z).length();
             if distance < 1e-9 {

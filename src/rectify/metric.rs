@@ -1,5 +1,5 @@
 //! Distances between a vanishing point and a line (§5.2). The points are homogeneous, so all distances are exact for
-//! points at infinity; only the paper's own distance may be infinite there.
+//! points at infinity. The paper's distance (Eq. 2) may be infinite there; the others are finite.
 
 use crate::geometry::Segment;
 use glam::{DVec2, DVec3};
@@ -43,7 +43,9 @@ impl Line {
         self.half * self.sine(p)
     }
 
-    /// The paper's metric, Eq. 2: `min(d_naive, d_vanishing)`, with `d_vanishing = x / y * d_naive`.
+    /// The paper's metric, Eq. 2: `min(d_naive, d_vanishing)`, with `d_vanishing = x / y * d_naive`. `d_naive` is the
+    /// distance of `p` from the line, `x` half the length of the segment, and `y` the distance from its midpoint to
+    /// the foot of the perpendicular from `p`.
     pub fn printed_distance(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.centre * p.z;
         let across = self.direction.perp_dot(away).abs();
@@ -106,7 +108,7 @@ mod tests {
         assert_eq!(l.printed_distance(DVec3::Y), f64::INFINITY);
         assert_eq!(l.printed_distance(DVec3::new(1.0, 1.0, 1.0)), 0.0);
         assert_eq!(l.sine(DVec3::new(1.0, 1.0, 1.0)), 0.0);
-        // A point 1e12 px away, which the midpoint of a segment of half-length 1 sees at a slope of 1e-6.
+        // A point 1e12 px away at a slope of 1e-6, seen from the midpoint of a segment of half-length 1.
         assert!((l.endpoint_distance(DVec3::new(1e12, 1e6, 1.0)) - 1e-6).abs() < 1e-12);
     }
 

@@ -43,9 +43,9 @@ pub struct Params {
     pub hough_band: f64,
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
-    /// Focal length in pixels from the photo's metadata, and its standard deviation; both > 0. If `focal` is absent,
-    /// this value is used as one more observation beside the lines. If this value is absent too, the prior of the
-    /// focal length is 0.85 of the image width, with a wide spread.
+    /// Focal length from the photo's metadata, and its standard deviation; both in pixels and > 0. If `focal` is
+    /// absent, this value is used as one more observation beside the lines. If this value is absent too, the prior of
+    /// the focal length is 0.85 of the image width, with a wide spread.
     pub expected_focal: Option<[f64; 2]>,
     /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
     /// In cropped photos and photos taken with a shifted lens, the principal point lies elsewhere, possibly outside

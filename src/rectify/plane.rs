@@ -10,8 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// A plane is refused, as seen edge-on, if the sine of the angle between the plane and the viewing ray is below this,
-/// as a median over the pixels of the mask. [origin not recorded]
+/// A plane is refused as seen edge-on if the sine of the angle between the plane and the viewing ray is below this in
+/// the median over the pixels of the mask. [origin not recorded]
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
@@ -40,7 +40,8 @@ impl Plane {
     }
 
     /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. It is the
-    /// square root of the determinant of the Jacobian, and this determinant is `1 / (f² (n · ray)³)`.
+    /// square root of the determinant of the Jacobian from pixels to plane coordinates, `1 / (f² (n · ray)³)`, where
+    /// `ray` has z = 1.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
         self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
     }

@@ -1,6 +1,6 @@
 //! Finds the best quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3). In plane
-//! coordinates it is a rectangle; it lies on the camera's side of the horizon and excludes parts of the plane with too
-//! large a magnification.
+//! coordinates it is a rectangle on the camera's side of the horizon. Far parts of the plane, which would have to be
+//! magnified too much, do not count as part of the mask.
 
 use super::plane::Plane;
 use crate::error::{Error, Result};
@@ -23,8 +23,9 @@ pub struct Rectangle {
     pub densest: f64,
 }
 
-/// Finds the rectangle with the highest score: the number of its cells that the mask marks, minus `HOLE` times the
-/// number of its other cells.
+/// Finds the rectangle with the highest score: the number of its cells that the mask marks and the photo resolves well
+/// enough, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
+/// of the plane.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Keep the pixels on the camera's side of the horizon, each with the size of the square that it covers on the
     // plane.
@@ -42,7 +43,8 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
     let (low, high) = (low - rim, high + rim);
 
-    // Score each cell: +1 if it shows the plane, `-HOLE` if it does not; exclude cells behind the camera.
+    // Score each cell: +1 if the mask marks it and its magnification is allowed, else `-HOLE`. Exclude cells behind
+    // the camera by a large negative score.
     let cell = (high - low) / GRID as f64;
     let to_photo = plane.to_photo();
     let mut gain = vec![[0.0f64; GRID]; GRID];

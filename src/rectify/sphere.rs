@@ -9,13 +9,11 @@ use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
-/// A segment does not belong to a vanishing point if its endpoints lie farther than this from the line through its
-/// midpoint and the point. The unit is half the image's longer side, so this is about 2 pixels in an image of 640
-/// pixels. [origin not recorded]
+/// `ENDPOINT_LIMIT`: limit of the distance `d` of a segment's endpoints from the line through its midpoint and a
+/// vanishing point. The unit is half the image's longer side, so this is about 2 pixels in an image of 640 pixels.
+/// `SINE_LIMIT`: limit of the sine `s` of the angle between the segment and that line; it matters for short segments.
+/// A segment belongs to a vanishing point if `(d / ENDPOINT_LIMIT)² + (s / SINE_LIMIT)² ≤ 1`. [origin not recorded]
 const ENDPOINT_LIMIT: f64 = 0.006;
-
-/// A segment does not belong to a vanishing point if the sine of the angle between the segment and the line through
-/// its midpoint and the point is above this. This second limit matters for short segments. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
 /// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.
@@ -37,8 +35,9 @@ const PER_OBSERVATION: f64 = 5.0;
 ///
 /// - `NOISE_ROUNDS`: number of rounds, each of which estimates first the share and then the noise.
 /// - `MIN_SHOWN`: minimum of the share.
-/// - `MIN_SLOPE`: minimum of the biweight's expected slope. It is the smallest value that loses no vanishing point of
-///   the development sets, in which short lines are more precise than their residuals suggest.
+/// - `MIN_SLOPE`: minimum of the biweight's expected slope. With a smaller value, the covariance of some vanishing
+///   points of the development sets becomes so large that they are rejected, although they are right: their short
+///   lines are more precise than their residuals suggest.
 ///
 /// Below these minima, the noise exceeds the limit and cannot be estimated.
 const NOISE_ROUNDS: usize = 5;
@@ -86,8 +85,8 @@ impl Frame {
 pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
-    /// Squared residual divided by the squared sine of the angle between the line and the direction to a vanishing
-    /// point. A line belongs to the point if its squared residual is at most 1.
+    /// Squared residual divided by the squared sine of the angle between the line and the direction from its midpoint
+    /// to a vanishing point. A line belongs to the point if its squared residual is at most 1.
     pub stiffness: f64,
 }
 
@@ -97,8 +96,8 @@ impl WeightedLine {
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
-    /// Returns the squared residual of the line for a vanishing point; the line does not belong to the point if it is
-    /// above 1. A line whose midpoint coincides with the point has the residual 0.
+    /// Returns the squared residual of the line for a vanishing point; the line does not belong to the point if the
+    /// squared residual is above 1. A line whose midpoint coincides with the point has the residual 0.
     pub fn residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
@@ -106,8 +105,8 @@ impl WeightedLine {
         if distance > COINCIDENT { self.stiffness * across * across / distance } else { 0.0 }
     }
 
-    /// Returns how well the line agrees with a vanishing point, in `[0, 1]`; 0 if the line does not belong to the
-    /// point.
+    /// Returns how well the line agrees with a vanishing point: `1 - residual²`, but at least 0. It is 0 if the line
+    /// does not belong to the point.
     pub fn agreement(&self, p: DVec3) -> f64 {
         (1.0 - self.residual(p)).max(0.0)
     }
@@ -133,7 +132,7 @@ pub struct Refined {
 }
 
 impl Refined {
-    /// Standard deviation in radians of the angle to the true direction.
+    /// Root mean square, in radians, of the angle to the true direction.
     pub fn error(&self) -> f64 {
         deviation(&self.covariance)
     }
@@ -145,7 +144,8 @@ pub fn deviation(covariance: &DMat3) -> f64 {
     trace.sqrt().min(std::f64::consts::FRAC_PI_2)
 }
 
-/// Returns the isotropic covariance of a direction with the given standard deviation in radians.
+/// Returns the isotropic covariance of a direction whose angle to the true direction has the root mean square `error`,
+/// in radians: `error² / 2` along each of two tangents.
 pub fn round_covariance(direction: DVec3, error: f64) -> DMat3 {
     (DMat3::IDENTITY - outer(direction, direction)) * (0.5 * error * error)
 }
@@ -236,8 +236,8 @@ fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     }
     let (l, half) = (weighted.line.line, weighted.line.half);
     let nearness = (half * p.z / distance).powi(2);
-    // Weight the line by its stiffness, which would be right if endpoint noise were the only error. The additional
-    // factor, the root of the length, favours long segments, because they are rarely false detections.
+    // The factor stiffness / (1 + nearness) is about the inverse variance of the sine, as if endpoint noise were the
+    // only error. The factor √length favours long segments, because they are rarely false detections.
     let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {

@@ -38,9 +38,9 @@ impl Pair {
         Self { beside, cosine, slope, variance: along(a, q) + along(b, p) }
     }
 
-    /// Treats the pair as a measurement of the logarithm of the focal length, assuming that the true angle is a right
-    /// angle. Returns the inverse variance of this measurement, and the inverse variance times the measured change of
-    /// the logarithm.
+    /// Treats the pair as a measurement of the logarithm of the focal length, under the assumption that the true angle
+    /// is a right angle. Returns the inverse variance of this measurement, and the inverse variance times the measured
+    /// change of the logarithm.
     fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]

@@ -63,8 +63,8 @@ impl Taps {
     }
 }
 
-/// Length of the overlap between a sample of unit width and an interval of the given length, whose centre lies
-/// `offset` away from the sample.
+/// Length of the overlap between a sample of unit width and an interval of the given length. `offset` is the distance
+/// between their centres.
 #[inline(always)]
 fn overlap(offset: f32, length: f32) -> f32 {
     (0.5 * length + 0.5 - offset.abs()).max(0.0).min(length.min(1.0))

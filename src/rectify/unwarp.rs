@@ -112,14 +112,15 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
 /// Step of the finite differences as a share of a standard deviation. [rounding]
 const SMALL: f64 = 1e-3;
 
-/// Returns vectors whose outer products sum to the covariance matrix.
+/// Returns vectors whose outer products with themselves sum to the covariance matrix.
 fn deviations(covariance: &DMat3) -> [DVec3; 3] {
     let rows = covariance.to_cols_array_2d();
     let (values, vectors) = symmetric_eigen::<3>(rows);
     std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
 }
 
-/// Returns the plane coordinates of four photo points relative to their mean, because a translation is not an error.
+/// Returns the plane coordinates of four photo points relative to their mean. A common translation of the corners does
+/// not count as an error, because the origin of the plane's coordinates is arbitrary.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     let inverse = plane.to_photo().inverse();
     let at = corners.map(|c| inverse.apply(c));

@@ -29,7 +29,8 @@ const FOCAL_SPREAD: f64 = 0.05;
 pub struct VanishingPoint {
     /// In homogeneous pixel coordinates, normalised to unit length; the third coordinate is 0 for a point at infinity.
     pub point: DVec3,
-    /// Number of segments that run to the point; 0 if the point was derived from the other two.
+    /// Number of segments that run to the point; 0 if the point was derived from the other points or from a
+    /// convention.
     pub support: usize,
     /// Standard deviation of the point's direction in camera space, in radians.
     pub error: f64,

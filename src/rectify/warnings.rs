@@ -8,8 +8,9 @@ use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// A focal length counts as assumed if its relative standard deviation is at least this: the lines then determine it
-/// no better than the prior for photos in general. [convention]
+/// Limit that the warning about an assumed focal length reports: the relative standard deviation of a focal length
+/// that the lines and the prior determine equally well. If the lines determine it less well, the deviation is larger.
+/// [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
@@ -19,8 +20,8 @@ const MAX_DISTORTION: f64 = 0.02;
 /// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
 /// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
-/// An angle that deviates by more than this, in radians, is no property of a room: one of the two vanishing points is
-/// wrong, and says nothing about the other axes. [judged on 28 photos]
+/// An angle that deviates by more than this, in radians, raises no warning. Rooms are not so oblique, so one of the
+/// two vanishing points is wrong, which says nothing about the other axes. [judged on 28 photos]
 const MAX_PLAUSIBLE_SKEW: f64 = 0.35;
 /// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
 /// [convention]
@@ -31,8 +32,8 @@ const SHARP_MAGNIFICATION: f64 = 4.0;
 /// A plane raises a warning if more than this share of it is magnified by more than `SHARP_MAGNIFICATION`.
 /// [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// A plane raises a warning if the sine of the angle between the plane and the viewing ray, as a median over the
-/// plane, is below this. [judged on 38 photos]
+/// A plane raises a warning if the sine of the angle between the plane and the viewing ray is below this in the median
+/// over the plane. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
 /// Number of pixels sampled along each side of the unwarped plane.
 const GRID: usize = 96;

@@ -1,4 +1,5 @@
-//! Measures how similar the lamp shapes on a plane are to each other, when a given tilt of the plane is undone.
+//! Measures how similar the lamp shapes on a plane are to each other in fronto-parallel view, for a given tilt of the
+//! plane.
 
 use crate::geometry::robust::weighted_median;
 use crate::image::Image;
@@ -17,8 +18,8 @@ const MAX_SHAPES: usize = 32;
 /// A tilt of the plane is rejected if the sine of the angle between the plane and the ray through a shape's centre is
 /// below this. [bench photos:tune]
 const MIN_INCIDENCE: f64 = 0.05;
-/// Cost of the assumption that all lamps are elongated by the same ratio in the same direction: it adds two
-/// parameters, and most lamps are as long as they are wide. [bench photos:tune]
+/// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
+/// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
 /// Squared deviation of a shape, in variances, above which its cost grows more slowly, because the shape is probably
 /// of another kind. [convention]

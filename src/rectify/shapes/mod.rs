@@ -25,7 +25,8 @@ use likeness::Shape;
 use tilt::{Tilt, TiltEstimate};
 
 /// Minimum number of shapes for an estimate: two shapes of one kind give six measurements (the size and the two
-/// components of the stretch of each) for the five unknowns. [convention]
+/// components of the stretch of each) for the five unknowns (two of the normal, focal length, common size, bloom).
+/// [convention]
 const MIN_SHAPES: usize = 2;
 /// A tilt is accepted only if it decreases the cost of the shapes by at least this, compared with the tilt that the
 /// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]
@@ -67,7 +68,8 @@ impl View {
     }
 }
 
-/// Whether the shapes on the plane agree in size and form with the tilt `tilt`, and clearly less with the tilt `than`.
+/// Whether the shapes agree in size and form if the plane has the tilt `tilt`, and agree clearly less if it has the
+/// tilt `than`.
 fn is_better(shapes: &[Shape], tilt: &Tilt, than: &Tilt) -> bool {
     let [cost, before] = [tilt, than].map(|tilt| likeness::cost(shapes, tilt.normal, tilt.focal));
     before - cost > MIN_GAIN && cost < MAX_SHARE * before && cost < MAX_COST * shapes.len() as f64

@@ -22,7 +22,8 @@ fn camera(normal: DVec3, focal: f64) -> Perspective {
     Perspective { focal, focal_source: FocalSource::Assumed, principal, axes }
 }
 
-/// A view with axes as uncertain as a few lines leave them. `error` is their standard deviation in radians.
+/// A view whose axes are uncertain, as if only a few lines determined them. `error` is the standard deviation of each
+/// axis in radians.
 fn view(normal: DVec3, error: f64) -> View {
     let perspective = camera(normal, 500.0);
     let point = |axis: usize| VanishingPoint {
