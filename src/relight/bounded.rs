@@ -4,8 +4,9 @@
 //! even for identical columns.
 //!
 //! The dual problem has only one unknown per row of `A`, the vector `z`. A solution satisfies
-//! `x = clip(p + Aᵀ z, 0, u)` and `λ z = b − A x`. If the first condition is inserted into the second, it says that
-//! the gradient of the dual function is zero. This function of `z` is convex and piecewise quadratic.
+//! `x = clip(p + Aᵀ z, 0, u)` and `λ z = b − A x`. Inserting the first condition into the second gives an equation for
+//! `z` alone. It says that the gradient of the dual function is zero: `g(z) = λ z + A clip(p + Aᵀ z, 0, u) − b = 0`.
+//! The dual function is convex and piecewise quadratic.
 //!
 //! Newton's method with an exact line search minimises the dual function in a few steps. Each step treats the unknowns
 //! that are at their bounds as fixed (the primal-dual active set method of Hintermüller, Ito and Kunisch 2002).
@@ -27,7 +28,8 @@ pub(super) struct Problem<'a> {
 
 /// Maximum number of Newton steps; all but the last few change the set of unknowns at their bounds. [convention]
 const MAX_STEPS: usize = 200;
-/// A gradient counts as zero if its norm, relative to the right-hand side, is at most this. [rounding]
+/// A gradient counts as zero if its norm is at most this, relative to the largest entry of the right-hand side or, if
+/// it is larger, the norm of the first gradient. [rounding]
 const CONVERGED: f64 = 1e-12;
 /// After the last step, a gradient of this relative norm is accepted, since an unknown at its bound may keep changing
 /// state. [rounding]
@@ -148,7 +150,7 @@ impl Problem<'_> {
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Use eight partial sums: with a single one, each addition would wait for the previous one.
+    // Use eight partial sums: with a single sum, each addition would wait for the previous one.
     let mut sums = [0.0; 8];
     let (eights_of_a, rest_of_a) = a.as_chunks::<8>();
     let (eights_of_b, rest_of_b) = b.as_chunks::<8>();
@@ -189,7 +191,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// Solves a problem whose `regularisation` is given relative to the mean square of a row.
+    /// Solves a problem whose `regularisation` is given relative to the mean squared norm of a row.
     fn solve(
         rows: usize,
         matrix: &[f64],

@@ -1,6 +1,7 @@
 //! Statistics of independent batches: means, confidence intervals, and intervals of derived quantities.
 
-/// Number of batches of an estimate. With 32, Student's t is within 4 % of the normal quantile. \[convention\]
+/// Number of batches of an estimate. With 32, the 97.5 % quantile of Student's t is 4 % above that of the normal
+/// distribution. \[convention\]
 pub const BATCHES: usize = 32;
 
 /// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom. [convention]
@@ -23,9 +24,10 @@ pub(super) fn without(mean: f64, part: f64) -> f64 {
     (n * mean - part) / (n - 1.0)
 }
 
-/// Computes the pseudo-values of the jackknife over batches (Efron 1982, §2): `whole` is the result of all batches,
-/// `without` holds the results with one batch left out. The mean of the pseudo-values is an estimate of the result
-/// without the bias of order 1/n. Their variance gives the standard error of this estimate.
+/// Computes the pseudo-values of the jackknife over batches (Efron 1982, §2): `n θ − (n − 1) θᵢ`. `whole` is the
+/// result θ of all n batches, and `without` holds the results θᵢ with batch i left out. The mean of the pseudo-values
+/// is an estimate of the result without the bias of order 1/n. Their variance gives the standard error of this
+/// estimate.
 pub(super) fn pseudo_values(whole: f64, without: &[f64; BATCHES]) -> [f64; BATCHES] {
     let n = BATCHES as f64;
     without.map(|w| n * whole - (n - 1.0) * w)

@@ -90,11 +90,11 @@ struct PerGoal {
     background: Vec<DVec3>,
 }
 
-/// Computes by path tracing how much light each lamp contributes to each goal. The lamps are either parts of the
-/// emissive texture of the material with index `emitter`, at its current strength, or punctual lights; for punctual
-/// lights, `emitter` is ignored. Tracing stops under the conditions of [`super::run`], applied to the light that all
-/// lamps together contribute to each goal; the contributions of single lamps have larger errors. `params.quantity` is
-/// ignored.
+/// Computes by path tracing how much light each lamp contributes to each goal. The lamps are parts of the surfaces
+/// with the material `emitter` (texels or pieces of meshes), with the current emission, or they are punctual lights;
+/// for punctual lights, `emitter` is ignored. Tracing stops under the conditions of [`super::run`], applied to the
+/// light that all lamps together contribute to each goal; the contributions of single lamps have larger errors.
+/// `params.quantity` is ignored.
 ///
 /// # Errors
 /// Parameters out of range; goals whose surface does not exist or has no area; cancelled.

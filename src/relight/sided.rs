@@ -1,8 +1,8 @@
 //! Bounded least squares with one-sided terms, for targets that are lower or upper limits.
 //!
-//! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
-//! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
-//! quadratic. A step of Newton's method has three parts:
+//! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, `min(r, 0)` for
+//! lower limits, and `max(r, 0)` for upper limits. The function is convex, smooth and piecewise quadratic. A step of
+//! Newton's method has three parts:
 //!
 //! 1. Find the active terms: the exact targets, and the limits that the current point violates.
 //! 2. Solve the problem with the active terms only ([`super::bounded`]).
@@ -21,7 +21,7 @@ pub enum Constraint {
     /// An exact target.
     #[default]
     Exactly,
-    /// A lower limit: a standard's requirement for a desk, or a clipped pixel of a photo.
+    /// A lower limit, for example the illuminance that a standard requires on a desk, or the value of a clipped pixel.
     AtLeast,
     /// An upper limit, against glare.
     AtMost,
@@ -44,7 +44,7 @@ pub(super) struct Problem<'a> {
     pub right: &'a [f64],
     /// The kind of each term: one per row.
     pub constraints: &'a [Constraint],
-    /// Weight `λ` of `|x − p|²`, relative to the mean square of a row, positive.
+    /// Weight `λ` of `|x − p|²`, relative to the mean squared norm of a row; positive.
     pub regularisation: f64,
     /// Preferred values `p` of the unknowns.
     pub preferred: &'a [f64],

@@ -8,7 +8,8 @@ use glam::DVec3;
 pub enum TargetStatus {
     /// The target is met.
     Met,
-    /// Other lights alone exceed the target: the emission is off in this channel.
+    /// The target is exceeded: other lights alone exceed it, so the emission is off in this channel, or several goals
+    /// contradict each other.
     TooBright,
     /// The lamps are too dim even at their upper bounds, or the goals contradict each other.
     TooDim,

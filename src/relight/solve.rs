@@ -104,7 +104,8 @@ fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
 
 impl Channel {
     /// Computes the scale; `mean` averages a quantity over batches. With the target `t`, background `b` and response
-    /// `r`, the scale is `(t - E b) / E r` for a fit of the mean, and `(t E r - E br) / E r²` for least squares.
+    /// `r`, the scale is `(t - E[b]) / E[r]` for a fit of the mean, and `(t E[r] - E[b r]) / E[r²]` for least squares,
+    /// where `E[·]` is the mean over the target's points.
     fn scale(&self, target: f64, mean: impl Fn(&[f64; BATCHES]) -> f64) -> f64 {
         match &self.squares {
             None => (target - mean(&self.background)) / mean(&self.response),

@@ -3,8 +3,8 @@
 //! If each group were rounded separately, the errors would add up, because lamps of equal power would all be rounded
 //! in the same direction. Instead, coordinate descent visits one group after the other, until no level changes. For
 //! each group, it chooses the level that minimises the sum of squared residuals of the goals, with the levels of the
-//! other groups fixed. It runs from two starting points and keeps the better result. The sum is convex in the power of
-//! one group, so the group's best level is found by stepping through the levels while the sum decreases.
+//! other groups fixed. The descent runs from two starting points, and the better result is kept. The sum is convex in
+//! the power of one group, so the group's best level is found by stepping through the levels while the sum decreases.
 
 use super::bounded::dot;
 use super::sided::Constraint;

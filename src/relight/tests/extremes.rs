@@ -95,8 +95,8 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         let responses = Pool::new(2)
             .unwrap()
             .run(|| lamp_responses(&world, 1, &lamps, &[grid], &params, Monitor::default().job()).unwrap());
-        // In total, every wall emits and reflects e / (1 - ρ) = 2. Each of the six walls is a lamp and contributes to
-        // this total.
+        // The emitted and reflected radiance of every wall is e / (1 - ρ) = 2 in total. Each of the six walls is a
+        // lamp and contributes to this total.
         let all = responses.all(0);
         assert_eq!(lamps.count(), 6);
         assert!((all.mean.x - 2.0).abs() < 4.0 * all.standard_error.x + 1e-5, "size {size}: {all:?}");

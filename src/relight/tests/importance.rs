@@ -103,7 +103,8 @@ fn light_transport_is_reciprocal() {
     }
 }
 
-/// Finer cells give the same result for a smooth texture, with a smaller stated error.
+/// Coarse and fine cells give the same result within their stated errors, and the stated error of the fine cells is
+/// smaller.
 #[test]
 fn cells_limit_the_band() {
     let scene = coloured_room();
