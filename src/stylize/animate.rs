@@ -35,8 +35,8 @@ const MAX_CHANGE: f32 = 0.02;
 /// The matches of the previous frame, advected into this frame.
 pub(super) struct Moved {
     pub field: Field,
-    /// The patch of the previous frame from which each match comes, or [`NONE`] if the match must not be kept: if its
-    /// patch is astride a silhouette or was not visible.
+    /// The patch of the previous frame from which each match comes. [`NONE`] if the match must not be kept, because
+    /// the patch is astride a silhouette or was not visible.
     pub from: Vec<u32>,
 }
 
@@ -78,8 +78,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
 pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
 
 /// Computes the distances of the advected matches, and returns which target patches keep their match: the patches
-/// whose error lies left of the knee of the sorted errors and whose light has hardly changed, except in blocks that
-/// are chosen for new matches.
+/// whose error lies left of the knee of the sorted errors, whose light has hardly changed, and which are not astride a
+/// silhouette. Blocks that [`Params::coherence`] chooses for new matches keep nothing.
 pub(super) fn keep(
     level: &mut Level,
     moved: &mut Moved,
@@ -102,7 +102,8 @@ pub(super) fn keep(
     let block = |i: usize| [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
     let stays = |i: usize| Rng::new(seed, &block(i)).next_f32() < params.coherence;
     let is_lit_alike = |i: usize| {
-        // Spread the moment of the change over the blocks, so that a picture does not change all at once.
+        // Each block has its own limit, 0.5 to 1.5 times `MAX_CHANGE`, so that slow changes of light do not rematch
+        // the whole picture in one frame.
         let share = 0.5 + Rng::new(2, &block(i)).next_f32();
         memories.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };

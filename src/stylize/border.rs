@@ -7,9 +7,9 @@
 //!   cross the border then find places of the artwork where such strokes continue.
 //! - No exemplar patch is used too often. Where the painted part lacks the light of a place, one exemplar patch is
 //!   nearest to all patches of that place, and would fill it with its copies.
-//! - The matches place paint on the painted pixels too. Its difference to the artist's paint is a step at the border.
-//!   After the final vote, this difference fades out from the border into the new paint (a membrane, as in Pérez et
-//!   al. 2003, "Poisson Image Editing").
+//! - The matches place paint on the painted pixels too. The difference between the artist's paint and this paint would
+//!   show as a step at the border. After the final vote, this difference fades out from the border into the new paint
+//!   (a membrane, as in Pérez et al. 2003, "Poisson Image Editing").
 
 use super::level::{Level, Problem};
 use super::params::Params;
@@ -27,7 +27,7 @@ const RADIUS: usize = 256;
 /// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
 /// [bench stylit:autocomplete]
 const MAX_USES: f64 = 100.0;
-/// Maximum number of searches for other matches of the patches beyond this number.
+/// Maximum number of searches for other matches of the patches by which the uses exceed `MAX_USES`.
 const ROUNDS: usize = 8;
 /// Number of pixels over which a difference at the border fades out, and the share that each step leaves of it.
 /// [bench stylit:autocomplete]
@@ -72,8 +72,8 @@ impl<'a> Border<'a> {
     }
 }
 
-/// Searches other matches for the target patches whose exemplar patch is used too often. Of its users, those with the
-/// smallest distances keep it.
+/// Searches other matches for target patches whose exemplar patch is used too often. The exemplar patch keeps the
+/// target patches with the smallest distances, up to the maximum number of uses.
 pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<()> {
     let mean = level.wanted.len() as f64 / level.allowed.len() as f64;
     let most = (MAX_USES * mean.max(1.0)) as usize;
@@ -119,7 +119,7 @@ pub(super) fn fade(picture: &mut Image, field: &Field, problem: &Problem, mode: 
     Ok(())
 }
 
-/// Replaces each pixel inside the mask by [`FADE`] times the mean of its neighbours.
+/// Replaces each pixel inside the mask by [`FADE`] times the mean of its four neighbours.
 fn spread(image: &mut Image, mask: &[bool], job: Job) -> Result<()> {
     let (width, height, channels) = (image.width, image.height, image.channels);
     let before = image.try_clone()?;

@@ -21,14 +21,16 @@ const MIN_SIDE: usize = 6;
 /// `[0, 1]`. The guides within a block are equal. [bench stylit:doubts]
 const EQUAL: f32 = 0.03;
 const SIMILAR: f32 = 0.1;
-/// Blocks within this number of columns and rows are not elsewhere: a defect may cover them too.
+/// A block counts as elsewhere if it is more than this number of columns or rows of blocks away. A defect of a block
+/// may extend over nearer blocks.
 const NEAR: usize = 3;
 /// Minimum number of blocks with equal or similar guides with which a block is compared.
 const MIN_OTHERS: usize = 16;
-/// Minimum grain, in units of the display encoding: that of flat paint. [bench stylit:doubts]
+/// Minimum grain, in units of the display encoding (white = 1). Flat paint has less grain and would make any
+/// difference look large. [bench stylit:doubts]
 const MIN_GRAIN: f32 = 0.015;
-/// Number of grains by which the upper quartile of blocks with equal guides differs from their median if they have two
-/// paints. [bench stylit:doubts]
+/// The light of a block has two paints if, of the blocks elsewhere with equal guides, the upper quartile of the
+/// differences to their median paint is above this number of grains. [bench stylit:doubts]
 const TWO_PAINTS: f32 = 4.0;
 
 /// Defects of the exemplar, with their places in pixels.
@@ -58,10 +60,11 @@ struct Blocks {
 /// A block compared with the blocks elsewhere.
 #[derive(Clone, Copy, Default)]
 struct Compared {
-    /// Median and upper quartile of the differences of blocks with equal guides to their median paint.
+    /// The blocks elsewhere with equal guides have a median paint. This is the median and the upper quartile of the
+    /// differences between their paint and this median paint; `None` with too few such blocks.
     spread: Option<[f32; 2]>,
-    /// Difference of the block's paint to the most similar paint of blocks with similar guides: the 20th part of these
-    /// blocks is closer.
+    /// 5 % quantile of the differences between the block's paint and the paint of the blocks elsewhere with similar
+    /// guides. It is large only if hardly any of these blocks has similar paint.
     own: f32,
 }
 

@@ -104,8 +104,8 @@ pub(super) fn no_guides() -> Error {
     Error::argument("guides is empty; give at least one pair")
 }
 
-/// Moves the range of a source channel towards the range of the same target channel. A range extends from the 5th to
-/// the 95th percentile.
+/// Moves the range of a source channel towards the range of the same channel in the target, by the share `strength`. A
+/// range extends from the 5th to the 95th percentile.
 fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
     let ends = |image: &Image| {
         let step = (image.width * image.height >> 18).max(1) * image.channels;

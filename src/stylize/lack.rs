@@ -1,8 +1,8 @@
 //! Light of the target that the exemplar lacks.
 //!
-//! A place of the target is lacking if no place of the exemplar has similar guides of light, wherever it lies.
-//! Whatever is painted there is a guess. The guide error of a run is high there too, but it is also high where a match
-//! was chosen for its colours; so places with a high guide error are compared with a sample of the whole exemplar.
+//! The exemplar lacks the light of a place of the target if the guides of light are similar nowhere in the exemplar.
+//! The paint of such a place is a guess. The guide error of a run is high there, but it is also high where a match was
+//! chosen for its colours. Therefore places with a high guide error are compared with a sample of the whole exemplar.
 
 use super::level::Problem;
 use crate::error::Result;
@@ -11,28 +11,29 @@ use crate::image::{Image, try_with_capacity};
 use crate::job::Job;
 use std::collections::BTreeSet;
 
-/// Two places have similar guides if these differ by at most this much, as a weighted root mean square of channels in
-/// `[0, 1]`. [bench stylit:autocomplete]
+/// Two places have similar guides if the guides differ by at most this much, as a weighted root mean square of
+/// channels in `[0, 1]`. [bench stylit:autocomplete]
 const MAX_DIFFERENCE: f32 = 0.1;
-/// Number of pixels along the longer side of an image that are compared, at most.
+/// Maximum number of samples along the longer side of an image; only these pixels are compared.
 const SAMPLES: usize = 128;
 /// Number of steps to which a channel is rounded, so that equal guides are compared only once. [rounding]
 const STEPS: f32 = 32.0;
 /// Maximum number of different guides of the exemplar that are compared.
 const MAX_CODES: usize = 2048;
-/// Side in samples of the blocks, of which the most lacking one gives the place.
+/// Side, in samples, of the blocks into which the target is divided; the block with the most lacking samples gives the
+/// place of the warning.
 const BLOCK: usize = 8;
 
 /// The part of the target whose light the exemplar lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lack {
-    /// Share of the pixels to paint.
+    /// The share of the pixels to paint whose light the exemplar lacks.
     pub share: f64,
-    /// Centre, in pixels of the target, of the block that contains most of them.
+    /// Centre, in pixels of the target, of the block with the most pixels of this kind.
     pub place: Option<[usize; 2]>,
 }
 
-/// Compares the target with the exemplar. `guide_error` is that of the finished run.
+/// Compares the target with the exemplar. `guide_error` is the guide error of the finished run.
 pub(super) fn lack(problem: &Problem, guide_error: &Image, job: Job) -> Result<Lack> {
     let target = &problem.guides.target;
     let Some(codes) = codes(problem)? else { return Ok(Lack::default()) };
@@ -68,14 +69,14 @@ fn stride(image: &Image) -> usize {
     image.width.max(image.height).div_ceil(SAMPLES)
 }
 
-/// The different guides of the exemplar's light, rounded.
+/// The distinct values of the exemplar's guides of light, rounded.
 struct Codes {
     /// The channels of all codes, one code after the other, and the weights of the channels: 0 for channels of data.
     values: Vec<f32>,
     weights: Vec<f64>,
 }
 
-/// Collects the guides of the exemplar's light; `None` if all guides are data.
+/// Collects the distinct values of the exemplar's guides of light; `None` if all guides are data.
 fn codes(problem: &Problem) -> Result<Option<Codes>> {
     let guides = &problem.guides;
     let source = &guides.source;

@@ -13,7 +13,8 @@ const STEPS: f32 = 255.0;
 /// range. [judged on 1 scene]
 const DATA_TOLERANCE: f32 = 0.25;
 
-/// What a frame remembers of its guides. The default, of no pixels, is like no frame.
+/// What a frame remembers of its guides. The default has no pixels and cannot be compared with the memory of any
+/// frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
     /// Size of the target in pixels, and number of patches along x and y.

@@ -229,7 +229,7 @@ fn rematch(
 /// Decodes the picture of the finest level and completes the report.
 fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, memory, .. } = state;
-    // A preview, or the run of a plan, ends on a coarser level, with which no later frame is compared.
+    // Only pilot runs have no memory: their finest level is a halved problem, and no later frame is compared with it.
     let memory = memory.unwrap_or_default();
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;
@@ -255,8 +255,8 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     Ok(Output { image, field, memory, report })
 }
 
-/// Compares the motion, if any, with the guides of this frame and the previous one. A preview compares nothing: at half
-/// the resolution, motion and guides are averages over silhouettes.
+/// Compares the motion, if any, with the guides of this frame and the previous one. A preview compares nothing: at
+/// half the resolution, pixels at silhouettes average the motion and guides of two surfaces.
 fn agreement(memory: &Memory, input: &Input, halved: usize, job: Job) -> Result<Comparison> {
     match (input.motion, input.memory) {
         (Some(motion), Some(before)) if halved == 0 && memory.is_like(before) => memory.agreement(before, motion, job),

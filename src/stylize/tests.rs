@@ -26,7 +26,7 @@ fn scene(width: usize, height: usize, cx: f32, cy: f32, radius: f32) -> Image {
     .unwrap()
 }
 
-/// Hatching whose direction and contrast follow the light, with grain.
+/// Hatching with grain. Its brightness follows the light, and its direction differs between ball and background.
 fn artwork(guide: &Image) -> Image {
     Image::from_fn(guide.width, guide.height, |x, y| {
         let g = guide.pixel(x, y);
@@ -224,8 +224,8 @@ fn energy_per_iteration_falls_for_nearest_patches() {
 fn masks_keep_patches_out_and_pixels_unchanged() {
     let (a, b) = (scene(64, 48, 30.0, 22.0, 15.0), scene(64, 48, 34.0, 25.0, 15.0));
     let mut art = artwork(&a);
-    // Fill the left third of the exemplar with a colour that must not appear, mask it, and synthesise only the right
-    // half of the target.
+    // Fill the left third of the exemplar with a colour that must not appear, and exclude this third by the source
+    // mask. Synthesise only the right half of the target.
     for y in 0..48 {
         for x in 0..20 {
             art.pixel_mut(x, y).copy_from_slice(&[0.0, 10.0, 0.0]);

@@ -7,8 +7,8 @@ use crate::image::Comparison;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// Maximum share of the pixels at whose earlier place the previous frame may show another surface. A correct motion
-/// has next to none, apart from errors of a pixel, which do not count. [judged on 1 scene]
+/// Maximum share of the pixels whose motion may lead to another surface in the previous frame. With a correct motion,
+/// this share is nearly 0; errors of the motion of up to one pixel do not count. [judged on 1 scene]
 pub const MAX_DISAGREEMENT: f64 = 0.001;
 
 /// Warns if the motion disagrees with the guides: if it leads too many pixels to another surface.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::warning::Code;
 
-/// Even light with a gradient, and an artwork of it with grain.
+/// Light with a slow vertical gradient, and an artwork that follows this light, with grain.
 fn exemplar() -> (Image, Image) {
     let light = Image::from_fn(192, 144, |_, y| [0.2 + 0.5 * y as f32 / 144.0]).unwrap();
     let art = Image::from_fn(192, 144, |x, y| {

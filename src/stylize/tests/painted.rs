@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The rest of a picture whose left half is painted.
+/// Synthesises the right half of a picture from its left half, which is painted.
 fn completed(art: &Image, scene: &Image) -> Output {
     let half =
         |left: f32| Image::from_fn(art.width, art.height, |x, _| [if 2 * x < art.width { left } else { 1.0 - left }]);
@@ -20,7 +20,8 @@ fn step(picture: &Image, x: usize) -> f32 {
 
 #[test]
 fn new_paint_joins_the_painted_part_and_leaves_it_as_it_is() {
-    // Even light: only the strokes decide which piece of the artwork continues the painted part.
+    // The light does not change from left to right: only the strokes decide which piece of the artwork continues the
+    // painted part.
     let scene = Image::from_fn(120, 96, |_, y| [0.3 + 0.2 * y as f32 / 96.0]).unwrap();
     let art = Image::from_fn(120, 96, |x, y| {
         let stroke = ((x + 2 * y) % 7) as f32 / 7.0;

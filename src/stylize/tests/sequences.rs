@@ -58,7 +58,7 @@ fn paint_follows_light_that_fades_slowly() {
         image
     };
     let still = Image::new(90, 70, 2).unwrap();
-    // Returns the mean lightness of the last frame, of nine.
+    // Returns the mean lightness of the last of nine frames.
     let last = |remembers: bool| {
         let mut output = stylise(&input(&art, &[guide(&a, &target(0))]), &Params::default()).unwrap();
         for t in 1..9 {
@@ -124,7 +124,8 @@ fn wrong_motion_is_noticed_by_guides_of_data() {
             assert_eq!(right, Comparison::default());
             continue;
         }
-        // Without its motion, the ball's front edge was background before, and the places behind it were ball.
+        // With zero motion, pixels at the ball's front edge lead to background in the previous frame, and pixels just
+        // behind the ball lead to the ball.
         let wrong = agreement(&|_, _| [0.0, 0.0]);
         assert!(wrong.compared == 90 * 70 && wrong.wrong > 0, "{wrong:?}");
         let [x, y] = wrong.place.unwrap();
