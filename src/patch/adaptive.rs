@@ -5,10 +5,10 @@
 //! the share t that gives the picture as much fine detail as the exemplar has.
 //!
 //! Fine detail is the power of the finest octave: the sum of squares, over a window, of the difference between an
-//! image and its 3 × 3 binomial mean. With M and D for this difference of the mean and of (choice - mean), the power
-//! of the blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. It is equated with the exemplar's power around the sources of the
-//! chosen pixels, which gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture that
-//! the mean loses makes t greater. The window holds all patches over a pixel, because these patches form the mean.
+//! image and its 3 × 3 binomial mean. Let M be this difference for the mean, and D for (choice - mean). The power of
+//! the blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. Equating it with the exemplar's power around the sources of the chosen
+//! pixels gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture that the mean loses
+//! makes t greater. The window holds all patches over a pixel, because these patches form the mean.
 
 use super::ballot::{Ballot, Candidate, common_offset};
 use crate::error::Result;
@@ -61,14 +61,14 @@ struct Votes {
     is_contested: bool,
 }
 
-/// Sums over pixels from which the share of the choice follows.
+/// Sums, over the pixels of a window, of products of fine details. The share of the choice follows from them.
 #[derive(Clone, Copy, Default)]
 struct Power {
-    /// Power of the mean.
+    /// Power of the mean: `Σ|M|²`.
     mean: f64,
-    /// Product of the mean and the difference between choice and mean.
+    /// Product of the fine details of the mean and of (choice - mean): `ΣM·D`.
     product: f64,
-    /// Power of the difference between choice and mean.
+    /// Power of (choice - mean): `Σ|D|²`.
     difference: f64,
     /// Power of the exemplar at the sources of the choice.
     exemplar: f64,
@@ -237,8 +237,8 @@ mod tests {
 
     const PATCH: usize = 5;
 
-    /// Paints a picture of 60 x 40 pixels from two pieces of an exemplar that meet along a line: the exemplar from
-    /// column 0 on, and from column 60 on, 20 rows higher.
+    /// Paints a picture of 60 x 40 pixels from two pieces of an exemplar that meet along a line. Left of the line, the
+    /// pixel (x, y) shows the exemplar at (x, y + 20); right of it, at (x + 60, y).
     fn two_pieces(style: &Image, mode: VoteMode) -> Image {
         let (width, height) = (60 + 1 - PATCH, 40 + 1 - PATCH);
         let mut field = Field::new(width, height).unwrap();
@@ -267,7 +267,7 @@ mod tests {
         let mut rng = Rng::new(4, &[]);
         let mut exact = 0;
         for _ in 0..1000 {
-            // Mean and choice as vectors of two components, so that all products can occur.
+            // Let the details M = (a, b) and D = (c, d) be vectors of two components, so that all products can occur.
             let [a, b, c, d, exemplar] = [(); 5].map(|()| f64::from(rng.next_f32()) * 2.0 - 1.0);
             let power = Power {
                 mean: a * a + b * b,
@@ -315,7 +315,8 @@ mod tests {
         let fine = |mode| detail(&two_pieces(&style, mode));
         // In noise, the choice has no steps: its detail is that of the exemplar.
         let [choice, mean, adaptive] = [VoteMode::Majority, VoteMode::Weighted, VoteMode::Adaptive].map(fine);
-        // Blends of two independent pixels have 0.6 of the detail on average, on about half of these pixels.
+        // The blend of two independent pixels has on average about 0.6 times their detail, and about half of the
+        // pixels near the line are blends.
         assert!(mean < 0.85 * choice, "{mean} {choice}");
         assert!((adaptive / choice - 1.0).abs() < 0.1, "{adaptive} {choice}");
         // Pixels on which all patches agree stay whole.

@@ -40,7 +40,7 @@ pub struct Sweep {
     pub index: u64,
     /// Initial radius in pixels of the random search around the best match; halved until it is 0.
     pub radius: usize,
-    /// Number of uniformly random candidates for a patch without a match.
+    /// Number of uniformly random candidates for a patch without a match of known distance.
     pub initial_samples: usize,
 }
 
@@ -181,8 +181,8 @@ impl Tile {
         }
     }
 
-    /// Runs a sweep over the active patches of this tile, forwards and then backwards. Returns whether any patch was
-    /// searched.
+    /// Runs a sweep over the active patches of this tile, forwards and then backwards. Returns whether any patch
+    /// needed a search.
     fn search(
         &mut self,
         search: &Search,
@@ -301,8 +301,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet. Then tries random positions around the best match,
-    /// within decreasing radii.
+    /// Tries uniformly random positions if no match has a known distance yet. Then tries random positions around the
+    /// best match, within decreasing radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {
