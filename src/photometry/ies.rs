@@ -49,6 +49,10 @@ impl<'a> Words<'a> {
 /// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of types A and B.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
+    // LM-63-2002 reserves the ballast-lamp factor of the editions before it for future use, and LM-63-2019 states there
+    // how the file was made ("file generation type", such as 1.1 for an accredited laboratory).
+    let edition = text.numbered().next().map_or("", |(_, line)| line).to_ascii_uppercase();
+    let has_lamp_factor = !["IESNA:LM-63-2002", "IES:LM-63-"].iter().any(|later| edition.starts_with(later));
     let mut lines = text.numbered();
     let mut luminaire = Luminaire::lambertian("", 0.0, [0.0; 3]);
 
@@ -88,12 +92,13 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     luminaire.size = [length * unit, width * unit, height * unit];
     let ballast = words.within("the ballast factor", 0.0, 1e6)?;
     let lamp_factor = words.within("the ballast-lamp factor", 0.0, 1e6)?;
+    let lamp_factor = if has_lamp_factor && lamp_factor > 0.0 { lamp_factor } else { 1.0 };
     luminaire.watts = words.within("the input watts", 0.0, 1e9)?;
     luminaire.lamp_flux = if lumens > 0.0 && lumens.is_finite() { lumens * lamps } else { 0.0 };
 
     luminaire.gammas = words.list("a vertical angle", gammas, 360.0)?;
     let horizontal = words.list("a horizontal angle", planes, 360.0)?;
-    let factor = multiplier * ballast * if lamp_factor > 0.0 { lamp_factor } else { 1.0 };
+    let factor = multiplier * ballast * lamp_factor;
     let mut candela = words.list("an intensity", gammas * planes, 1e12)?;
     candela.iter_mut().for_each(|v| *v *= factor);
     (luminaire.planes, luminaire.candela) = unfold(&horizontal, candela, gammas, words.line)?;
@@ -226,6 +231,17 @@ mod tests {
             [(0.0, 80.0), (45.0, 70.0), (90.0, 60.0), (135.0, 70.0), (180.0, 80.0), (270.0, 60.0), (22.5, 75.0)]
         {
             assert!((l.intensity(c, 45.0) - want * factor).abs() < 1e-9, "{c}");
+        }
+    }
+
+    #[test]
+    fn only_editions_before_2002_have_a_ballast_lamp_factor() {
+        for (edition, factor) in
+            [("IESNA:LM-63-1995", 1.1), ("IESNA91", 1.1), ("IESNA:LM-63-2002", 1.0), ("IES:LM-63-2019", 1.0)]
+        {
+            let text = QUARTER.replace("IESNA:LM-63-1995", edition).replace("0.9 1 40", "0.9 1.1 40");
+            let found = read(text.as_bytes()).unwrap().intensity(0.0, 0.0);
+            assert!((found - 100.0 * 1.5 * 0.9 * factor).abs() < 1e-9, "{edition}: {found}");
         }
     }
 

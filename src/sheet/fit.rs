@@ -24,8 +24,7 @@ pub struct Fit {
     pub marks: Vec<usize>,
     /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Length in the photo per length on the page, in photo pixels per page pixel: `extent` divided by the diagonal of
-    /// the page.
+    /// Photo pixels per page pixel, along the diagonal between opposite corner marks.
     pub scale: f64,
 }
 
@@ -54,7 +53,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Res
     map = least_squares(page, map, &pairs);
     let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(page.marks[m]).distance_squared(at)).sum();
     let residual = (squares / pairs.len() as f64).sqrt();
-    let scale = extent / DVec2::new(page.width as f64, page.height as f64).length();
+    let scale = extent / page.marks[0].distance(page.marks[2]);
     Ok(Fit { to_photo: map, marks: pairs.iter().map(|p| p.0).collect(), residual, scale })
 }
 

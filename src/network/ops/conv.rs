@@ -45,7 +45,7 @@ impl Conv {
         let zeros;
         let bias = match bias {
             Some(bias) if bias.len() == out_channels => bias.as_floats()?,
-            Some(bias) => return Err(Error::format(format!("{} biases for {out_channels} channels", bias.len()))),
+            Some(bias) => return Err(wrong_biases(bias.len(), out_channels)),
             None => {
                 zeros = call.budget.vec(out_channels, 0.0)?;
                 &zeros
@@ -115,7 +115,10 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
         let (values, weights) = (x.as_floats()?, weights.as_floats()?);
-        let bias = bias.map(Tensor::as_floats).transpose()?.filter(|bias| bias.len() == out_channels);
+        let bias = bias.map(Tensor::as_floats).transpose()?;
+        if let Some(bias) = bias.filter(|bias| bias.len() != out_channels) {
+            return Err(wrong_biases(bias.len(), out_channels));
+        }
         let per_group = channels / self.groups;
         exec::for_rows(&mut out, out_height * out_width, call.job, |k, out| {
             let (image, channel) = (k / out_channels, k % out_channels);
@@ -182,6 +185,10 @@ struct Planes<'a> {
     values: &'a [f32],
     height: usize,
     width: usize,
+}
+
+fn wrong_biases(count: usize, channels: usize) -> Error {
+    Error::format(format!("{count} biases for {channels} channels"))
 }
 
 struct Weights<'a> {
