@@ -12,9 +12,9 @@
 //!
 //! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent
 //! on distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
-//! exemplar and target take 32 bytes per pixel each. They are larger than the caches, but a tile fits into them. If a
-//! neighbour's match and a patch's own match continue each other, the neighbour offers no new candidate, so sweeps
-//! become faster as a field becomes more coherent.
+//! exemplar and target take 32 bytes per pixel each. Both images are larger than the caches, but a tile of them fits.
+//! If a neighbour's match and a patch's own match continue each other, the neighbour offers no new candidate, so
+//! sweeps become faster as a field becomes more coherent.
 //!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 

@@ -1,8 +1,9 @@
 //! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
-//! The query image is divided into fixed tiles. A sweep visits the patches of each tile forwards and then backwards.
-//! It uses the current matches inside the tile, and the matches from before the sweep outside it. All tiles are
-//! written back at the end.
+//! The query image is divided into fixed tiles. A sweep visits the patches of each tile forwards and then backwards. A
+//! patch sees the current matches inside its tile, and the matches from before the sweep outside. All tiles are
+//! written back at the end. With usage penalties, however, tiles run one after the other, and each is written back
+//! before the next one starts.
 
 use super::domain::Domain;
 use super::field::Field;

@@ -25,8 +25,8 @@ pub struct Footprints {
     pub height: [f32; RUN],
     /// Distance by which the rows of the rectangle shift along x per source pixel along y.
     pub shear: [f32; RUN],
-    /// Squared length of the major axis of the ellipse onto which the map takes a circle of one output pixel in
-    /// diameter, before it is widened to at least one source pixel.
+    /// The map takes a circle with a diameter of one output pixel to an ellipse in the source. This is the squared
+    /// length of its major axis in source pixels, before the ellipse is widened to at least one pixel.
     pub longest: [f32; RUN],
 }
 

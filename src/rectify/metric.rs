@@ -44,8 +44,8 @@ impl Line {
     }
 
     /// The paper's metric, Eq. 2: `min(d_naive, d_vanishing)`, with `d_vanishing = x / y * d_naive`. `d_naive` is the
-    /// distance of `p` from the line, `x` half the length of the segment, and `y` the distance from its midpoint to
-    /// the foot of the perpendicular from `p`.
+    /// distance of `p` from the line, and `x` is half the length of the segment. `y` is the distance along the line
+    /// from the segment's midpoint to the point nearest to `p`.
     pub fn printed_distance(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.centre * p.z;
         let across = self.direction.perp_dot(away).abs();

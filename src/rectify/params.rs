@@ -27,7 +27,7 @@ pub enum Search {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point.
-    /// It is finite for points at infinity.
+    /// This distance is finite even if the vanishing point is at infinity.
     Segment,
     /// The paper's metric as printed (Eq. 2): `min(d_naive, d_vanishing)` of the whole visible line.
     VisibleLine,

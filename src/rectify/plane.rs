@@ -10,8 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// A plane is refused as seen edge-on if the sine of the angle between the plane and the viewing ray is below this in
-/// the median over the pixels of the mask. [origin not recorded]
+/// A plane is refused as seen edge-on if the median of `sin a` over the pixels of the mask is below this, where `a` is
+/// the angle between the plane and the viewing ray. [origin not recorded]
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.

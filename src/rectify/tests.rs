@@ -257,8 +257,8 @@ fn a_hundred_thousand_segments_take_their_time_but_not_more() {
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
 }
 
-/// A linear photo of a ceiling in the plane `y = -1` that extends 6 units from the camera in each direction, with
-/// lamps of 0.3 × 0.15 units at a spacing of 0.6 × 0.4 units.
+/// A linear photo of a ceiling in the plane `y = -1`. The ceiling extends 6 units from the camera in each direction.
+/// It has lamps of 0.3 × 0.15 units at a spacing of 0.6 × 0.4 units.
 fn ceiling(camera: &Perspective) -> Image {
     const SUB: usize = 3;
     let lamp = |p: DVec2| {

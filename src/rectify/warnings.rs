@@ -20,8 +20,8 @@ const MAX_DISTORTION: f64 = 0.02;
 /// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
 /// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
-/// An angle that deviates by more than this, in radians, raises no warning. Rooms are not so oblique, so one of the
-/// two vanishing points is wrong, which says nothing about the other axes. [judged on 28 photos]
+/// An angle that deviates by more than this, in radians, raises no warning. Rooms are not so oblique: one of the two
+/// vanishing points must be wrong. [judged on 28 photos]
 const MAX_PLAUSIBLE_SKEW: f64 = 0.35;
 /// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
 /// [convention]
@@ -32,8 +32,8 @@ const SHARP_MAGNIFICATION: f64 = 4.0;
 /// A plane raises a warning if more than this share of it is magnified by more than `SHARP_MAGNIFICATION`.
 /// [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// A plane raises a warning if the sine of the angle between the plane and the viewing ray is below this in the median
-/// over the plane. [judged on 38 photos]
+/// A plane raises a warning if the median of `sin a` over the plane is below this, where `a` is the angle between the
+/// plane and the viewing ray. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
 /// Number of pixels sampled along each side of the unwarped plane.
 const GRID: usize = 96;

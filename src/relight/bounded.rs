@@ -28,8 +28,8 @@ pub(super) struct Problem<'a> {
 
 /// Maximum number of Newton steps; all but the last few change the set of unknowns at their bounds. [convention]
 const MAX_STEPS: usize = 200;
-/// A gradient counts as zero if its norm is at most this, relative to the largest entry of the right-hand side or, if
-/// it is larger, the norm of the first gradient. [rounding]
+/// A gradient counts as zero if its relative norm is at most this. The norm is relative to the largest entry of the
+/// right-hand side, or to the norm of the first gradient if that is larger. [rounding]
 const CONVERGED: f64 = 1e-12;
 /// After the last step, a gradient of this relative norm is accepted, since an unknown at its bound may keep changing
 /// state. [rounding]

@@ -11,8 +11,8 @@
 //! - By lamp: this gives the responses of several targets to thousands of lamps ([`lamp_responses`]). A small convex
 //!   problem then gives the powers of groups of lamps, within bounds or at dimming levels ([`solve_groups`]).
 //! - By cell of the emissive surface: this gives an importance map ([`Importance`]). The dot product of the map and a
-//!   texture is the response to this texture, and its gradient leads to the best placement of the texture
-//!   ([`Importance::place`]).
+//!   texture is the response to this texture. The gradient of the response with respect to the placement of the
+//!   texture leads to the best placement ([`Importance::place`]).
 //!
 //! Independently of light transport, [`mix_primaries`] mixes a colour from LEDs.
 //!

@@ -104,7 +104,7 @@ const MAX_CELLS: usize = 64;
 const MAX_DESCENTS: usize = 8;
 
 impl Importance {
-    /// Returns the light of the target under a placed texture, without other light. Also returns the derivatives of
+    /// Returns the mean radiance that a placed texture alone causes on the target. Also returns the derivatives of
     /// this light with respect to the offset along u and v, the scale along u and v, and the rotation. The texture is
     /// band-limited as in the search.
     ///

@@ -103,9 +103,11 @@ fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
 }
 
 impl Channel {
-    /// Computes the scale; `mean` averages a quantity over batches. With the target `t`, background `b` and response
-    /// `r`, the scale is `(t - E[b]) / E[r]` for a fit of the mean, and `(t E[r] - E[b r]) / E[r²]` for least squares,
-    /// where `E[·]` is the mean over the target's points.
+    /// Computes the scale from the target `t`, background `b` and response `r`. `E[·]` is the mean over the target's
+    /// points; the argument `mean` averages it over batches.
+    ///
+    /// - Fit of the mean: `(t - E[b]) / E[r]`.
+    /// - Least squares: `(t E[r] - E[b r]) / E[r²]`.
     fn scale(&self, target: f64, mean: impl Fn(&[f64; BATCHES]) -> f64) -> f64 {
         match &self.squares {
             None => (target - mean(&self.background)) / mean(&self.response),

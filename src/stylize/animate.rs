@@ -8,7 +8,7 @@
 //!   the paint follows slow changes too.
 //!
 //! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
-//! keeps the matches of a random set of blocks, so that the frames flicker as if painted by hand (after the temporal
+//! keeps the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal
 //! noise control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
@@ -25,8 +25,8 @@ use crate::rng::Rng;
 /// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
-/// A patch is astride a silhouette if the motion of one of its pixels differs from that of its centre by more than
-/// this number of pixels along x or y. [bench sequences]
+/// A patch is astride a silhouette if the motion of one of its pixels differs from the motion of its centre by more
+/// than this, in pixels along x or y. [bench sequences]
 const MAX_SPREAD: f32 = 1.0;
 /// A patch is matched anew when the light has changed by this much since its match was chosen, as a root mean square
 /// over the guides of light, encoded for display. [bench sequences]

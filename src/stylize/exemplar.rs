@@ -4,7 +4,8 @@
 //! equal guides, so it mixes them. Two defects show in the mean paint of the blocks:
 //!
 //! - A blemish, such as a stain: a block is unlike all blocks elsewhere with similar guides.
-//! - Two paints for one light: of the blocks elsewhere with equal guides, a good part is unlike the others.
+//! - Two paints for one light: a quarter or more of the blocks elsewhere with equal guides differs clearly from their
+//!   median paint.
 //!
 //! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
 
@@ -29,8 +30,8 @@ const MIN_OTHERS: usize = 16;
 /// Minimum grain, in units of the display encoding (white = 1). Flat paint has less grain and would make any
 /// difference look large. [bench stylit:doubts]
 const MIN_GRAIN: f32 = 0.015;
-/// The light of a block has two paints if, of the blocks elsewhere with equal guides, the upper quartile of the
-/// differences to their median paint is above this number of grains. [bench stylit:doubts]
+/// A light counts as painted in two ways if the upper quartile in [`Compared::spread`] is above this, in grains.
+/// [bench stylit:doubts]
 const TWO_PAINTS: f32 = 4.0;
 
 /// Defects of the exemplar, with their places in pixels.
@@ -60,8 +61,8 @@ struct Blocks {
 /// A block compared with the blocks elsewhere.
 #[derive(Clone, Copy, Default)]
 struct Compared {
-    /// The blocks elsewhere with equal guides have a median paint. This is the median and the upper quartile of the
-    /// differences between their paint and this median paint; `None` with too few such blocks.
+    /// The blocks elsewhere with equal guides have a median paint. `spread` is the median and the upper quartile of
+    /// the differences of their paint from this median paint. `None` if there are too few of these blocks.
     spread: Option<[f32; 2]>,
     /// 5 % quantile of the differences between the block's paint and the paint of the blocks elsewhere with similar
     /// guides. It is large only if hardly any of these blocks has similar paint.

@@ -12,11 +12,11 @@
 //! nearest exemplar patch instead.
 //!
 //! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
-//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match, if that match is
-//! closer than the patch's own, or if avoiding the seam outweighs the greater distance (`Params::settle`,
-//! `Params::seam`; not in the paper). This step searches for no new matches, so the result uses as much of the
-//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (StyLit,
-//! Eq. 3) to a third and keeps more of the texture.
+//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match (`Params::settle`,
+//! `Params::seam`; not in the paper). It does so if the continued match is closer than its own, or if avoiding the
+//! seam outweighs the greater distance. This step searches for no new matches, so the result uses as much of the
+//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (StyLit, Eq.
+//! 3) to a third and keeps more of the texture.
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.
@@ -116,7 +116,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
     let budget = budget(&errors);
     let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
 
-    // Spend the budget; targets already taken cost nothing.
+    // Spend the budget: each assigned target costs its error. Skip targets that are already taken.
     let (mut spent, mut gained) = (0.0, 0);
     for (&o, &error) in order.iter().zip(&errors) {
         let source = (o & 0xffff_ffff) as usize;

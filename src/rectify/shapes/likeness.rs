@@ -7,7 +7,8 @@ use crate::image::regions::Regions;
 use crate::{error::Result, image::try_vec};
 use glam::{DMat2, DVec2, DVec3};
 
-/// Standard deviation, in photo pixels, of the border of a region, caused by blur and bloom. [bench photos:tune]
+/// Standard deviation, in photo pixels, of the position of a region's border, caused by blur and bloom.
+/// [bench photos:tune]
 const BORDER_ERROR: f64 = 0.7;
 /// Standard deviation of the relative differences in length or width among lamps of one kind. [bench photos:tune]
 const VARIETY: f64 = 0.08;

@@ -24,9 +24,9 @@ use crate::job::Job;
 use likeness::Shape;
 use tilt::{Tilt, TiltEstimate};
 
-/// Minimum number of shapes for an estimate: two shapes of one kind give six measurements (the size and the two
-/// components of the stretch of each) for the five unknowns (two of the normal, focal length, common size, bloom).
-/// [convention]
+/// Minimum number of shapes for an estimate: two shapes of one kind give six measurements, for each shape the size and
+/// the two components of the stretch. The five unknowns are the normal (two), the focal length, the common size and
+/// the bloom. [convention]
 const MIN_SHAPES: usize = 2;
 /// A tilt is accepted only if it decreases the cost of the shapes by at least this, compared with the tilt that the
 /// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]

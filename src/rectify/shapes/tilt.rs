@@ -35,8 +35,8 @@ const MAX_LINES_COST: f64 = 9.0;
 /// variances. Most photographers hold the camera upright. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this,
-/// because both normals must put the plane on the same side of the camera. [bench photos:tune]
+/// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this. Both
+/// normals must put the plane on the same side of the camera. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.
@@ -154,7 +154,8 @@ fn refine(total: &TotalCost, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
 }
 
 /// Computes the covariance of the normal, and the standard deviation of the logarithm of the focal length, from the
-/// curvature of the cost: twice the inverse of its Hessian.
+/// curvature of the cost. As the cost is minus twice a log-likelihood, the covariance is twice the inverse of its
+/// Hessian.
 fn covariance(total: &TotalCost, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
     let at = |by: [f64; 3]| total.of(&moved(tilt, by));
     let unit = |k: usize, size: f64| std::array::from_fn(|i| if i == k { size } else { 0.0 });

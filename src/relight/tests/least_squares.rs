@@ -72,8 +72,8 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     assert!((ratio * (1.0 + variation) - 1.0).abs() < 4.0 * sigma, "{ratio}, {variation}");
 }
 
-/// With other light `b`, the least squares solution for the target `t` is `c = E[r (t - b)] / E[r²]`. Few paths give a
-/// noisy but unbiased `c`, although the mean of their squared values is far larger than `E[r²]`.
+/// With other light `b`, the least squares solution for the target `t` is `c = E[r (t - b)] / E[r²]`. With few paths,
+/// `c` is noisy but unbiased, although the mean square of the values of single paths is far larger than `E[r²]`.
 #[test]
 fn noise_does_not_make_the_answer_dark() {
     let scene = scene();
