@@ -125,8 +125,8 @@ mod tests {
             [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority].map(middle),
             [0.5, 0.5, 0.5, 0.0]
         );
-        // In the plain vote, at least 3 x 5 pixels in the middle are means of different colours, so they are not
-        // whole. In the other two votes, all pixels are whole.
+        // With `Plain`, at least 3 x 5 pixels in the middle are means of different colours, so they are not whole.
+        // With `Majority` and `Nearest`, all pixels are whole.
         let share = |mode| whole_share(&voted(mode), &field, &style, 5, job.job(), |_| true).unwrap();
         assert_eq!(share(VoteMode::Majority), 1.0);
         assert_eq!(share(VoteMode::Nearest), 1.0);

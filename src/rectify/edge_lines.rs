@@ -38,7 +38,7 @@ pub fn lines(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     starts.map(|start| std::iter::successors(Some(start), |&i| next[i]).map(|i| &edges[i]).collect()).collect()
 }
 
-/// Returns the gap between an edge and another one that continues its line; `None` if the other does not.
+/// Returns the gap in pixels between `edge` and `other` if `other` continues the line of `edge`, else `None`.
 fn gap(edge: &Edge, other: &Edge) -> Option<f64> {
     let between = other.a - edge.b;
     let (own, others) = (edge.b - edge.a, other.b - other.a);

@@ -69,7 +69,7 @@ impl Problem<'_> {
             }
             gradient = self.gradient(lambda, &z);
         }
-        // Accept a small residual: an unknown at its bound may change state by rounding.
+        // Accept a small gradient: an unknown at its bound may change state by rounding.
         if norm(&gradient) <= CONVERGED_AT_BOUND * scale {
             return Ok(self.clipped(&z));
         }

@@ -5,7 +5,7 @@
 //! of the map's cells. To make it differentiable, the look-ups are band-limited to the size of a cell
 //! ([`super::band`]). As textures repeat, there are many local optima. The search has three steps:
 //!
-//! 1. Evaluate many evenly distributed starting points and the current placement.
+//! 1. Evaluate many evenly distributed starting points, and the current placement of the texture ([`Pose::IDENTITY`]).
 //! 2. Descend from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
 //! 3. Compare the results at full resolution ([`Importance::respond`]).
 //!
@@ -82,7 +82,7 @@ pub struct PlacementParams {
 }
 
 impl Default for PlacementParams {
-    /// Searches for the brightest target over all offsets, at the current scale and rotation.
+    /// Searches for the brightest target over all offsets, with scale 1 and without rotation.
     fn default() -> Self {
         let shifted = |by: f64| Pose { offset: DVec2::splat(by), ..Pose::IDENTITY };
         Self { aim: Aim::Brightest, min: shifted(-0.5), max: shifted(0.5), starts: 64, seed: 1 }
@@ -131,8 +131,8 @@ impl Importance {
     pub fn place(&self, texture: &Image, params: &PlacementParams, job: Job) -> Result<Placement> {
         let bounds = params.bounds()?;
         let search = self.search(texture, params.aim, job.part(0.0, 0.1))?;
-        // Start from the current placement, clamped to the bounds, and from points of a low-discrepancy sequence
-        // within the bounds.
+        // Start from the current placement (the identity), clamped to the bounds, and from points of a low-discrepancy
+        // sequence within the bounds.
         let mut rng = Rng::new(params.seed, &[]);
         let shift: [f64; 5] = std::array::from_fn(|_| rng.next_f64());
         let start = |index: usize| match index {

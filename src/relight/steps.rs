@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(on, 2.0);
         let terms = Terms { constraints: &[Constraint::AtLeast], ..terms };
         assert_eq!(terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>(), 3.0);
-        // A single lamp goes to the nearest level within its bound.
+        // A single lamp goes to the nearest level within its bound, or to the lowest level if all are above the bound.
         let terms = Terms { matrix: &[2.0], right: &[1.5], constraints: &[Constraint::Exactly] };
         assert_eq!(terms.round(&[0.75], &[0.0, 0.5, 0.7, 1.0], &[FREE]), [0.7]);
         assert_eq!(terms.round(&[0.5], &[0.0, 0.5, 0.7, 1.0], &[0.6]), [0.5]);

@@ -21,16 +21,17 @@ use crate::patch::{Domain, Field, NONE, Search, Sweep, VoteMode, unpack, vote};
 
 /// Weight of the guides for patches astride the border, relative to their weight elsewhere. [bench stylit:autocomplete]
 const GUIDES: f32 = 0.1;
-/// Number of sweeps of the search for patches astride the border, and its radius in pixels.
+/// `SWEEPS`: number of sweeps of the search for patches astride the border. `RADIUS`: radius of its random search in
+/// pixels.
 const SWEEPS: usize = 2;
 const RADIUS: usize = 256;
 /// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
 /// [bench stylit:autocomplete]
 const MAX_USES: f64 = 100.0;
-/// Maximum number of searches for other matches of the patches by which the uses exceed `MAX_USES`.
+/// Maximum number of rounds that search other matches for the target patches beyond `MAX_USES`.
 const ROUNDS: usize = 8;
-/// Number of pixels over which a difference at the border fades out, and the share that each step leaves of it.
-/// [bench stylit:autocomplete]
+/// `REACH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out. `FADE`:
+/// factor of each step. [bench stylit:autocomplete]
 const REACH: usize = 12;
 const FADE: f32 = 0.97;
 

@@ -96,7 +96,7 @@ impl Problem {
         (self.style.width, self.style.height) == (artwork.width, artwork.height)
     }
 
-    /// Returns the known part of the target, encoded for display, and black elsewhere.
+    /// Returns the given picture of the target (`known`), encoded for display, or a black picture if none was given.
     pub fn blank_picture(&self) -> Result<Image> {
         match &self.known {
             Some(known) => known.try_clone(),

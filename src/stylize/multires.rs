@@ -229,7 +229,7 @@ fn rematch(
 /// Decodes the picture of the finest level and completes the report.
 fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, memory, .. } = state;
-    // Only pilot runs have no memory: their finest level is a halved problem, and no later frame is compared with it.
+    // Only pilot runs at reduced resolution have no memory: no later frame is compared with them.
     let memory = memory.unwrap_or_default();
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;

@@ -175,7 +175,7 @@ fn warps_of_tiny_sources_and_of_extreme_quadrilaterals_are_correct() {
                     assert!(pixel.iter().all(|v| (v - want).abs() < 1e-5), "{width} x {height}, {scale}: {pixel:?}");
                 }
             }
-            // Test a map to nothing, a map to a single point, and a map that is not finite.
+            // Test a zero matrix, a map of all pixels to a single point, and a map that is not finite.
             let nothing = warp(&grey, &Homography(DMat3::ZERO), 5, 5, monitor.job()).unwrap();
             assert!(nothing.data.iter().all(|&v| v == 0.0));
             let point = Homography(DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, DVec3::new(0.5, 0.5, 1.0)));

@@ -195,7 +195,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
     let bright = World::build(Arc::new(bright), Monitor::default().job()).unwrap();
     let reason = reason_for(&bright, &[floor(Vec3::ONE)], &kept);
     assert!(reason.contains("the other lights alone are brighter"), "{reason}");
-    // No response at all is an error.
+    // If no group has any response, the result is an error.
     let mut black = (**world.scene()).clone();
     black.materials[0].base_color = Vec3::ZERO;
     let black = World::build(Arc::new(black), Monitor::default().job()).unwrap();

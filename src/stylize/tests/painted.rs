@@ -48,7 +48,7 @@ fn light_that_the_painted_part_lacks_uses_no_patch_too_often_and_is_named_with_i
         Image::from_fn(120, 96, |x, y| [if lit(x, y) { 0.9 } else { 0.1 + 0.1 * (y % 48) as f32 / 48.0 }]).unwrap();
     let art = artwork(&Image::from_fn(120, 96, |x, y| [scene.pixel(x, y)[0], 0.0, 0.0]).unwrap());
     let output = completed(&art, &scene);
-    // The rest has about as many patches as the painted part, so the mean number of uses is about 1.
+    // The unpainted half has about as many patches as the painted half, so the mean number of uses is about 1.
     assert!(output.report.usage.max_uses <= 115, "{}", output.report.usage.max_uses);
     let lack = output.report.lack;
     assert!((lack.share - 0.5).abs() < 0.03, "{lack:?}");
