@@ -5,8 +5,8 @@
 //! diagonal. Let t run along a straight line, and let y be the distance from the centre across it. The line then
 //! appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes the centre at
 //! distance d, its curvature is `y″ = 2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the curve, y″ / 2,
-//! divided by d / R², therefore yields one estimate of k per line. A robust mean over the many lines of a room rejects
-//! mouldings and vaults, which are curved themselves.
+//! divided by d / R², therefore yields one estimate of k per traced segment. A robust mean over the many lines of a
+//! room rejects mouldings and vaults, which are curved themselves.
 //!
 //! Lines that consist of several pieces (`edge_lines`) must be smooth as a whole: the tiles of a ceiling sag between
 //! the bars that carry them, so each edge of a tile is curved even without any lens distortion.
@@ -25,7 +25,7 @@ pub struct Distortion {
     pub corner: f64,
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
-    /// Number of lines consistent with the estimate.
+    /// Number of traced segments that are consistent with the estimate.
     pub lines: usize,
 }
 
@@ -37,7 +37,7 @@ const TRIM: f64 = 4.0;
 const SEARCH_WIDTH: i32 = 4;
 /// A segment is used only if its edge is found along at least this share of its length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
-/// Minimum number of lines; with fewer lines there is no estimate.
+/// Minimum number of traced segments; with fewer segments there is no estimate.
 const MIN_LINES: usize = 12;
 /// Error of an edge's position, in pixels, that the residuals of the fitted parabola do not show. Its square is added
 /// to the variance of the residuals. [origin not recorded]
@@ -67,7 +67,7 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
     combine(&estimates)
 }
 
-/// The estimate of k from one line, with its weight.
+/// The estimate of k from one traced segment, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
     /// Estimate of k from the curvature without its term `3 k d² / R²`.
@@ -191,7 +191,7 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
 /// Number of iterations of the M-estimate.
 const ROUNDS: usize = 20;
 
-/// Returns the value of k that most lines support: an M-estimate started at the weighted median.
+/// Returns the value of k that most segments support: an M-estimate started at the weighted median.
 fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     if estimates.len() < MIN_LINES {
         return None;
@@ -202,7 +202,7 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
-/// Returns the result of one step of the M-estimate: the weighted mean over the lines within the biweight's limit
+/// Returns the result of one step of the M-estimate: the weighted mean over the segments within the biweight's limit
 /// around `corner`, with a standard deviation derived from their scatter.
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
