@@ -287,6 +287,8 @@ fn bad_input_is_refused_with_advice() {
     for (known, params) in wrong {
         assert_eq!(refused(known, params, &star).kind, ErrorKind::InvalidArgument);
     }
+    let two = fit(&shot, &[star.clone()], &[star[0], star[50]], Known::Nothing, Params::default()).map(|_| ());
+    assert!(two.unwrap_err().message.contains("suspensions 0 and 1 are both nearest to lamp 0"));
     assert_eq!(refused(Known::Nothing, Params::default(), &[DVec2::NAN; 30]).kind, ErrorKind::InvalidArgument);
     assert_eq!(refused(Known::Nothing, Params::default(), &star[..5]).kind, ErrorKind::InvalidArgument);
 }

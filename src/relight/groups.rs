@@ -86,8 +86,8 @@ pub struct GroupSolution {
     /// the chosen level and the continuous power is added.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
-    /// The reason why goals are missed; `None` if all are met. If goals are missed, the powers are the best within the
-    /// bounds.
+    /// The reason why goals of positive weight are missed; `None` if these are met. If goals are missed, the powers are
+    /// the best within the bounds.
     pub unreachable: Option<String>,
 }
 
@@ -360,7 +360,7 @@ impl System<'_> {
         Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
 
-    /// Explains why goals are missed; `None` if all are met.
+    /// Explains why goals of positive weight are missed; `None` if these are met.
     fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
         let missed: Vec<usize> = (0..outcomes.len())
             .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].status.iter().any(|r| *r != TargetStatus::Met))
