@@ -26,10 +26,11 @@ pub enum Aov {
     GeometricNormal,
     /// Reflectance plus transmittance at normal incidence.
     Albedo,
-    /// Index of the mesh plus 1; 0 for the background. The faces of a luminaire have the number of meshes plus the
-    /// index of the light plus 1.
+    /// Index of the mesh plus 1; 0 for the background. The luminous faces of light number `i` have the value
+    /// `m + i + 1` if the scene has `m` meshes.
     Object,
-    /// Index of the material plus 1; 0 for the background. The faces of luminaires have the number of materials plus 1.
+    /// Index of the material plus 1; 0 for the background. The luminous faces of luminaires have the value `n + 1` if
+    /// the scene has `n` materials.
     Material,
     /// Share of the pixel's samples that hit a surface, in `[0, 1]`.
     Alpha,
@@ -90,8 +91,8 @@ impl Aov {
         }
     }
 
-    /// Returns the number of f64 values per pixel in which a render in parts (`super::parts`) sums up this attribute;
-    /// see [`Surfaces::add_to`].
+    /// Returns the number of f64 values per pixel in which a render in parts (`super::parts`) sums up this attribute by
+    /// [`Surfaces::add_to`].
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -99,7 +100,7 @@ impl Aov {
         }
     }
 
-    /// Converts the f64 sums of a pixel in a render in parts to the f32 totals that a film stores.
+    /// Converts the f64 sums that a render in parts keeps for a pixel to the f32 totals that a film stores.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -116,7 +117,8 @@ impl Aov {
     }
 
     /// Writes the value of a pixel to `out`, computed from the pixel's totals, number of hits and number of samples.
-    /// Positions stay relative to the origin of world coordinates (`facet::centre`).
+    /// Positions are written in world coordinates (relative to `facet::centre`); the caller converts them to scene
+    /// coordinates.
     pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
@@ -172,8 +174,9 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to the pixel's f64 sums in a render in parts. Vote counts are exact for up to
-    /// `ballot::CANDIDATES` different indices.
+    /// Adds these sums to the f64 sums that a render in parts keeps for the pixel. Call it after each path: the votes
+    /// for an index are then counted exactly, as long as the pixel shows at most `ballot::CANDIDATES` different
+    /// indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),

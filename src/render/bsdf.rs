@@ -4,8 +4,10 @@
 //! perfect mirror. Of the light that passes the top layer, the share `transmission` continues in a straight line, as
 //! through a thin pane (`KHR_materials_transmission` without volume). Appendix B blends the two layers by the Fresnel
 //! factor of the half vector; the sum of both layers then reflects up to twice the incident light at grazing angles.
-//! This module instead attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the
-//! outgoing direction. A dielectric with an index of refraction of 1 has no top layer.
+//! This module instead multiplies the diffuse layer by (1 - E(ωi)) (1 - E(ωo)) / (1 - Ē), so that it reflects only what
+//! the top layer lets through (Kelemen and Szirmay-Kalos 2001). Here E(ω) is the albedo of the dielectric top layer for
+//! the incoming (ωi) or outgoing (ωo) direction, and Ē its cosine-weighted mean. A dielectric with an index of
+//! refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -72,12 +74,13 @@ struct Layers<'a> {
     shares: [f32; 2],
     /// The GGX lobe and its directional albedo; `None` if the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
-    /// Attenuation of the diffuse layer on the way to the viewer, divided by the cosine-weighted mean of this
-    /// attenuation over all directions.
+    /// (1 - E(ωo)) / (1 - Ē): the share of light that the top layer lets through to the viewer, divided by the
+    /// cosine-weighted mean of this share over all directions (see the module's documentation).
     left_over: f32,
 }
 
-/// The values of the diffuse and of the glossy lobe for one pair of directions, each multiplied by the cosine.
+/// The BSDF values of the diffuse and of the glossy lobe for one pair of directions. Each is multiplied by cos θi, the
+/// cosine of the angle between the direction of the light and the shading normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobes {
     pub diffuse: Vec3,
@@ -192,8 +195,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Returns the values of the non-specular lobes times the cosine, and the solid-angle pdf with which
-    /// [`Bsdf::sample`] draws `direction`.
+    /// Returns the values of the non-specular lobes for light from `direction`, times the cosine, and the solid-angle
+    /// pdf with which [`Bsdf::sample`] draws `direction`.
     #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let cosine = direction.dot(self.normal);
@@ -207,7 +210,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Samples a direction from `u`, a point of the unit square. Returns `None` if the light is absorbed.
+    /// Samples a direction from `u`, a point of the unit square. Returns `None` for a sample that carries no light,
+    /// because the BSDF is black or the direction lies below the surface.
     #[inline]
     pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
         if let Some(layers) = &self.layers {
@@ -230,8 +234,8 @@ impl<'a> Layers<'a> {
         let s = bsdf_params;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // Compute two albedos of the top layer for light from the viewer's direction: the largest channel of the whole
-        // layer's albedo (`top`), and the albedo of its dielectric part (`coat_albedo`).
+        // Compute the albedo of the top layer for the direction of the viewer: the largest channel of the whole layer
+        // (`top`), and its dielectric part alone (`coat_albedo`).
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {

@@ -7,9 +7,9 @@ use glam::Vec3;
 /// The parameters of a material, and flags that let tracing skip features that the material does not use.
 #[derive(Clone, Copy, Debug)]
 pub struct CompiledMaterial {
-    /// The BSDF parameters; valid only where no texture varies them.
+    /// The BSDF parameters of all points of the surface; valid only if `is_textured` is false.
     pub bsdf_params: BsdfParams,
-    /// Whether textures vary the parameters.
+    /// Whether textures or vertex colours vary the parameters.
     pub is_textured: bool,
     /// Whether the material may have layers besides the diffuse one.
     pub layered: bool,

@@ -16,7 +16,8 @@ pub enum LightSource {
     Environment,
 }
 
-/// Receives the contributions of a path. The sum of their products `importance * emission` estimates the radiance.
+/// Receives the contributions of a path. The sum of `importance * emission` over all contributions estimates the
+/// radiance, or the irradiance if the path starts at a receiver.
 pub trait PathSink {
     /// Adds a contribution. `importance` is the product of all factors except the emission: throughput × mis_weight /
     /// pdf.

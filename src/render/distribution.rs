@@ -7,7 +7,8 @@ use crate::image::try_vec;
 pub struct Distribution {
     /// `cumulative[i]` is the sum of the weights of entries 0 to `i`.
     cumulative: Vec<f64>,
-    /// `guide[k]` is the entry that contains `u = k / guide.len()`; searches start there (Chen and Asau 1974).
+    /// `guide[k]` is the entry that `u = k / guide.len()` selects. A search for a larger `u` starts there (Chen and
+    /// Asau 1974).
     guide: Vec<u32>,
 }
 

@@ -90,8 +90,8 @@ impl EnvironmentSampler {
     }
 }
 
-/// Returns the radiance that arrives from a unit direction. Images are interpolated bilinearly; columns wrap around
-/// the horizon, and rows are clamped at the poles.
+/// Returns the radiance that arrives from a unit direction. Images are interpolated bilinearly. They wrap around
+/// horizontally and are clamped at the top and the bottom (the poles).
 pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     let image = match environment {
         Environment::Constant(radiance) => return radiance.max(Vec3::ZERO),

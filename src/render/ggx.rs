@@ -138,8 +138,8 @@ fn cell(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// Returns the cosine-weighted mean of a row over the hemisphere: twice the integral of the row times the cosine.
-/// Between entries, the row is interpolated linearly, as in look-ups.
+/// Returns the cosine-weighted mean of a row over the hemisphere: 2 ∫₀¹ row(c) c dc, where c is the cosine. Between
+/// entries, the row is interpolated linearly, as in look-ups.
 fn cosine_average(row: &[Vec2]) -> Vec2 {
     let step = 1.0 / (SIDE - 1) as f32;
     row.windows(2)
@@ -274,8 +274,8 @@ mod tests {
                 for i in 0..64 * 64 {
                     let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + 0.5) / 64.0;
                     let n = stretched(lobe.sample_normal(u), alpha);
-                    // Project the normal along the view direction, then undo the compression of the disc's hidden
-                    // half.
+                    // Project the normal along the view direction to the unit disc. Then undo the step of
+                    // `sample_normal` that squeezes the disc into the projection of the visible hemisphere.
                     let (p1, p2) = (n.dot(t1), n.dot(t2));
                     let s = 0.5 * (1.0 + v.z);
                     let p = Vec2::new(p1, (p2 - (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt()) / s);

@@ -179,7 +179,7 @@ impl Lamp {
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
-        // The luminaire does not hide itself.
+        // Ignore the luminaire's own faces: they do not hide the opening.
         let own = world.faces_of(self.light);
         for face in self.opening.faces(u) {
             let weight = face.projected_area(u);
@@ -273,8 +273,8 @@ fn luminance(light: DVec3) -> f64 {
     f64::from(colour::luminance(light.as_vec3()))
 }
 
-/// Divides the light that paths carry to an eye: indirect light (`indirect`), and direct light from lights that the
-/// rating ignores (`unrated`).
+/// Adds up the light that paths carry to an eye, in two sums: indirect light (`indirect`), and direct light from lights
+/// that the rating ignores (`unrated`). Direct light from rated luminaires belongs to neither sum.
 struct GlareObserver<'a> {
     /// For each light of the scene, whether the rating takes it into account.
     rated: &'a [bool],

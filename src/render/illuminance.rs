@@ -76,7 +76,8 @@ const LEARNING_PATHS: u32 = 4;
 /// A calculation learns only if it traces at least this many times as many paths as are needed for learning.
 /// [convention]
 const MIN_RATIO: usize = 50;
-/// Added to the seed of the paths from which a calculation learns, so that its own paths get other random numbers.
+/// Combined (by XOR) with the seed for the paths from which a calculation learns, so that these paths and the paths of
+/// the calculation itself use different random numbers.
 const SALT: u64 = 0x6c65_6172_6e69_6e67;
 
 /// Computes the illuminance at the points of `place`. Call it on the library's own thread pool.
@@ -115,8 +116,8 @@ pub fn run(world: &World, place: &CalculationPoints, params: &Params, job: Job) 
     summary(params, &estimates)
 }
 
-/// Learns from a few paths which lights reach the points. Does not learn if these paths are too many compared with
-/// those of the calculation.
+/// Learns from a few paths which lights reach the points. Skips the learning if the calculation itself traces fewer
+/// than `MIN_RATIO` times as many paths. Returns the world in which the calculation traces its paths.
 fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> Result<World> {
     let points = params.columns * params.rows;
     let stride = points.div_ceil(MAX_LEARNING_POINTS);

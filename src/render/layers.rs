@@ -220,13 +220,14 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Records what the paths of a pixel add to the layers, one path after the other.
+/// Adds up the light and the surface attributes of the paths of a pixel, one path after the other.
 pub struct Recorder<'a> {
     layers: &'a Layers<'a>,
     /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
     pub(super) tracker: PathTracker<'a>,
-    /// Sums of the light of the pixel's paths, one for each list of expressions in [`Automaton::lists`].
+    /// Sums of the light of the pixel's paths. Each list in [`Automaton::lists`] has a sum: the light that matches
+    /// exactly the expressions on the list.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
@@ -255,7 +256,7 @@ impl Recorder<'_> {
         let (colours, surfaces) =
             totals[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        // Add the sum of each list of expressions to the totals of the expressions on it.
+        // A list names the expressions that share a sum. Add each sum to the totals of all expressions on its list.
         let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();

@@ -18,14 +18,15 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies before it.
-/// [convention]
+/// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies in front of
+/// the ceiling. [convention]
 const GAP: f64 = 2e-4;
-/// The gap is at least this multiple of the offset of rays that start at the largest coordinates, so that rounding does
-/// not close it. [rounding]
+/// The gap is at least this multiple of the offset with which rays leave a surface at the largest coordinates of the
+/// scene, so that rounding does not close the gap. [rounding]
 const GAP_OFFSETS: f64 = 8.0;
-/// The projected area counts as at least this share of its largest value along an axis of the luminaire: an opening
-/// without height that emits along its plane would have an infinite luminance there. [rounding]
+/// The luminance is intensity / projected area. In this quotient, the area is at least this share of the largest area
+/// as seen along an axis of the luminaire. Otherwise a flat opening would have infinite luminance along its plane,
+/// where its area is 0. [rounding]
 const EDGE_ON: f64 = 1e-6;
 /// Steps in degrees of C and γ in which luminances are compared to bound the intensities of patches. [convention]
 const STEP: [usize; 2] = [15, 5];
@@ -59,19 +60,21 @@ pub struct Source {
     frame: [DVec3; 3],
 }
 
-/// What luminaires of equal distribution have in common.
+/// The data that all luminaires with the same luminous intensity distribution share.
 struct Shape {
     faces: Faces,
-    /// For each patch, bounds on its intensity; `None` for patches that do not emit.
+    /// For each patch, the bound on its intensity; `None` for patches that do not emit.
     profiles: Vec<Option<Profile>>,
-    /// Luminous flux in lumens of a luminaire of colour 1.
+    /// Luminous flux in lumens of a luminaire whose `colour` is (1, 1, 1).
     flux: f64,
 }
 
-/// Bounds on the intensity of a patch in candela, for a luminaire of colour 1.
+/// An upper bound of the intensity of a patch in candela, as a function of direction, for a luminaire whose `colour` is
+/// (1, 1, 1).
 #[derive(Clone, Copy)]
 enum Profile {
-    /// The intensity is at most the value times the cosine to the normal of each triangle.
+    /// With the value I₀: a triangle of area a, in a patch of area A, emits at most I₀ (a / A) cos θ at the angle θ to
+    /// its normal.
     Cosine(f64),
     /// The intensity of a flat patch is at most `peak` up to `angle` (radians) from its normal, and 0 beyond.
     Cone { peak: f64, angle: f64 },
@@ -86,7 +89,8 @@ pub struct FaceEmission {
 }
 
 impl FaceEmission {
-    /// Returns the luminance per channel, in cd/m², of all faces that are seen from a direction.
+    /// Returns the luminance per channel, in cd/m², towards a viewer in `direction`. It is the same for all faces that
+    /// the viewer sees.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let local = self.measured.local(direction);
         let area = self.opening.projected_area(local).max(self.least_area);
@@ -149,8 +153,8 @@ impl Source {
         self.shape.flux * f64::from(self.emission.colour.element_sum() / 3.0)
     }
 
-    /// Returns the corners of the triangles in world coordinates. The axes of a luminaire are left-handed, so the
-    /// corners change their order: triangles are wound anticlockwise as seen from outside.
+    /// Returns the corners of the triangles in world coordinates. The axes of a luminaire are left-handed, so two
+    /// corners of each triangle are swapped: the triangles then wind anticlockwise as seen from outside.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let Faces { points, triangles, .. } = &self.shape.faces;
         triangles.iter().map(|&[a, b, c]| [a, c, b].map(|i| self.in_world(points[i as usize]).as_vec3()))
@@ -207,7 +211,7 @@ impl Shape {
         let is_dark = luminaire.candela.iter().all(|v| *v == 0.0);
         let emits = Emits { forwards: !is_dark && low < 90.0, backwards: !is_dark && high > 90.0 };
         let faces = Faces::new(opening, emits, gap);
-        // Compare the luminance in directions all around.
+        // Compute the luminance in a grid of directions over the whole sphere.
         let measured = Measured::new(Vec3::Z, Vec3::X, luminaire.clone());
         let least = opening.largest_area() * EDGE_ON;
         let directions =
@@ -224,7 +228,8 @@ impl Shape {
             .iter()
             .map(|patch| patch.is_luminous.then(|| Profile::new(&faces, patch, &samples, [low, high])))
             .collect();
-        // Give patches that seem dark in the sampled directions a share of the samples.
+        // A patch may seem dark only because the grid of directions misses its light. Give such a patch a share of the
+        // samples too.
         let brightest = profiles.iter().flatten().map(Profile::peak).fold(0.0, f64::max);
         profiles.iter_mut().flatten().for_each(|profile| profile.raise(brightest * MIN_SHARE));
         Self { faces, profiles, flux: luminaire.flux() }
@@ -232,7 +237,8 @@ impl Shape {
 }
 
 impl Profile {
-    /// `samples` are luminances by direction; no light goes to γ below or above the `limits` in degrees.
+    /// `samples` are directions with the luminance in each. The luminaire emits only at angles γ between the two
+    /// `limits` in degrees.
     fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
         let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area(t)).collect();
         let area: f64 = normals.iter().map(|n| n.length()).sum();

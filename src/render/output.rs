@@ -26,11 +26,11 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of point lights, spot lights and luminaires without faces that emit. They have no surface, so the image
-    /// cannot show them.
+    /// Number of lights that illuminate the scene but have no surface, so that the image cannot show them: point
+    /// lights, spot lights, and luminaires without faces.
     pub unseen_lights: usize,
-    /// How many lamps cannot reach the surfaces in view; `None` if the render found too few of them to treat them
-    /// differently.
+    /// How many lamps do not reach the surfaces in view. The render samples such lamps less often. `None` if there are
+    /// too few of them to gain time that way, or if the render did not count them.
     pub reach: Option<Reach>,
     /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`Reach::sentence`].
     pub requirements: Vec<String>,

@@ -33,7 +33,7 @@ pub const MAX_BOUNCES: u32 = 8192;
 /// Receives the events of a light path while it is traced. Many observers implement only [`Observer::add`]; the empty
 /// defaults of the other methods cost nothing.
 pub trait Observer {
-    /// Receives a contribution as in [`PathSink::add`], and the sampling strategy that found the light.
+    /// Receives a contribution with the arguments of [`PathSink::add`], and the sampling strategy that found the light.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy);
 
     /// Receives the first surface that a camera path hits. `_seen` computes its attributes.

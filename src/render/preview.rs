@@ -9,7 +9,7 @@ use super::params::Params;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 
-/// Guide images of the filter, in addition to the variance.
+/// Surface attributes that guide the filter.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
 /// Returns a copy of the parameters. If a preview is requested, the guide images of the filter are added after the

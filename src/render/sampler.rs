@@ -2,9 +2,10 @@
 //! four dimensions at a time.
 //!
 //! A path draws its numbers in blocks of four; each block is one four-dimensional Sobol' point. Blocks are combined by
-//! padding: each block shuffles and scrambles the same sequence in its own way. Within a block, every 2^k samples of a
-//! pixel are stratified. The four numbers of a block are for decisions that act together, such as the choice of a
-//! direction and of the light sample at the next vertex.
+//! padding: each block shuffles and scrambles the same sequence in its own way. Within a block, the samples of a pixel
+//! are stratified: any 2^k successive samples whose first index is a multiple of 2^k fill 2^k strata evenly. The four
+//! numbers of a block are for decisions that act together, such as the choice of a direction and of the light sample at
+//! the next vertex.
 
 use crate::rng;
 

@@ -47,15 +47,16 @@ impl ReplayObserver for Sum {
     }
 }
 
-/// A tape that adds up contributions, and also tracks the subpath through the automaton of light path expressions:
-/// once from every state in which an observer may start to replay it.
+/// A tape that adds up contributions, and also tracks the subpath through the automaton of light path expressions. It
+/// does so once from every state that the automaton of an observer may have when the observer replays the subpath.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,
     sum: Vec3,
     tracker: PathTracker<'a>,
-    /// States from which observers may start: those after scattering at the primary vertices (`viewers`), and those in
-    /// which the subpath begins (`origins`).
+    /// States of the automaton. `viewers` are the states after scattering at the primary vertices. `origins` are the
+    /// states in which the recorded subpath may begin: the `viewers`, or the states after a further scattering at the
+    /// secondary vertex ([`Tape::begin_behind`]).
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,

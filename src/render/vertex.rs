@@ -77,7 +77,8 @@ impl Vertex {
     pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
         let compiled = world.compiled_material(facet);
-        // Skip the look-ups for flat surfaces and uniform materials, which are the most frequent.
+        // Skip the look-ups of normals and textures if the surface does not need them, as is the case for most
+        // surfaces.
         let shading =
             if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
         let bsdf_params = if compiled.is_textured {

@@ -2,9 +2,10 @@
 //!
 //! In a building, most paths stay in a few rooms, but their rays descend through an acceleration structure of the whole
 //! building. The first passes therefore record where vertices lie ([`Places`]), and the render builds a second
-//! structure of the triangles that meet the box around these places. It is exact: a triangle that a segment hits before
-//! its end has a point on the segment, and a segment between two points of the box stays within the box. So both
-//! structures find the same hits, to the last bit. The structure of the whole scene answers all other rays.
+//! structure of the triangles that meet the box around these places. This second structure answers rays that stay
+//! within the box. Its answers are exact: the box is convex, so a segment between two points of the box stays within
+//! the box, and every triangle that the segment hits meets the box. Both structures therefore find the same hits, to
+//! the last bit. The structure of the whole scene answers all other rays.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
@@ -24,13 +25,16 @@ const MAX_OUTSIDE: f64 = 1.0 / 16.0;
 /// Triangles count as near if they are within this distance of the box, relative to the largest coordinate of the
 /// scene. It exceeds the rounding error of a hit, `MARGIN` in `scene/accel/node.rs`. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 16) as f32;
-/// The structure must have at most the reciprocal of this number of the triangles of the scene. [judged on 3 scenes]
+/// The structure is built only if it has at most `1 / MIN_RATIO` of the triangles of the scene, because a larger
+/// structure saves little time. [judged on 3 scenes]
 const MIN_RATIO: usize = 4;
 
-/// A random sample of the positions of vertices; all threads of a render add to it. It does not depend on the order in
-/// which they do: of all coordinates that fall to one entry, the entry keeps the one with the largest random number.
+/// A random sample of the positions of vertices, to which all threads of a render add. The sample does not depend on
+/// the order of the additions: each position has a random entry and a random priority, and each entry keeps the
+/// coordinates with the highest priority (for each axis on its own).
 pub struct Places {
-    /// For each axis of each entry, the bits of a random number, followed by the bits of the coordinate; 0 if empty.
+    /// For each axis of each entry, the priority (upper 32 bits) and the bits of the f32 coordinate (lower 32 bits); 0
+    /// if empty.
     entries: Vec<[AtomicU64; 3]>,
 }
 
@@ -45,7 +49,7 @@ impl Places {
     #[inline]
     pub fn add(&self, position: Vec3, u: f64) {
         let random = ((u * 4_294_967_296.0) as u32).rotate_left(PLACES.ilog2());
-        // The highest bits, which select the light, choose the entry; the others decide whether it is replaced.
+        // The 10 highest bits of `u` choose the entry; the lower bits are the priority.
         let entry = &self.entries[random as usize % PLACES];
         for (entry, x) in entry.iter().zip(position.to_array()) {
             let candidate = u64::from(random / PLACES as u32 + 1) << 32 | u64::from(x.to_bits());
@@ -75,8 +79,9 @@ pub struct Vicinity {
 }
 
 impl Vicinity {
-    /// Builds the structure of the triangles around the given places, if there are enough places and at most `max`
-    /// triangles. `all` is the structure of the scene, which has `count` triangles.
+    /// Builds the structure of the triangles around the given places. `all` is the structure of the scene, which has
+    /// `count` triangles. Returns `None` if there are too few places, if no triangle meets the box, or if more than
+    /// `max` triangles or more than `count / MIN_RATIO` triangles do.
     pub fn new(all: &Accel, count: usize, places: &Places, max: usize) -> Result<Option<Self>> {
         let sorted = places.sorted()?;
         let Some(few) = sorted.iter().map(Vec::len).min().filter(|&n| n >= MIN_PLACES) else { return Ok(None) };
@@ -86,7 +91,8 @@ impl Vicinity {
         let (lowest, highest) = all.bounds();
         let largest =
             [low, high, lowest, highest].into_iter().fold(0.0, |most: f32, p| most.max(p.abs().max_element()));
-        // Move the sides outwards, because vertices lie on them: those on the walls of a room.
+        // Move the sides of the box outwards: the vertices on the walls of a room lie on them and must count as inside
+        // in spite of rounding.
         let margin = largest * MARGIN;
         let (low, high) = (low - margin, high + margin);
         let max = max.min(count / MIN_RATIO);
@@ -94,7 +100,8 @@ impl Vicinity {
         Ok(accel.map(|accel| Self { accel, low, high }))
     }
 
-    /// Whether the box still fits the places.
+    /// Whether the box still fits the places: at most the share `MAX_OUTSIDE` of the coordinates of each axis lies
+    /// outside.
     pub fn fits(&self, places: &Places) -> Result<bool> {
         let sorted = places.sorted()?;
         let outside = sorted.iter().zip(self.low.to_array()).zip(self.high.to_array()).map(|((values, low), high)| {
@@ -109,7 +116,8 @@ impl Vicinity {
         (p.cmpge(self.low) & p.cmple(self.high)).all()
     }
 
-    /// Returns the nearest hit of a ray if it lies in the box; `None` if the ray may have another nearest hit.
+    /// Returns the nearest hit of a ray, if the ray starts in the box and the hit lies in the box. `None` means that
+    /// only the structure of the whole scene can tell the nearest hit.
     #[inline]
     pub fn closest(&self, ray: &Ray, accept: impl FnMut(&Hit) -> bool) -> Option<Hit> {
         if !self.contains(ray.origin) {
@@ -138,8 +146,8 @@ mod tests {
         low + (high - low) * Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32())
     }
 
-    /// The walls of 8 × 8 rooms of 4 × 3 × 4 m, as triangles, with a screen in the middle of each room. Walls between
-    /// rooms end 5 cm below the ceiling.
+    /// Walls, floors and ceilings of 8 × 8 rooms of 4 × 3 × 4 m, as triangles, with a screen in the middle of each
+    /// room. Walls between rooms end 5 cm below the ceiling.
     fn rooms() -> Vec<[Vec3; 3]> {
         let mut triangles = Vec::new();
         for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
@@ -189,7 +197,7 @@ mod tests {
             }
         }
         assert!(answered > 2500 && clear > 1000 && blocked > 300, "{answered} {clear} {blocked}");
-        // The box fits its places until many others are elsewhere.
+        // The box fits until many of the recorded positions lie outside.
         assert!(near.fits(&places).unwrap());
         (0..5000).for_each(|_| places.add(low + Vec3::X * 9.0, f64::from(rng.next_f32())));
         assert!(!near.fits(&places).unwrap());

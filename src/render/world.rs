@@ -21,14 +21,14 @@ use std::sync::Arc;
 
 /// A scene prepared for path tracing: acceleration structure, triangle data and light distributions. Triangles have
 /// scene-wide numbers (ids), mesh after mesh. World coordinates are relative to a centre, so that scenes far from the
-/// origin keep their precision. A clone is cheap, because it shares the data; only what a render learns about the
-/// lights is its own.
+/// origin keep their precision. A clone is cheap, because clones share all data, except for what a render learns about
+/// the lights.
 #[derive(Clone)]
 pub struct World {
     scene: Arc<Scene>,
     accel: Arc<Accel>,
-    /// The structure of the triangles around the vertices of the paths; `None` until a render has learned where they
-    /// are, and if it saves little.
+    /// Acceleration structure of the triangles around the path vertices (see `vicinity`). `None` until a render has
+    /// recorded where its vertices lie, and if such a structure would save little time.
     vicinity: Option<Arc<Vicinity>>,
     /// Whether renders may build the structure `vicinity`.
     has_vicinity: bool,
@@ -47,8 +47,8 @@ pub struct World {
     any_see_through: bool,
 }
 
-/// The structure of the triangles around the vertices has at most one triangle per this number of light samples so
-/// far, so that building it takes a small part of the time spent so far. [convention]
+/// The structure `vicinity` is built only if its number of triangles, times this number, is at most the number of light
+/// samples so far. Building it then takes a small part of the time spent so far. [convention]
 const TRIANGLES_PER_SAMPLE: usize = 4;
 
 /// A surface on a shadow ray through which light passes in a straight line: a clear pane, or a surface of partial
@@ -146,7 +146,8 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns an updated copy for the next pass; `None` if this copy stays in use ([`Lights::learned`]).
+    /// Returns a copy for the next pass, which samples lights according to the paths so far. `None` if this copy stays
+    /// in use (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.in_vicinity()).transpose()
     }
@@ -158,7 +159,7 @@ impl World {
         Ok(Self { lights: world.lights.clone().settled(), ..world })
     }
 
-    /// Builds the structure of the triangles around the vertices so far, unless there is one that still fits.
+    /// Builds the structure `vicinity` from the vertices recorded so far, unless the present structure still fits them.
     fn in_vicinity(self) -> Result<Self> {
         let Some((places, counted)) = self.lights.places()?.filter(|_| self.has_vicinity) else { return Ok(self) };
         if let Some(vicinity) = &self.vicinity
@@ -177,7 +178,7 @@ impl World {
         self.vicinity.as_deref()
     }
 
-    /// Returns how many lamps do not reach the surfaces in view ([`Lights::reach`]).
+    /// Counts the lamps that do not reach the surfaces in view (see [`Lights::reach`]).
     pub(super) fn reach(&self) -> Result<Option<Reach>> {
         self.lights.reach()
     }
@@ -280,8 +281,8 @@ impl World {
         (emitter != NONE).then_some(emitter as usize)
     }
 
-    /// Finds the nearest hit of a ray that leaves triangle `from`. `seed` returns the seed of the random decision
-    /// whether the ray hits or passes a partly transparent surface.
+    /// Finds the nearest hit of a ray that leaves triangle `from`. At a surface of partial opacity, a random decision
+    /// tells whether the ray hits or passes the surface; `seed` returns the seed of that decision.
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {
@@ -301,7 +302,9 @@ impl World {
     #[inline]
     fn is_blocked(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
         match self.vicinity.as_deref() {
-            // A hit near the start is a hit, wherever the ray ends.
+            // The triangles of the vicinity belong to the scene, so a hit among them blocks the ray wherever the ray
+            // ends. If there is none, the rest of the scene can block the ray only if the ray ends outside the
+            // vicinity.
             Some(near) if near.contains(ray.origin) => {
                 near.accel().occluded(ray, &accept)
                     || !near.contains(ray.at(ray.t_max)) && self.accel.occluded(ray, accept)
@@ -319,8 +322,8 @@ impl World {
         }
     }
 
-    /// Finds the surface that a ray from the camera sees. Whether it hits a partly transparent surface is a random
-    /// decision that is equal for all rays.
+    /// Finds the surface that a ray from the camera sees. A triangle of partial opacity gets one random number, the
+    /// same for all rays: where its opacity is larger than this number, all rays hit it; elsewhere, all rays pass it.
     pub fn visible(&self, ray: &Ray) -> Option<Hit> {
         self.closest(ray, NONE, || 0)
     }

@@ -6,7 +6,7 @@ use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
-/// Parameters of three roughnesses, each as a dielectric, a blend and a metal; the last ones are purely diffuse.
+/// Parameters for three roughnesses, each as a dielectric, a blend and a metal. The last entry is purely diffuse.
 fn all_bsdf_params() -> Vec<BsdfParams> {
     let colour = Vec3::new(0.9, 0.5, 0.2);
     let mut all = Vec::new();
@@ -142,8 +142,9 @@ fn a_white_dielectric_loses_energy_only_between_its_facets() {
     assert_eq!(albedo(&matt(Vec3::ONE), 0.3, &table), (1.0, 0.0), "white without a top layer");
 }
 
-/// White furnace test for metals. The albedo never exceeds 1 and is exactly 1 for a mirror. At roughness 1 the
-/// microfacet normals are distributed uniformly, and the albedo has a closed form.
+/// White furnace test for metals. The albedo never exceeds 1 and is exactly 1 for a mirror. At roughness 1 the GGX
+/// distribution is uniform, and the albedo has the closed form 1 - µ ln((1 + µ) / µ), with the cosine µ of the view
+/// direction.
 #[test]
 fn a_white_metal_makes_no_light_at_any_roughness() {
     let table = AlbedoTable::new();

@@ -1,12 +1,19 @@
 //! The choice between the unfiltered picture and the passes of the filter, pixel by pixel, by their estimated errors.
 //!
-//! Let A and B be the two halves before filtering, and a and b after it. A half changes by its bias plus noise, and the
-//! noises of the halves are independent, so (a - A)(b - B) has the squared bias as expectation, whatever the weights.
-//! The variance of the mean of a and b has (a - b)² / 4 as estimate. Their sum, averaged over neighbours, estimates the
-//! squared error of any candidate, correlations between pixels included; for the unfiltered picture it is the
-//! variance. (Rousselle et al. 2012 use two halves too; Stein's estimate, as by Li et al. 2012, would need the
-//! covariance of all pixels.) Pixels at edges of surfaces and all others are averaged apart, because the outlines of
-//! lamps have errors that would decide for everything near them.
+//! Let A and B be the values of the two halves at a pixel before filtering, and a and b the values after it.
+//!
+//! - The filter changes each half by its bias plus noise. The noise of the halves is independent, so the expectation of
+//!   (a - A)(b - B) is the squared bias.
+//! - (a - b)² / 4 is an estimate of the variance of the filtered picture (a + b) / 2.
+//! - The sum of both, averaged over neighbouring pixels, estimates the squared error of a candidate. It accounts for
+//!   correlations between pixels. For the unfiltered picture, it is the variance alone.
+//!
+//! Rousselle et al. 2012 use two halves too. Stein's unbiased risk estimate, as used by Li et al. 2012, would need the
+//! covariance of all pixels.
+//!
+//! The averages for pixels at edges of surfaces use only such pixels, and the averages for other pixels only other
+//! pixels (`Classes`). Otherwise, the large errors at the outlines of lamps would decide the choice for all pixels
+//! nearby.
 
 use super::light::{LIGHT, Light};
 use super::planes::{Classes, Planes};
@@ -17,12 +24,13 @@ use crate::job::Job;
 /// smoothed. [bench filter]
 const ERROR_RADIUS: usize = 16;
 const CHOICE_RADIUS: usize = 4;
-/// The error of a pixel counts relative to its light, or to this share of the mean of the picture if it is darker.
-/// [bench filter]
+/// Squared errors are divided by r² + m², where r is the radiance around the pixel and m this share of the picture's
+/// mean. So errors are relative to the radiance, except in dark pixels. [bench filter]
 const MIN_LIGHT: f32 = 0.1;
 
-/// Returns the halves of the filtered picture, relative to the albedo: at each pixel a mean of the candidates, by the
-/// shares of the neighbours that choose them. The first candidate is the unfiltered picture.
+/// Returns both halves of the filtered light. The candidates are the unfiltered light and the result of each pass;
+/// every pixel chooses the candidate with the least estimated error. The result at a pixel is a mean of the candidates,
+/// each weighted by the share of the pixels around that choose it.
 pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> Result<Planes> {
     let raw = &light.halves;
     let (width, height) = (raw.width, raw.height);
@@ -39,7 +47,7 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     let choices = Planes::from_rows([width, height, passes.len() + 1], job.part(0.6, 0.7), |y, row| {
         for x in 0..width {
             let least = (0..=passes.len()).min_by(|&i, &j| errors.row(y, i)[x].total_cmp(&errors.row(y, j)[x]));
-            // Where nothing is known about the noise, take the last pass.
+            // Where the variance is unknown, take the last pass.
             let choice = if light.is_known(x, y) { least.unwrap_or(0) } else { passes.len() };
             row[choice * width + x] = 1.0;
         }
@@ -47,7 +55,8 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     let shares = classes.smoothed(&choices, CHOICE_RADIUS, job.part(0.7, 0.9))?;
     Planes::from_rows([width, height, LIGHT], job.part(0.9, 1.0), |y, row| {
         for (channel, row) in row.chunks_exact_mut(width).enumerate() {
-            // Add changes to the unfiltered picture, so that a pixel that chooses it keeps its exact value.
+            // Add the weighted changes to the unfiltered light. A pixel thus keeps its exact value if all pixels around
+            // choose the unfiltered light.
             let raw = raw.row(y, channel);
             row.copy_from_slice(raw);
             for (pass, filtered) in passes.iter().enumerate() {
@@ -58,7 +67,8 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     })
 }
 
-/// Estimates the squared error of the mean of two filtered halves at a pixel, summed over the channels.
+/// Estimates the squared error of the mean of the filtered halves at a pixel, summed over the channels, in units of the
+/// picture's mean squared.
 fn squared_error(raw: &Planes, filtered: &Planes, light: &Light, [x, y]: [usize; 2]) -> f32 {
     let of_channel = |c: usize| {
         let [before, after] = [raw, filtered].map(|planes| [c, c + 3].map(|channel| planes.row(y, channel)[x]));

@@ -8,7 +8,8 @@ use crate::simd::widest;
 
 /// Channels of the guide images, three each: albedo, normal, position.
 pub const GUIDES: usize = 9;
-/// The channel after them: the factor by which a pixel scales its distances.
+/// The channel after the guides: the factor by which a pixel multiplies its distances to its neighbours (see
+/// [`scales`]).
 const SCALE: usize = GUIDES;
 /// Squared difference in albedo that counts as a distance of 1. [bench filter]
 const ALBEDO: f32 = 0.02;
@@ -35,7 +36,8 @@ impl Guides {
         })?;
         let scales = Planes::from_rows([width, height, 1], job.part(0.5, 1.0), |y, row| {
             scales(&planes, y, row);
-            // Where no noise is known, no test can tell the surfaces at an edge apart.
+            // Where the variance is unknown, no statistical test can separate the surfaces at an edge. The guides must
+            // do so, so the factor 1 keeps their distances.
             (0..width).filter(|&x| !input.is_known(x, y)).for_each(|x| row[x] = 1.0);
         })?;
         for y in 0..height {
@@ -50,8 +52,8 @@ impl Guides {
         self.0.row(y, channel)
     }
 
-    /// Returns an image that is 1 at pixels that resemble fewer than three of their neighbours, as at edges of
-    /// surfaces, and 0 elsewhere.
+    /// Returns an image that marks the edges of surfaces: 1 at pixels that have a distance of at most 1 to fewer than
+    /// three of their eight neighbours, and 0 elsewhere.
     pub fn edges(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = self.0;
         Planes::from_rows([width, height, 1], job, |y, row| {
@@ -66,9 +68,10 @@ impl Guides {
     }
 }
 
-/// Computes the factors of a row. At an edge, the guides of a pixel are means over several surfaces and resemble those
-/// of few neighbours. Its factor makes the distance of its third nearest neighbour at most 1, so that each pixel has
-/// company (the bandwidth of Rousselle et al. 2013, 4.1, follows the gradient of the guides for the same reason).
+/// Computes the factors of the pixels of a row. At an edge of a surface, the guides of a pixel are means over several
+/// surfaces, and few neighbours have similar guides. The factor reduces the distances such that the third smallest of
+/// the eight is at most 1. Every pixel then has neighbours to be averaged with. (For the same reason, the bandwidth in
+/// Rousselle et al. 2013, section 4.1, follows the gradient of the guides.)
 fn scales(guides: &Planes, y: usize, row: &mut [f32]) {
     let width = row.len();
     let mut nearest = vec![[f32::INFINITY; 3]; width];

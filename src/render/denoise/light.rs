@@ -12,19 +12,20 @@ use glam::Vec3;
 pub const LIGHT: usize = 6;
 /// Smallest albedo by which colours are divided, so that lamps and black surfaces keep their light. [bench filter]
 const MIN_ALBEDO: f32 = 0.02;
-/// A half whose variance is r times the mean variance of its neighbours gets the weight 1 / (1 + `RARE` r). [bench
-/// filter]
+/// If the variance of a half of a pixel is r times the mean variance of this half in the pixels around, it gets the
+/// weight `1 / (1 + RARE * r)`. [bench filter]
 const RARE: f32 = 0.3;
-/// Radius of that neighbourhood in pixels. [bench filter]
+/// Radius in pixels over which this mean variance is taken. [bench filter]
 const RARE_RADIUS: usize = 6;
-/// Errors are relative to the radiance, averaged over this radius in pixels. [bench filter]
+/// Relative errors are errors divided by a mean radiance around the pixel; this is the radius of the mean in pixels.
+/// [bench filter]
 const RADIANCE_RADIUS: usize = 4;
 
 /// Both halves of the light, in units of the mean of the picture.
 pub struct Light {
     pub halves: Planes,
-    /// Weight of each half of each pixel, in `(0, 1]`: lower where its variance stands out from its neighbours', as in
-    /// pixels that have found a rare bright path.
+    /// Weight of each half of each pixel, in `(0, 1]`. The weight is low if the variance of the half is large compared
+    /// with the pixels around, as in a pixel that has found a rare bright path.
     pub confidence: Planes,
     /// Albedo of the surface, at least `MIN_ALBEDO`.
     albedo: Planes,
@@ -67,8 +68,8 @@ impl Light {
         self.known.row(y, 0)[x] > 0.0
     }
 
-    /// Returns the factors that make the squared errors of pixels relative to their radiance, or to a share of the mean
-    /// of the picture where that is larger.
+    /// Returns for each pixel the factor `1 / (r² + min_light²)`, which makes its squared error relative. Here r is the
+    /// mean radiance around the pixel, in units of the picture's mean.
     pub fn error_scale(&self, min_light: f32, job: Job) -> Result<Planes> {
         let (width, height) = (self.halves.width, self.halves.height);
         let radiance = Planes::from_rows([width, height, 1], job.part(0.0, 0.3), |y, row| {
@@ -84,7 +85,7 @@ impl Light {
     }
 }
 
-/// Returns the mean radiance of both halves; 1 for a black picture.
+/// Returns the mean absolute value of both halves; 1 for a black picture.
 fn unit(input: &Input) -> f32 {
     let [one, other] = input.halves;
     let sum: f64 = one.data.iter().zip(&other.data).map(|(a, b)| f64::from(a.abs()) + f64::from(b.abs())).sum();

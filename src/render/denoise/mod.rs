@@ -1,22 +1,22 @@
 //! Noise filter: smooths an image rendered with few paths per pixel, guided by surface attributes, and states the error
 //! of the result.
 //!
-//! 1. The paths are split into two halves, which are filtered separately (after Rousselle et al. 2012, "Adaptive
-//!    rendering with non-local means filtering"). Their colours are divided by the albedo of the surfaces (`light`),
-//!    which preserves textures.
-//! 2. A first pass averages 5 x 5 neighbours on the same surface (`guides`). It is the pilot: noise is small enough in
-//!    it for tests.
-//! 3. Passes with growing steps combine the pixels that pass a test: their pilots differ by no more than their
-//!    variances explain (after Sakai et al. 2024, "A statistical approach to Monte Carlo denoising"). Each pass fits
-//!    planes rather than means (`regression`), so that gradients survive, and its result is the pilot of the next. The
-//!    variances are measured as the difference between the two halves, which includes the correlations between pixels
-//!    that share paths.
-//! 4. Each pixel takes the pass with the least estimated error, or stays as it is (`choice`). With zero variance,
-//!    the image is unchanged.
+//! 1. The paths of each pixel are split into two halves. The images of the two halves are filtered separately (after
+//!    Rousselle et al. 2012, "Adaptive rendering with non-local means filtering"). First they are divided by the albedo
+//!    of the surfaces (`light`), which preserves textures.
+//! 2. A first pass averages 5 x 5 neighbours on the same surface (`guides`). Its result is the first pilot: an image
+//!    with so little noise that its pixels can be compared by a statistical test.
+//! 3. Further passes take 5 x 5 neighbours at growing distances. A neighbour counts if the pilot values of the two
+//!    pixels differ by no more than their variances explain (after Sakai et al. 2024, "A statistical approach to Monte
+//!    Carlo denoising"). Each pass fits a plane to the neighbours instead of taking their mean (`regression`), so that
+//!    gradients survive. Its result is the pilot of the next pass. The variances follow from the difference between the
+//!    two halves, which includes the correlation between pixels that share paths.
+//! 4. Each pixel takes the result of the pass with the least estimated error, or stays as it is (`choice`). If all
+//!    variances are 0, the image is unchanged.
 //! 5. The error, the bias and the interval of each pixel are estimated from the halves (`statement`).
 //!
 //! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, by about their
-//! standard error. It states this bias, as part of the error. Final images are rendered without the filter.
+//! standard error. The stated error includes this bias. Final images are rendered without the filter.
 //!
 //! Not modelled: motion; reflections, which are smoothed as if they were light on the mirror's surface; textures seen
 //! in mirrors, which are blurred.
@@ -58,7 +58,8 @@ impl Default for Params {
 pub struct Output {
     pub image: Image,
     /// Half-width of an approximate 95 % interval of each pixel's radiance, per channel, bias included; infinite where
-    /// a variance is unknown. It is too narrow with few paths, because the choice of a pass is optimistic.
+    /// a variance is unknown. With few paths it is too narrow: each pixel takes the pass with the least estimated
+    /// error, and this estimate then tends to be too small.
     pub interval: Image,
     /// Estimated error, remaining noise and bias together: root mean square over pixels and channels, relative to the
     /// mean of the image. Infinite if a variance is unknown.
@@ -68,11 +69,11 @@ pub struct Output {
     pub bias: f64,
 }
 
-/// Distance between the taps of each pass, in pixels, and the radius over which the variance of its pilot is averaged.
-/// [bench filter]
+/// For each pass: the distance between neighbouring taps, and the radius over which the variance of the pilot is
+/// averaged, both in pixels. [bench filter]
 const PASSES: [(usize, usize); 3] = [(1, 6), (2, 6), (4, 10)];
-/// Squared difference of two pilots, in units of the sum of their variances, at which the weight of a neighbour falls
-/// by a factor e, at strength 1. [bench filter]
+/// At strength 1, the weight of a neighbour is divided by e if `(a - b)² = TOLERANCE * (v + w)`. Here a and b are the
+/// pilot values of the pixel and the neighbour, and v and w their variances. [bench filter]
 const TOLERANCE: f32 = 4.0;
 
 /// Filters the image, and states the error of the result.
@@ -102,7 +103,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     Ok(Output { image, interval, error, bias })
 }
 
-/// Returns the light after each pass.
+/// Returns the filtered light after each pass; the pilot of the first pass is not among them.
 fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job: Job) -> Result<Vec<Planes>> {
     let pass = |values: &Planes, pilot: Option<Pilot>, step: usize, job: Job| {
         Pass { light: values, pilot, confidence: &light.confidence, guides, step }.run(job)
@@ -119,15 +120,15 @@ fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job
         let tested = Pilot { light: pilots, variance: &variance, tolerance };
         let filtered = pass(values, Some(tested), step, part.part(0.2, 1.0))?;
         passes.push(filtered);
-        // The first pass has replaced the pilot.
+        // Free the first pilot: the result of the last pass is the pilot from now on.
         pilot.data = Vec::new();
     }
     Ok(passes)
 }
 
 /// Returns half the squared difference between the halves of the pilot, per channel: an estimate of the variance of a
-/// half. Where the noise of the picture is unknown, the halves may be equal, and the change by the last pass takes the
-/// place of their difference.
+/// half. Where the variance of the picture is unknown, the two halves may be equal. There, the difference between the
+/// first half of the pilot and of `before`, the pilot's predecessor, is used instead.
 fn squared_differences(light: &Light, pilot: &Planes, before: &Planes, job: Job) -> Result<Planes> {
     let (width, height) = (pilot.width, pilot.height);
     Planes::from_rows([width, height, 3], job, |y, row| {
@@ -141,7 +142,8 @@ fn squared_differences(light: &Light, pilot: &Planes, before: &Planes, job: Job)
     })
 }
 
-/// Returns a half of the picture after its light has been filtered. A pixel whose light is unchanged keeps its value.
+/// Returns one half of the picture with the filtered light `chosen`: the change of the light, times albedo and unit, is
+/// added to the unfiltered half. A pixel whose light is unchanged therefore keeps its exact value.
 fn changed(half: &Image, light: &Light, chosen: &Planes, number: usize, job: Job) -> Result<Image> {
     let width = half.width;
     let mut image = Image::new(width, half.height, 3)?;

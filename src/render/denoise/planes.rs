@@ -1,4 +1,5 @@
-//! Images whose rows store their channels one after the other, so that loops along a row vectorise.
+//! Images with planar rows: each row stores all its values of channel 0, then all its values of channel 1, and so on,
+//! so that loops along a row vectorise.
 
 use crate::error::Result;
 use crate::exec;
@@ -41,7 +42,8 @@ impl Planes {
     }
 
     /// Averages each channel over the neighbours of each pixel, with weights that fall linearly to 0 at `radius` + 1
-    /// pixels along each axis. Sums have a fixed order and no differences, so that values >= 0 give values >= 0.
+    /// pixels along each axis. No value is ever subtracted (as running sums would do), so that rounding cannot make the
+    /// mean of non-negative values negative.
     pub fn smoothed(&self, radius: usize, job: Job) -> Result<Self> {
         let Self { width, height, channels, .. } = *self;
         let weight = |distance: usize| (radius + 1 - distance) as f32;
@@ -78,11 +80,13 @@ pub struct Classes<'a> {
 }
 
 impl Classes<'_> {
-    /// Averages each channel over the neighbours of each pixel that are of its class, with the weights of
+    /// Averages each channel around each pixel over the pixels of the same class, with the weights of
     /// [`Planes::smoothed`].
     pub fn smoothed(&self, image: &Planes, radius: usize, job: Job) -> Result<Planes> {
         let Planes { width, height, channels, .. } = *image;
-        // Smooth the values of either class, 0 elsewhere, and the share of the first class.
+        // Smooth three images: the values of the first class (0 at all other pixels), the values of the second class
+        // (likewise), and the indicator of the first class. The mean of a class is its smoothed values divided by its
+        // smoothed indicator.
         let parts = Planes::from_rows([width, height, 2 * channels + 1], job.part(0.0, 0.1), |y, row| {
             let is_first = self.is_first.row(y, 0);
             let (values, share) = row.split_at_mut(2 * channels * width);

@@ -1,9 +1,14 @@
-//! One pass of the filter: each pixel gets the value at its centre of a plane that is fitted to its neighbours by
-//! weighted least squares (first-order regression, as by Bitterli et al. 2016, here over the pixel coordinates).
+//! One pass of the filter: for each pixel, fits a plane `value = p + q x + r y` to the neighbours by weighted least
+//! squares, where (x, y) is the offset of a neighbour. The filtered value is p (first-order regression, as by Bitterli
+//! et al. 2016, here over the pixel coordinates). The pass without a pilot takes the weighted mean instead.
 //!
-//! A neighbour's weight is the product of four factors: a Gaussian of its distance in pixels; its similarity in the
-//! guides; the statistical test of its pilot value, which falls with the squared difference of the two pilots divided
-//! by the sum of their variances (Welch's t, as by Sakai et al. 2024); and its confidence.
+//! A neighbour's weight is the product of four factors:
+//!
+//! - a Gaussian of its distance in taps;
+//! - exp(-d), where d is its distance in the guides (`guides`);
+//! - exp(-t / tolerance), where t is the squared difference of the two pilot values divided by the sum of their
+//!   variances (the square of Welch's t, as by Sakai et al. 2024), averaged over the channels;
+//! - its confidence (`light`).
 
 use super::guides::Guides;
 use super::light::LIGHT;
@@ -12,25 +17,28 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Neighbours along each axis, on either side of a pixel. [convention: 5 x 5 taps, as in à-trous filters]
+/// Number of taps along each axis, on either side of a pixel. [convention: 5 x 5 taps, as in à-trous filters]
 const RADIUS: isize = 2;
 /// Standard deviation of the Gaussian over the taps, in taps. [bench filter]
 const SIGMA: f32 = 2.0;
-/// Pull of the slopes towards 0, as a share of the weight: the regression becomes a mean where the neighbours lie on
-/// one line or are few. [bench filter]
+/// Ridge regularisation of the slopes q and r: this share of the sum of weights is added to the moments xx and yy.
+/// Where the neighbours are few or lie on one line, the result then approaches the weighted mean. [bench filter]
 const RIDGE: f32 = 0.02;
-/// Smallest share of the weights that must be left after the slopes are eliminated. [rounding]
+/// Eliminating the slopes from the normal equations leaves one equation for p. If its coefficient is at most this share
+/// of the sum of weights, the weighted mean is taken instead. [rounding]
 const MIN_LEFT: f32 = 0.02;
-/// Relative difference that rounding alone may cause. [rounding]
+/// Relative difference that rounding alone may cause between two pilot values. [rounding]
 const EQUAL: f32 = 1e-6;
-/// Sums of a pixel: moments 1, x, y, xx, xy, yy of the weights, and moments 1, x, y of each channel.
+/// Number of sums per pixel. With the weight w and the value f of a tap at the offset (x, y), the sums are Σw, Σwx,
+/// Σwy, Σwx², Σwxy and Σwy², then Σwf, Σwfx and Σwfy for each of the three channels.
 const SUMS: usize = 15;
 
 /// The data of one pass.
 pub struct Pass<'a> {
     /// The light of both halves; the values that are combined.
     pub light: &'a Planes,
-    /// The pilot: a smoother estimate of the light, whose differences decide the weights; `None` to test nothing.
+    /// The pilot: an estimate of the light with less noise, whose pixels are compared by the statistical test. `None`
+    /// skips the test and the fit of slopes.
     pub pilot: Option<Pilot<'a>>,
     /// Confidence in each half of each pixel, in `(0, 1]`.
     pub confidence: &'a Planes,
@@ -44,12 +52,14 @@ pub struct Pilot<'a> {
     pub light: &'a Planes,
     /// Variance of the pilot, per channel; equal for both halves.
     pub variance: &'a Planes,
-    /// Squared difference, in units of the sum of both variances, at which the weight has fallen by a factor e.
+    /// The weight of a neighbour is divided by e if the squared difference of the two pilot values is this multiple of
+    /// the sum of their variances.
     pub tolerance: f32,
 }
 
 impl Pass<'_> {
-    /// Filters both halves. Each half is tested against its own pilot only, so that the results stay independent.
+    /// Filters both halves. The test of a half compares values of its own pilot only, so that the noise of the halves
+    /// stays independent.
     pub fn run(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = *self.light;
         Planes::from_rows([width, height, LIGHT], job, |y, out| {
@@ -98,7 +108,9 @@ impl Pass<'_> {
 }
 
 widest! {
-    /// Adds the result of the test of the pilots to the distances.
+    /// Writes to `out` the distance in the guides plus the mean over the channels of
+    /// `(a - b)² / (tolerance * (v + w))`. Here a and b are the pilot values (`here`, `there`), and v and w their
+    /// variances (`noise_here`, `noise_there`).
     fn test(
         tolerance: f32,
         distance: &[f32],
@@ -123,7 +135,8 @@ widest! {
 }
 
 widest! {
-    /// Turns distances into weights, and adds a tap's weighted moments to the sums of the pixels from `from` on.
+    /// Replaces the distances t in `weights` by the weights `gauss * exp(-t) * confidence`. Then adds the terms of one
+    /// tap, at the offset `place`, to the sums (see [`SUMS`]) of the pixels from column `from` on.
     fn accumulate(
         gauss: f32,
         place: [f32; 2],
@@ -166,8 +179,8 @@ widest! {
     }
 }
 
-/// Computes the filtered values of a row from its sums: the value at the centre of the fitted plane, or else the
-/// weighted mean.
+/// Computes the filtered values of a row from its sums: the value p of the fitted plane at the pixel, or the weighted
+/// mean if `has_slopes` is false or the fit is ill-conditioned.
 fn solve(sums: &[f32], has_slopes: bool, out: &mut [f32]) {
     let width = out.len() / 3;
     let sum = |plane: usize, x: usize| sums[plane * width + x];

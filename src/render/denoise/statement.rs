@@ -1,6 +1,6 @@
 //! What the filter states about its result: the bias, the error, and the interval of each pixel.
 //!
-//! All follow from the two halves before and after filtering; `choice` has the formulas.
+//! All three are computed from the two halves before and after filtering; `choice` explains the formulas.
 
 use super::light::Light;
 use super::planes::{Classes, Planes};
@@ -53,7 +53,8 @@ impl Statement {
     }
 }
 
-/// Sums up the estimates. The squared bias counts only if it is positive: noise can make its estimate negative.
+/// Returns the squared error: the sum of the squared bias and the variance over all pixels. If noise makes the sum of
+/// the squared biases negative, it counts as 0.
 fn squared_error(errors: &Planes) -> f64 {
     let (mut bias, mut variance) = (0.0, 0.0);
     for y in 0..errors.height {
@@ -64,8 +65,8 @@ fn squared_error(errors: &Planes) -> f64 {
     bias.max(0.0) + variance
 }
 
-/// Returns estimates of the squared bias of each pixel, per channel, and then of the variance of the mean of the
-/// halves. They are accurate only as means over many pixels.
+/// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of the
+/// two filtered halves (R, G, B). They are accurate only as means over many pixels.
 fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
     let Image { width, height, .. } = *before[0];
     Planes::from_rows([width, height, 6], job, |y, row| {
@@ -81,9 +82,9 @@ fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<P
     })
 }
 
-/// Estimates the bias of the filter, relative to the mean of the image, from the images of two halves of the paths
-/// before and after filtering. In each square of pixels, the mean change of one half is multiplied by the mean change
-/// of the other half. The bias is the square root of the mean of these products.
+/// Estimates the bias of the filter, relative to the mean of the image, from the two halves before and after filtering.
+/// For each square of pixels, multiplies the mean change of one half by the mean change of the other half. The bias is
+/// the square root of the mean of these products; a negative mean counts as 0.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

@@ -4,11 +4,13 @@
 //! piece. A textured triangle is divided into tiles of 8 × 8 texels, and every tile that emits is a piece. Within a
 //! piece, points are sampled in proportion to the emission of their texel; the area pdf is the emission at the point
 //! divided by the intensity of the piece. So thousands of small lamps in one texture cost as much as one lamp, and no
-//! sample falls on a dark texel. For this reason, emission textures are looked up without interpolation. A triangle
-//! whose texture coordinates have no area or span too many texels is one piece and is sampled uniformly.
+//! sample falls on a dark texel. Emission textures are looked up without interpolation, because interpolated light
+//! would spread to dark texels. A triangle whose texture coordinates have no area or span too many texels is one piece
+//! and is sampled uniformly.
 //!
-//! The faces of luminaires ([`super::luminaires`]) are emitters, too. A patch of a face is one piece: each of its
-//! triangles is sampled with the same probability, and uniformly. Their emission depends on the direction.
+//! The faces of luminaires ([`super::luminaires`]) are emitters, too. A patch of a face is one piece. Each triangle of
+//! the patch is selected with the same probability, and points on it are sampled uniformly. The emission of faces
+//! depends on the direction.
 
 mod emitter;
 mod patches;
@@ -59,7 +61,7 @@ enum Division {
     Patch(u32),
 }
 
-/// A piece: what light sampling chooses.
+/// A piece, the unit that light sampling selects.
 enum Piece<'a> {
     Uniform(&'a UniformTriangle),
     Tile(&'a Tile),
@@ -219,8 +221,8 @@ impl Emitters {
         self.tiles.get(tile).map_or_else(|| Piece::Patch(tile - self.tiles.len()), Piece::Tile)
     }
 
-    /// Returns the emission of an emitter at a point in a unit direction, in cd/m² per channel, and the texture
-    /// coordinates of the look-up.
+    /// Returns the emission of an emitter at a point towards a viewer in a unit direction, in cd/m² per channel. Also
+    /// returns the texture coordinates of the look-up, or 0 for a luminaire.
     #[inline]
     pub fn emission(&self, scene: &Scene, emitter: usize, barycentric: Vec2, direction: Vec3) -> (Vec3, Vec2) {
         let emitter = &self.emitters[emitter];
@@ -230,7 +232,8 @@ impl Emitters {
         }
     }
 
-    /// Returns the light source that an emitter is; `uv` are the texture coordinates of the look-up of its emission.
+    /// Returns the light source that an emitter belongs to; `uv` are the texture coordinates of the look-up of its
+    /// emission.
     #[inline]
     pub fn source(&self, emitter: usize, uv: Vec2) -> LightSource {
         let emitter = &self.emitters[emitter];

@@ -51,7 +51,8 @@ pub struct Tile {
 }
 
 impl Tiling {
-    /// Returns `None` if the texture coordinates have no area, lie within a single texel, or span too many texels.
+    /// Returns `None` if the texture coordinates have no area, lie within a single texel, span too many texels, or lie
+    /// too far from 0.
     pub fn new(emitter: &Emitter, texture: &Texture) -> Option<Self> {
         let triangle = emitter.texels(texture);
         let [a, b, c] = triangle;
@@ -111,7 +112,7 @@ impl Tiling {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
         let first_texel = self.texel_inside(first);
-        // Compute the area of a texel in m² (`scale`).
+        // Compute the area of a texel on the triangle in m² (`scale`).
         let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
         let scale = 2.0 * f64::from(emitter.area) / doubled;
         let mut sums = [0.0f64; SIDE * SIDE];

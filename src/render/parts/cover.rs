@@ -46,7 +46,7 @@ fn overlap(a: &Part, b: &Part) -> bool {
 }
 
 /// Returns an error if a path of a pixel belongs to no part. As the parts do not overlap, it is enough to count the
-/// paths that the parts hold for each pixel: a path is missing if they are fewer than requested.
+/// paths that the parts hold for each pixel. A path is missing if this count is less than the requested number.
 fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     let (width, height) = (params.width, params.height);
     let mut counts = try_vec(width * height, 0u32)?;
@@ -57,8 +57,8 @@ fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
         }
     }
     let Some(hole) = counts.iter().position(|&count| count < params.samples) else { return Ok(()) };
-    // Find the first range of paths that the pixel `hole` lacks, and a rectangle of pixels, from this one on, that
-    // lack the same range.
+    // Find the first range of paths that the pixel `hole` lacks. Then find how many pixels to its right, and how many
+    // below it, lack the same range; they give the size of the rectangle in the message.
     let (x, y) = (hole % width, hole / width);
     let missing_at = |at: [usize; 2]| {
         let mut ranges: Vec<(u32, u32)> =
