@@ -4,10 +4,11 @@
 #[allow(dead_code)]
 mod bodies;
 
-use bodies::{BODIES, Body, Case, Shot, estimated};
-use glam::{DVec2, DVec3, Vec3};
+use bodies::{BODIES, Body, Case, Shot};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 use luxfer::error::{ErrorKind, Result};
 use luxfer::fixture::{self, Fixture, Input, Known, Params, Placing};
+use luxfer::geometry::Perspective;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::rng::Rng;
@@ -114,6 +115,22 @@ fn intervals_hold_the_truth() {
     }
     assert!(held >= 51, "{held} of {all} intervals hold the true drop");
     assert!(right >= 50, "{right} of {all} kinds are right");
+}
+
+/// Standard deviations of an estimated camera: of its pitch and roll in radians, and of the logarithm of its focal
+/// length.
+const TILT: f64 = 0.01;
+const STRETCH: f64 = 0.02;
+
+/// Returns an estimate of a camera, and the cameras that differ from the estimate by one standard deviation.
+fn estimated(camera: &Perspective, rng: &mut Rng) -> (Perspective, Vec<Perspective>) {
+    let changed = |camera: &Perspective, pitch: f64, roll: f64, stretch: f64| {
+        let turn = DMat3::from_rotation_x(TILT * pitch) * DMat3::from_rotation_z(TILT * roll);
+        Perspective { focal: camera.focal * (STRETCH * stretch).exp(), axes: turn * camera.axes, ..*camera }
+    };
+    let estimate = changed(camera, rng.normal(), rng.normal(), rng.normal());
+    let shifted = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    (estimate, shifted.map(|[pitch, roll, stretch]| changed(&estimate, pitch, roll, stretch)).to_vec())
 }
 
 /// The camera has errors of 0.6° and of 2 % of its focal length. Of 60 intervals of 95 %, fewer than 51 hold the truth with
