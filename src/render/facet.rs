@@ -35,9 +35,9 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
 /// of its size. [convention]
 const FAR: f64 = 32.0;
-/// Least number of triangles that are sampled to find the region where most triangles of a scene lie. Fewer than twice
-/// as many are sampled, so that the sample fits in the memory reserve. A smaller scene is sampled as a whole.
-/// [convention]
+/// To find the region where most triangles of a scene lie, a sample of at least this number of triangles and less than
+/// twice this number is examined, which fits in the memory reserve. In a scene with fewer triangles, all triangles are
+/// examined. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
@@ -125,7 +125,8 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// A stray object at the origin of a country's map coordinates makes the scene as large as the distance from that
 /// origin to the building. Therefore, if most triangles lie close together and far from the origin, the centre is the
 /// median position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the
-/// coordinates of the other triangles are rounded, to the f32 spacing that the building had in its file.
+/// coordinates of stray triangles are rounded. Such triangles lie as far from the new origin as the building lay from
+/// the old one, so they get the precision that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {

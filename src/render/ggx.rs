@@ -222,7 +222,8 @@ mod tests {
         Vec3::new(0.8 * sine, 0.6 * sine, cosine)
     }
 
-    /// Stretches the frame so that the microfacets form a hemisphere at any roughness.
+    /// Divides x and y by `alpha`, which undoes the last step of `sample_normal`: at any roughness, microfacet normals
+    /// become points of a hemisphere.
     fn stretched(w: Vec3, alpha: f32) -> Vec3 {
         Vec3::new(w.x / alpha, w.y / alpha, w.z).normalize()
     }

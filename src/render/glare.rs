@@ -92,10 +92,10 @@ const MIN_HORIZONTAL: f64 = 0.02;
 /// An opening counts as seen edge-on if its projected area towards the eye is at most this multiple of its largest
 /// projected area along one of its own axes. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Number of visibility rays along each side of each face of a luminous opening.
+/// Visibility rays go to a grid of `RAYS` × `RAYS` points on each face of a luminous opening.
 const RAYS: usize = 16;
-/// Visibility rays end at this share of the distance to the face, so that they do not hit a ceiling in the plane of
-/// the face. [rounding]
+/// Visibility rays end at this share of the distance to the face, so that they do not hit a ceiling that lies in the
+/// plane of the face. [rounding]
 const NEARLY: f64 = 0.999;
 /// Number of independent estimates of the background luminance; their variance gives its standard error.
 const BATCHES: u32 = 16;

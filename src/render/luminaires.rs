@@ -28,14 +28,18 @@ const GAP_OFFSETS: f64 = 8.0;
 /// as seen along an axis of the luminaire. Otherwise a flat opening would have infinite luminance along its plane,
 /// where its area is 0. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Steps in degrees of C and γ in which luminances are compared to bound the intensities of patches. [convention]
+/// Steps in degrees of C and γ of the grid of directions in which luminances are computed to bound the intensities of
+/// patches. [convention]
 const STEP: [usize; 2] = [15, 5];
-/// A patch counts for light sampling with at least this share of the intensity of the brightest patch. [convention]
+/// For light sampling, the intensity of a patch is at least this share of the intensity of the brightest patch of the
+/// luminaire. [convention]
 const MIN_SHARE: f64 = 0.01;
-/// The cosine law describes a flat patch if its largest luminance, times its area, is at most this multiple of its
-/// largest intensity. [convention]
+/// Let L be the largest luminance of a flat patch, A its area and I its largest intensity, over all directions. If L A
+/// is larger than this multiple of I, the patch is bounded by [`Profile::Cone`] instead of [`Profile::Cosine`].
+/// [convention]
 const MAX_PEAK: f64 = 2.0;
-/// A flat patch that emits only up to this angle in degrees is bounded by a cone, not by the cosine law. [convention]
+/// A flat patch is also bounded by [`Profile::Cone`] if it emits only within this angle in degrees to its normal.
+/// [convention]
 const NARROW: f64 = 60.0;
 
 /// The faces of the luminaires of a scene.
@@ -198,7 +202,8 @@ impl Source {
         let whole = Bounds::union(&parts);
         match profile {
             Profile::Cosine(_) => whole,
-            // The bounds have full intensity up to `cone_angle` - 90°.
+            // In [`Bounds`], the intensity is bounded by its full value up to the angle `cone_angle` - 90° to the axis,
+            // hence 90° are added.
             Profile::Cone { angle, .. } => Bounds { cone_angle: (angle + FRAC_PI_2) as f32, ..whole },
         }
     }

@@ -16,12 +16,15 @@ pub struct Params {
     pub samples: u32,
     /// Stop when [`super::Film::error`] falls to this value; paths are allocated to minimise that error. 0 = never.
     pub target_error: f32,
-    /// Stop when the error of each tile of 8 × 8 pixels falls to this value; 0 = never. The error of a pixel is the
-    /// half-width of the 95 % confidence interval of its luminance, relative to its luminance. The error of a tile is
-    /// the root mean square over its pixels. 0.1 means "within 10 % of the value, 19 times out of 20". For pixels
-    /// darker than a tenth of the image's mean radiance, the error is relative to that tenth. A tile gets at most 64
-    /// times `samples` paths per pixel, even if it then misses the target. If several targets are set, all of them
-    /// must be met.
+    /// Stop when the error of each tile of 8 × 8 pixels falls to this value; 0 = never. For example, 0.1 means "within
+    /// 10 % of the value, 19 times out of 20".
+    ///
+    /// - The error of a pixel is the half-width of the 95 % confidence interval of its luminance, divided by its
+    ///   luminance. For pixels darker than a tenth of the image's mean radiance, it is divided by that tenth instead.
+    /// - The error of a tile is the root mean square of the errors of its pixels.
+    /// - A tile gets at most 64 times `samples` paths per pixel, even if it then misses the target.
+    ///
+    /// If several targets are set, all of them must be met.
     pub pixel_error: f32,
     /// Stop when [`super::Film::relative_error`] falls to this value; paths are allocated to minimise that error. 0 =
     /// never.

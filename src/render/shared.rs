@@ -88,7 +88,8 @@ pub struct Start {
 struct PrimaryVertex<'w> {
     vertex: Vertex,
     bsdf: Bsdf<'w>,
-    /// Roulette weight for light from the secondary vertices; see [`PathLength::roulette_weight`].
+    /// Weight for Russian roulette of light that arrives from the secondary vertices; see
+    /// [`PathLength::roulette_weight`].
     roulette_weight: Vec3,
     scattered: Option<ScatteredSegment>,
 }
@@ -145,7 +146,8 @@ pub fn trace<W: ReplayObserver>(
     for ((primary, start), observer) in primaries.iter_mut().zip(&mut *starts).zip(&mut *observers) {
         *primary = trace_primary(world, start, observer);
     }
-    // Use the largest roulette weight of the block, so that light that matters to any of its pixels survives.
+    // Use the largest roulette weight of the block, so that a path survives if its light matters to any pixel of the
+    // block.
     let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
     scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {

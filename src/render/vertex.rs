@@ -117,7 +117,7 @@ pub struct Surface<'w> {
     bsdf_params: BsdfParams,
     /// Whether the material may have layers besides the diffuse one.
     layered: bool,
-    /// Shading normal and geometric normal, both on the front side.
+    /// Shading normal and geometric normal, both pointing to the front side.
     normals: [Vec3; 2],
     table: Option<&'w AlbedoTable>,
 }

@@ -59,8 +59,8 @@ fn sampled_directions_follow_the_stated_pdf() {
     for (number, bsdf_params) in all_bsdf_params.iter().enumerate() {
         for view in VIEWS {
             let bsdf = seen(bsdf_params, direction(view, 0.3), &table);
-            // Compute the expected counts in bins of cosine and azimuth that have equal solid angles. The last entry
-            // counts absorbed samples.
+            // Compute the expected counts in bins of cosine and azimuth that have equal solid angles. The last entry is
+            // the expected number of absorbed samples.
             let mut expected = vec![0.0; ROWS * COLUMNS + 1];
             const SUB: usize = 24;
             for i in 0..ROWS * SUB {

@@ -11,9 +11,9 @@ pub const GUIDES: usize = 9;
 /// The channel after the guides: the factor by which a pixel multiplies its distances to its neighbours (see
 /// [`scales`]).
 const SCALE: usize = GUIDES;
-/// Squared difference in albedo that counts as a distance of 1. [bench filter]
+/// Squared difference in albedo, summed over the channels, that counts as a distance of 1. [bench filter]
 const ALBEDO: f32 = 0.02;
-/// 1 - cosine of the angle between two normals that counts as a distance of 1. [bench filter]
+/// Value of 1 - cos θ that counts as a distance of 1, where θ is the angle between the two normals. [bench filter]
 const NORMAL: f32 = 0.02;
 /// Squared sine of the angle between the pixel's plane and the direction to the neighbour that counts as a distance of
 /// 1. [bench filter]
@@ -61,7 +61,8 @@ impl Guides {
         })
     }
 
-    /// Computes the scaled distances of the pixels of a row to their neighbours.
+    /// Computes the distances of the pixels of a row to their neighbours at one offset (`at`), multiplied by the
+    /// factors of the pixels.
     pub fn distances(&self, y: usize, at: &Shift, out: &mut [f32]) {
         distances(self.0.part(y, 0, at.from, at.span), self.0.part(at.row, 0, at.there, at.span), out);
         out.iter_mut().zip(&self.0.row(y, SCALE)[at.from..]).for_each(|(out, scale)| *out *= scale);

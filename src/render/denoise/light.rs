@@ -10,7 +10,8 @@ use glam::Vec3;
 
 /// Channels of the light: red, green and blue of the first half, then of the second.
 pub const LIGHT: usize = 6;
-/// Smallest albedo by which colours are divided, so that lamps and black surfaces keep their light. [bench filter]
+/// Colours are divided by the albedo, or by this value if it is larger, because lamps and black surfaces have an albedo
+/// of 0. [bench filter]
 const MIN_ALBEDO: f32 = 0.02;
 /// If the variance of a half of a pixel is r times the mean variance of this half in the pixels around, it gets the
 /// weight `1 / (1 + RARE * r)`. [bench filter]
@@ -21,7 +22,7 @@ const RARE_RADIUS: usize = 6;
 /// [bench filter]
 const RADIANCE_RADIUS: usize = 4;
 
-/// Both halves of the light, in units of the mean of the picture.
+/// Both halves of the light: the picture divided by its mean and by the albedo.
 pub struct Light {
     pub halves: Planes,
     /// Weight of each half of each pixel, in `(0, 1]`. The weight is low if the variance of the half is large compared
@@ -31,7 +32,7 @@ pub struct Light {
     albedo: Planes,
     /// 1 where the variances of both halves are known, otherwise 0.
     known: Planes,
-    /// The unit of the light, in the units of the picture.
+    /// The mean of the picture, in the units of the picture: picture = light × albedo × `unit`.
     pub unit: f32,
 }
 

@@ -15,8 +15,9 @@
 //!    variances are 0, the image is unchanged.
 //! 5. The error, the bias and the interval of each pixel are estimated from the halves (`statement`).
 //!
-//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, by about their
-//! standard error. The stated error includes this bias. Final images are rendered without the filter.
+//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, where they differ
+//! from their surroundings by no more than about the standard error. The stated error includes this bias. Final images
+//! are rendered without the filter.
 //!
 //! Not modelled: motion; reflections, which are smoothed as if they were light on the mirror's surface; textures seen
 //! in mirrors, which are blurred.

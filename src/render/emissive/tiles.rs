@@ -98,8 +98,8 @@ impl Tiling {
             && !self.texel_inside(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// Returns the column and row of the tile's first texel in the texture, or `None` if the tile extends beyond the
-    /// texture. `first` is that texel in unwrapped texel coordinates.
+    /// Returns column and row, in the texture, of the first texel of a tile; `None` if the tile extends beyond the
+    /// texture. `first` holds the texel's coordinates before the wrap mode is applied.
     fn texel_inside(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let is_inside =
@@ -135,7 +135,7 @@ impl Tiling {
             *running = sum;
         }
         let intensity = if (sum as f32).is_finite() { sum as f32 } else { 0.0 };
-        // Bound the part of the triangle inside the rectangle of emissive texels.
+        // Compute the bounds of the part of the triangle that lies in the rectangle around the emissive texels.
         let lit = Polygon::clipped(&self.triangle, &Rectangle { low, high });
         let corners = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p)));
         let bounds = Bounds::of_surface(corners, emitter.normal, emitter.double_sided, intensity);
