@@ -122,11 +122,11 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// origin, grid points are multiples of the f32 spacing there, so subtracting a grid point from the coordinates is
 /// exact. A scene nearer to the origin is not translated, because a translation would hardly gain precision.
 ///
-/// A stray object at the origin of a country's map coordinates makes the scene as large as the distance from that
-/// origin to the building. Therefore, if most triangles lie close together and far from the origin, the centre is the
-/// median position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the
-/// coordinates of stray triangles are rounded. Such triangles lie as far from the new origin as the building lay from
-/// the old one, so they get the precision that the building had in its file.
+/// Some scenes are in the map coordinates of a country. A stray object at the origin of these coordinates then makes
+/// the scene as large as the distance from that origin to the building. Therefore, if most triangles lie close together
+/// and far from the origin, the centre is the median position of the triangles, rounded to a grid. The translation of
+/// these triangles is exact. Only the coordinates of stray triangles are rounded. Such triangles lie as far from the
+/// new origin as the building lay from the old one, so they get the precision that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {

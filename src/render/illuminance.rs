@@ -61,7 +61,7 @@ pub struct Output {
     pub min: f64,
     pub mean: f64,
     pub max: f64,
-    /// Standard error of the mean in lux. The points are sampled independently of each other.
+    /// Standard error of the mean in lux, from the errors of the points, which are sampled independently of each other.
     pub mean_error: f64,
 }
 

@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies in front of
 /// the ceiling. [convention]
 const GAP: f64 = 2e-4;
-/// The gap is at least this multiple of the offset with which rays leave a surface at the largest coordinates of the
-/// scene, so that rounding does not close the gap. [rounding]
+/// Flat faces are moved outwards by [`GAP`], or by this multiple of the offset with which rays leave a surface at the
+/// largest coordinates of the scene if that is more. Rounding then cannot close the gap. [rounding]
 const GAP_OFFSETS: f64 = 8.0;
 /// The luminance is intensity / projected area. In this quotient, the area is at least this share of the largest area
 /// as seen along an axis of the luminaire. Otherwise a flat opening would have infinite luminance along its plane,
@@ -202,8 +202,8 @@ impl Source {
         let whole = Bounds::union(&parts);
         match profile {
             Profile::Cosine(_) => whole,
-            // In [`Bounds`], the intensity is bounded by its full value up to the angle `cone_angle` - 90° to the axis,
-            // hence 90° are added.
+            // In `Bounds`, the intensity has its full value up to the angle `cone_angle` - 90° to the axis, hence 90°
+            // are added.
             Profile::Cone { angle, .. } => Bounds { cone_angle: (angle + FRAC_PI_2) as f32, ..whole },
         }
     }

@@ -21,8 +21,8 @@ pub struct Film {
     /// Root mean square of the standard error over pixels and channels, relative to the mean of the image.
     pub error: f64,
     /// Root mean square of the relative errors of the pixels. The relative error of a pixel is its standard error,
-    /// divided by its radiance (mean of the channels, at least a hundredth of the image's mean). With few paths it is
-    /// overestimated: with 8 paths by about a quarter.
+    /// divided by its radiance (mean of the channels, at least a hundredth of the image's mean). With few paths, this
+    /// value is too large: with 8 paths by about a quarter.
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,

@@ -146,8 +146,8 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass, which samples lights according to the paths so far. `None` if this copy stays
-    /// in use (see [`Lights::learned`]).
+    /// Returns a copy for the next pass, which samples the lights less often that the paths so far show to be out of
+    /// reach. `None` if this copy stays in use (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.in_vicinity()).transpose()
     }

@@ -1,4 +1,5 @@
-//! Guide images: how far apart the surfaces of two pixels are.
+//! Guide images (albedo, normal, position), and the distance between two pixels in them: a measure of how much their
+//! surfaces differ.
 
 use super::input::Input;
 use super::planes::{NEIGHBOURS, Planes, Shift};
@@ -15,8 +16,8 @@ const SCALE: usize = GUIDES;
 const ALBEDO: f32 = 0.02;
 /// Value of 1 - cos θ that counts as a distance of 1, where θ is the angle between the two normals. [bench filter]
 const NORMAL: f32 = 0.02;
-/// Squared sine of the angle between the pixel's plane and the direction to the neighbour that counts as a distance of
-/// 1. [bench filter]
+/// Value of sin² φ that counts as a distance of 1, where φ is the angle between the tangent plane of the pixel's
+/// surface and the direction to the neighbour's position. [bench filter]
 const PLANE: f32 = 0.01;
 
 /// The guide images of a picture.

@@ -64,7 +64,7 @@ impl Patches {
         self.patches[patch].first as usize
     }
 
-    /// Returns the luminance in a unit direction, in cd/m² per channel.
+    /// Returns the luminance of a patch towards a viewer in a unit direction, in cd/m² per channel.
     #[inline]
     pub fn radiance(&self, patch: u32, direction: Vec3) -> Vec3 {
         self.of(patch).emission.radiance(direction)

@@ -58,7 +58,7 @@ fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     }
     let Some(hole) = counts.iter().position(|&count| count < params.samples) else { return Ok(()) };
     // Find the first range of paths that the pixel `hole` lacks. Then find how many pixels to its right, and how many
-    // below it, lack the same range; they give the size of the rectangle in the message.
+    // below it, lack the same range. These two numbers are the size of the rectangle in the message.
     let (x, y) = (hole % width, hole / width);
     let missing_at = |at: [usize; 2]| {
         let mut ranges: Vec<(u32, u32)> =

@@ -91,7 +91,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     film(world, camera, params, &sums, job.part(0.9, 1.0))
 }
 
-/// Computes the film of a part from its sums.
+/// Computes the film of a part, or of the merged parts, from the sums.
 fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) -> Result<Film> {
     let guided = preview::guided(params);
     let accumulator = Accumulator::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
