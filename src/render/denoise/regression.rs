@@ -59,7 +59,7 @@ pub struct Pilot<'a> {
 
 impl Pass<'_> {
     /// Filters both halves. The test of a half compares values of its own pilot only, so that the noise of the halves
-    /// stays independent.
+    /// stays independent, except for their common, smoothed variance.
     pub fn run(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = *self.light;
         Planes::from_rows([width, height, LIGHT], job, |y, out| {
