@@ -1,5 +1,7 @@
 //! The layer of one exemplar: the positions of its lamps and patches over the whole texture.
 
+use super::lit_blocks::LitBlocks;
+use super::resample;
 use super::window::{self, Window};
 use crate::emission::agreement::statistics::Statistics;
 use crate::emission::analysis::sites::Sites;
@@ -55,6 +57,10 @@ pub struct Layer {
     pub designs: Designs,
     /// The sites at which lamps are placed exactly; `None` if copied patches alone give their places.
     sites: Option<Sites>,
+    /// The photo at half its size, at a quarter, and so on, as far as texels that cover many of its pixels need it.
+    pub smaller_photos: Vec<Image>,
+    /// The blocks of the exemplar that have light.
+    pub lit_blocks: LitBlocks,
     /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
@@ -119,6 +125,9 @@ impl Layer {
         };
         let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
         let (law, scale) = (placement.law, params.scale);
+        let is_copied = |component: usize| is_copied_by_pixel(has_pieces, &exemplar, component);
+        let lit_blocks = LitBlocks::new(&exemplar, input.light, is_copied)?;
+        let smaller_photos = smaller_photos(input, &exemplar, scale, job)?;
         Ok(Self {
             exemplar,
             law,
@@ -131,6 +140,8 @@ impl Layer {
             rim_colours,
             designs,
             sites,
+            smaller_photos,
+            lit_blocks,
             even: None,
             scale,
         })
@@ -159,7 +170,7 @@ impl Layer {
 
     /// Whether a component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn is_copied_by_pixel(&self, component: usize) -> bool {
-        !self.has_pieces || self.exemplar.roles[component] == Role::Through
+        is_copied_by_pixel(self.has_pieces, &self.exemplar, component)
     }
 
     /// Whether any component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
@@ -183,6 +194,24 @@ impl Layer {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { MAX_CRUMB * smallest / self.scale.powi(2) }
     }
+}
+
+/// Number of points along each axis at which the size of a texel in the photo is measured.
+const MEASURED: usize = 16;
+
+/// The smaller copies of the photo that texels need.
+fn smaller_photos(input: &Input, exemplar: &Exemplar, scale: f64, job: Job) -> Result<Vec<Image>> {
+    let Some((photo, to_photo)) = input.photo else { return Ok(Vec::new()) };
+    let (width, height) = (exemplar.width, exemplar.height);
+    let at = |i: usize, side: usize| (2 * i + 1) * side / (2 * MEASURED);
+    let points = (0..MEASURED * MEASURED).map(|i| (at(i % MEASURED, width), at(i / MEASURED, height)));
+    let shown = points.filter(|&(x, y)| exemplar.shown[y * width + x]);
+    let centres = shown.map(|(x, y)| DVec2::new(x as f64, y as f64) + 0.5);
+    resample::smaller(photo, &to_photo, centres, scale, job)
+}
+
+fn is_copied_by_pixel(has_pieces: bool, exemplar: &Exemplar, component: usize) -> bool {
+    !has_pieces || exemplar.roles[component] == Role::Through
 }
 
 /// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the

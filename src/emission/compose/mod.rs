@@ -3,9 +3,11 @@
 
 pub mod bands;
 pub mod composition;
+mod cubic;
 pub mod draw;
 pub mod lamp_list;
 pub mod layer;
+mod lit_blocks;
 pub mod patch_lights;
 pub mod render;
 pub mod resample;

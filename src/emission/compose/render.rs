@@ -9,6 +9,7 @@
 //! of its area decides.
 
 use super::bands::Bands;
+use super::lit_blocks::LightSet;
 use super::source::{Texel, TexelSource};
 use super::tile::Tile;
 use super::weights::Weights;
@@ -106,8 +107,11 @@ impl Row<'_> {
                 let columns = x0.max(self.first)..x1.min(self.first + self.coverage.len());
                 let is_shown = |label: u32| label == component as u32 + 1;
                 columns.for_each(|x| {
-                    let designed = source.designed_texel(x, self.y, shift, component);
-                    self.add(x, designed.unwrap_or_else(|| source.texel(x, self.y, shift, is_shown)));
+                    if let Some(designed) = source.designed_texel(x, self.y, shift, component) {
+                        self.add(x, designed);
+                    } else if source.may_show(LightSet::All, x, self.y, shift) {
+                        self.add(x, source.texel(x, self.y, shift, is_shown));
+                    }
                 });
             }
         }
@@ -119,7 +123,8 @@ impl Row<'_> {
         for x in self.first..self.first + self.coverage.len() {
             let at = (DVec2::new(x as f64, self.y as f64) + 0.5) / size;
             let weight = blend.weights.at(k, at);
-            if let Some(shift) = source.shift_at(x, self.y).filter(|_| weight > 0.0) {
+            let shift = source.shift_at(x, self.y).filter(|_| weight > 0.0);
+            if let Some(shift) = shift.filter(|&shift| source.may_show(LightSet::OfPatches, x, self.y, shift)) {
                 let is_shown = |label: u32| label != 0 && source.layer.is_copied_by_pixel(label as usize - 1);
                 let shown = source.texel(x, self.y, shift, is_shown);
                 self.add(x, Texel { colour: shown.colour * weight, ..shown });

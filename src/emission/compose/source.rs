@@ -1,6 +1,7 @@
 //! Computes the colour of a texel from its source: the photo or, without a photo, the unwarped image.
 
 use super::layer::Layer;
+use super::lit_blocks::LightSet;
 use super::resample;
 use crate::emission::exemplar::LIT;
 use crate::emission::exemplar::roles::Role;
@@ -25,8 +26,8 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
             let label = exemplar.components.labels[y * exemplar.width + x];
             if label != 0 {
                 let centre = DVec2::new(x as f64, y as f64) + 0.5;
-                let value = source.from_photo(centre, 1.0).unwrap_or_else(|| input.unwarped.rgb(x, y));
-                sums[label as usize - 1] += source.unclipped(label, value).as_dvec3();
+                let unwarped = || source.unclipped(label, input.unwarped.rgb(x, y));
+                sums[label as usize - 1] += source.from_photo(centre, 1.0, label).unwrap_or_else(unwarped).as_dvec3();
             }
         }
     }
@@ -65,33 +66,61 @@ impl TexelSource<'_> {
         patch_map.shift(u, v).map(|s| s.exact)
     }
 
+    /// Whether a light of the set may lie in the part of the exemplar that a texel shows.
+    pub fn may_show(&self, set: LightSet, x: usize, y: usize, shift: DVec2) -> bool {
+        self.layer.lit_blocks.may_reach(set, self.corner(x, y, shift), self.layer.scale)
+    }
+
+    /// The corner of the part of the exemplar that a texel shows, in unwarped pixels.
+    fn corner(&self, x: usize, y: usize, shift: DVec2) -> DVec2 {
+        DVec2::new(x as f64, y as f64) * self.layer.scale - self.layer.rounded(shift)
+    }
+
     /// The colour and coverage of a texel, averaged over samples. Only components for whose label `is_shown` returns
     /// true count as light.
     pub fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
         let scale = self.layer.scale;
         let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
         let spacing = scale / n;
-        let corner = DVec2::new(x as f64, y as f64) * scale - self.layer.rounded(shift);
-        let (mut colour, mut inside, mut coverage) = (Vec3::ZERO, 0u32, 0f32);
-        for i in 0..(n * n) as usize {
+        let corner = self.corner(x, y, shift);
+        let is_magnified = spacing <= 0.999;
+        let samples = (0..(n * n) as usize).map(|i| {
             let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
             let p = corner + step * spacing;
-            let is_magnified = spacing <= 0.999;
-            let taps = self.taps(p, !is_magnified);
-            let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, &is_shown)).sum();
+            (p, self.taps(p, !is_magnified))
+        });
+        let is_light = |taps: &[(usize, f32); 4], light: f32| match is_magnified {
+            true => light >= LIT,
+            false => self.is_light(taps[0].0, &is_shown),
+        };
+        let light = |taps: &[(usize, f32); 4]| taps.iter().map(|&(pixel, w)| w * self.light(pixel, &is_shown)).sum();
+
+        // Measure the lit share of the texel.
+        let (mut inside, mut coverage) = (0, 0f32);
+        for (_, taps) in samples.clone() {
+            let light = light(&taps);
             coverage += light;
-            let is_light = if is_magnified { light >= LIT } else { self.is_light(taps[0].0, &is_shown) };
-            if is_light {
-                inside += 1;
-                let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
-                colour += match (&self.layer.even, lamp) {
-                    (Some(means), Some(label)) if label != 0 => means[label as usize - 1],
-                    _ => self.colour(p, spacing, &taps, lamp, &is_shown),
-                };
-            }
+            inside += usize::from(is_light(&taps, light));
         }
-        let samples = (n * n) as f32;
-        Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
+        let count = (n * n) as f32;
+        let (share, coverage) = (inside as f32 / count, coverage / count);
+
+        // Average the colour: over the whole texel if all of it is light, else over its lit samples.
+        let colour = |p: DVec2, side: f64, taps: [(usize, f32); 4]| {
+            let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
+            match (&self.layer.even, lamp) {
+                (Some(means), Some(label)) if label != 0 => means[label as usize - 1],
+                _ => self.colour(p, side, &taps, lamp, &is_shown),
+            }
+        };
+        let colour = if share == 1.0 {
+            let centre = corner + scale / 2.0;
+            colour(centre, scale, self.taps(centre, !is_magnified))
+        } else {
+            let lit = samples.filter(|(_, taps)| is_light(taps, light(taps)));
+            lit.map(|(p, taps)| colour(p, spacing, taps)).sum::<Vec3>() / count
+        };
+        Texel { colour, share, coverage }
     }
 
     /// The colour and coverage of a texel of a lamp that is drawn from its design; `None` if the component has no
@@ -142,15 +171,15 @@ impl TexelSource<'_> {
         lamp: Option<u32>,
         is_shown: &impl Fn(u32) -> bool,
     ) -> Vec3 {
-        let value = self.from_photo(p, side).unwrap_or_else(|| {
+        let label = lamp.unwrap_or(0);
+        self.from_photo(p, side, label).unwrap_or_else(|| {
             // Interpolate between lit pixels only, so that no dark pixel mixes with light.
             let unwarped = self.input.unwarped;
             let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
             let sum: Vec4 =
                 lit.map(|&(i, w)| (unwarped.rgb(i % unwarped.width, i / unwarped.width) * w).extend(w)).sum();
-            sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
-        });
-        self.unclipped(lamp.unwrap_or(0), value)
+            self.unclipped(label, sum.truncate() / sum.w.max(f32::MIN_POSITIVE))
+        })
     }
 
     /// Replaces clipped channels of a component's colour `value` by those of its rim.
@@ -199,10 +228,11 @@ impl TexelSource<'_> {
         ]
     }
 
-    /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side. `None` without a
-    /// photo, and outside it.
-    fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
+    /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side, with the clipped
+    /// channels of component `label` replaced. `None` without a photo, and outside it.
+    fn from_photo(&self, p: DVec2, side: f64, label: u32) -> Option<Vec3> {
         let (photo, to_photo) = self.input.photo?;
-        resample::mean(photo, &to_photo, p, side)
+        let levels = resample::Levels { photo, smaller: &self.layer.smaller_photos };
+        levels.mean(&to_photo, p, side, |colour| self.unclipped(label, colour))
     }
 }
