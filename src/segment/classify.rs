@@ -1,5 +1,5 @@
 //! Applies the classifier to the whole image, in tiles of pixels along the rows. Within a tile, the values of each
-//! feature are contiguous. The logit and the distances from the classes are quadratic forms of the features.
+//! feature are contiguous. The logit and the squared distances from the classes are quadratic forms of the features.
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
@@ -107,8 +107,8 @@ impl Classifier<'_> {
     }
 }
 
-/// The quadratic form `xᵀAx + bᵀx + c` of standardised features. `a` holds the upper triangle of `A` row by row; it is
-/// empty if `A` is zero.
+/// The function `xᵀAx + bᵀx + c` of standardised features `x`, where `A` is an upper triangular matrix. `a` holds the
+/// upper triangle of `A` row by row; it is empty if `A` is zero.
 struct QuadraticForm {
     a: Vec<f32>,
     b: Vec<f32>,
@@ -123,7 +123,8 @@ impl QuadraticForm {
         Self { a, b: w[..d].to_vec(), c: w[w.len() - 1] }
     }
 
-    /// The squared Mahalanobis distance from an ellipsoid's centre, as a quadratic form.
+    /// The function `(x - m)ᵀ E (x - m)` of an ellipsoid with centre `m` and matrix `E` ([`Ellipsoid::inverse`]): at
+    /// most 1 inside the ellipsoid.
     fn of_ellipsoid(e: &Ellipsoid) -> Self {
         let d = e.centre.len();
         let at = |i: usize, j: usize| e.inverse[i * d + j];
@@ -182,15 +183,15 @@ struct Tile {
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels; results after the last pixel are undefined. `likely` is the index of the
-    /// ellipsoid that contained all pixels of an earlier tile. It is tested first, which saves time and does not
-    /// change the result.
+    /// Classifies up to [`TILE`] pixels of `count` channels each; results after the last pixel are undefined. `likely`
+    /// is the index of the ellipsoid that contained all pixels of an earlier tile. This ellipsoid is tested first,
+    /// which saves time and does not change the result.
     fn classify(classifier: &Classifier, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
         classifier.standardise(pixels, count, tile);
         let planes = &tile.all[..classifier.channels.len()];
 
-        // Find the distance from the nearer ellipsoid. If one ellipsoid contains all pixels, `beyond` is 0, and the
-        // other one need not be evaluated.
+        // Find the squared distance from the nearer ellipsoid. If the first ellipsoid contains all pixels, `beyond` is
+        // 0 for all of them, and the second ellipsoid need not be evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..classifier.seen.len() {

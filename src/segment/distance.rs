@@ -1,21 +1,22 @@
-//! Dilates masks by a radius, through the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012).
+//! Dilates masks by a radius, with the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012).
 //!
-//! Example: if the mask of the lights is dilated by the radius of their bloom, the colour of the ceiling outside the
-//! mask can be trusted.
+//! Example: dilate the mask of the lights by the radius of their bloom. Outside the dilated mask, bloom does not change
+//! the colour of the ceiling.
 
 use crate::error::{Result, check_range};
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Dilates a mask by a disc: a pixel becomes 1 if any mask pixel above one half lies within `radius` pixels, else 0.
-/// Distances are measured between pixel centres; `radius` lies in `[0, 65536]`.
+/// Dilates a mask by a disc: a pixel becomes 1 if a pixel with a mask value above 0.5 lies within `radius` pixels of
+/// it, else 0. Distances are measured between pixel centres; `radius` lies in `[0, 65536]`.
 pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
     check_range("radius", radius, 0.0, 65_536.0)?;
     check_range("the number of channels of the mask", mask.channels, 1, 1)?;
     let (width, height) = (mask.width, mask.height);
 
-    // Compute squared distances along columns, and store them column by column.
+    // For each pixel, compute the squared distance from the nearest set pixel of its column. The image `columns` is
+    // transposed.
     let mut columns = Image::new(height, width, 1)?;
     exec::for_rows(&mut columns.data, height, job.part(0.0, 0.5), |x, column| {
         let is_set = |y: usize| mask.data[y * width + x] > 0.5;
@@ -31,7 +32,9 @@ pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
         }
     })?;
 
-    // Combine the distances along each row: the lower envelope of one parabola per column.
+    // In each row, with the column distances f: the squared distance at x is min over v of (x - v)² + f[v], the lower
+    // envelope of one parabola per column v. `hull` holds the parabolas of the envelope from left to right: v, and the
+    // x from which this parabola is the lowest.
     let mut out = Image::new(width, height, 1)?;
     exec::for_rows(&mut out.data, width, job.part(0.5, 1.0), |y, row| {
         let f: Vec<f64> = (0..width).map(|x| f64::from(columns.data[x * height + y])).collect();

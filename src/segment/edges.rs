@@ -1,5 +1,5 @@
-//! Smooths the contours of lamps before the photo is resampled, so that the 0.5 level of the confidence becomes a
-//! smooth line.
+//! Blurs the confidence image of the lamps before it is resampled, so that the contour on which the confidence is 0.5
+//! becomes a smooth line.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -8,8 +8,8 @@ use crate::job::Job;
 /// Standard deviation of the blur in photo pixels. The edge of a clipped lamp is a staircase of whole pixels; after a
 /// blur of about a pixel, the 0.5 level of a straight edge is straight again. [convention]
 const EDGE_BLUR: f32 = 0.9;
-/// Gaps between lamps stay open if they are at most this wide, in photo pixels. The blur would close gaps of up to
-/// twice its standard deviation. [convention]
+/// Gaps between lamps of up to this width, in photo pixels, are kept open. The blur alone would close the narrowest of
+/// them; it does not close wider gaps. [convention]
 const GAP: usize = 2;
 /// The directions in which a gap is crossed: along a row, a column and the two diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
@@ -29,7 +29,8 @@ pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     Ok(smooth)
 }
 
-/// Whether a dark pixel lies in a gap of at most [`GAP`] pixels: lit pixels lie close to it on two opposite sides.
+/// Whether a dark pixel lies in a gap at most [`GAP`] pixels wide: on two opposite sides of the pixel, the nearest lit
+/// pixels are at most `GAP + 1` steps apart.
 fn is_gap(confidence: &Image, x: usize, y: usize) -> bool {
     let is_lit = |[dx, dy]: [isize; 2], steps: isize| {
         let (u, v) = (x as isize + dx * steps, y as isize + dy * steps);

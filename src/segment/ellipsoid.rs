@@ -6,9 +6,9 @@ use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::simd::widest;
 
 /// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
-/// at least 0.1 along each feature; the deviation over both classes is 1.
+/// at least 0.1 along each feature; over both classes, the standard deviation is at most 1.
 const MIN_VARIANCE: f64 = 0.01;
-/// Percentage of a class's samples that lie inside its ellipsoid.
+/// Minimum percentage of a class's samples that lie inside its ellipsoid.
 const WITHIN: usize = 99;
 
 /// Mean and covariance of a class's samples.
@@ -24,8 +24,8 @@ pub struct Spread<'a> {
 /// inside.
 pub struct Ellipsoid {
     pub centre: Vec<f64>,
-    /// The matrix `A`, row by row: the inverse covariance, scaled so that [`WITHIN`] percent of the samples lie
-    /// inside.
+    /// The matrix `A`, row by row: the inverse covariance, scaled so that at least [`WITHIN`] percent of the samples
+    /// lie inside.
     pub inverse: Vec<f64>,
 }
 

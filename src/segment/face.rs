@@ -11,7 +11,7 @@ use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Minimum cosine of the angle between normals of one face: the angle is at most 45 degrees. [convention]
+/// Minimum cosine of the angle between two normals of the same face; the angle is at most 45 degrees. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Pixels lie on one face if at least this share of them have nearly equal normals. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
@@ -22,8 +22,8 @@ const EQUAL: f32 = 1.0 - 1e-4;
 
 /// The normal of the face that the positive strokes lie on, in a room laid out as a box; otherwise `None`.
 ///
-/// If there is such a normal, the classifier must not use position: within a face, position does not separate the
-/// classes, and a classifier that uses it would cut off parts of the face that no stroke has touched.
+/// If there is such a normal, the mask is restricted to this face anyway. The classifier must then not use position:
+/// otherwise it might cut off the parts of the face that are far from all positive strokes.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
@@ -41,7 +41,7 @@ const MIN_CEILING: f64 = 0.02;
 /// generated rooms. [bench photos:nostrokes:tune:48]
 const PROPOSED_ERROR: f64 = 0.18;
 
-/// Approximate number of ceiling pixels that replace a stroke on the ceiling. [convention]
+/// Approximate number of ceiling pixels that serve as a positive stroke if the user has painted none. [convention]
 const EXAMPLES: usize = 1000;
 
 /// Returns the mask of the face that the positive strokes lie on, in a room laid out as a box. `None` if the room is

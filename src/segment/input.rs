@@ -12,8 +12,9 @@ pub struct Input<'a> {
     /// The features of each pixel, 1 to 16 channels; an image of the photo's size with finite values.
     pub features: &'a Image,
     pub strokes: &'a [Stroke],
-    /// Mask of the pixels to classify: 1 inside, 0 outside; `None` means the whole image. In the second phase it is
-    /// the plane's mask. Outside the mask the confidence is 0, except on lamps that straddle the mask's border.
+    /// Mask of the pixels to classify: 1 inside, 0 outside; `None` means the whole image. In the second phase, which
+    /// finds the lamps, it is the mask of the plane. Outside the mask the confidence is 0, except on three kinds of
+    /// lamps: those that reach over the mask's border, those in a hole of the mask, and those under a positive stroke.
     /// Strokes outside the mask still count as examples.
     pub region: Option<&'a Image>,
 }

@@ -19,22 +19,22 @@ pub struct Problem<'a> {
 pub struct Objective {
     pub value: f64,
     pub gradient: Vec<f64>,
-    /// The Hessian matrix: lower triangle, row by row.
+    /// The Hessian matrix, row by row; only its lower triangle is filled.
     pub hessian: Vec<f64>,
 }
 
-/// Finds the weights `w` that minimise the mean log loss plus `ridge / 2 |w|²`. The weight of the constant term is
-/// hardly penalised. The ridge makes the solution finite and unique even for separable, duplicated or constant terms.
-/// Newton's method starts at `start` and ends with the first step whose expected decrease of the objective is below
-/// `precision`.
+/// Finds the weights `w` that minimise the objective: the mean log loss plus `ridge / 2 |w|²`. The weight of the
+/// constant term is hardly penalised. The ridge makes the solution finite and unique even if the classes are separable,
+/// or if terms are duplicated or constant. Newton's method starts at `start`. It ends with the first step whose
+/// expected decrease of the objective is below `precision`, or after 30 steps.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let mut w = start.to_vec();
     let mut here = Objective::at(problem, ridge, &w);
     for _ in 0..30 {
         job.check()?;
         let Some(step) = cholesky_solve(&mut here.hessian, &here.gradient) else { break };
-        // The expected decrease of a Newton step is half the slope along it. This is exact for a parabola, which the
-        // objective resembles near its minimum.
+        // A Newton step is expected to decrease the objective by half of gradient · step. This is exact for a parabola,
+        // which the objective resembles near its minimum.
         let expected = 0.5 * dot(&here.gradient, &step);
         let moved = |length: f64| -> Vec<f64> { w.iter().zip(&step).map(|(w, s)| w - length * s).collect() };
         if expected < precision {
@@ -78,7 +78,7 @@ impl Objective {
 }
 
 widest! {
-    /// Adds the mean log loss and its derivatives to the objective.
+    /// Adds the weighted mean log loss and its derivatives to the objective.
     fn add_log_loss(problem: &Problem, w: &[f64], to: &mut Objective) {
         let d = w.len();
         let scale = 1.0 / problem.weights.iter().sum::<f64>();
@@ -133,8 +133,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves `A x = b` by Cholesky decomposition. `a` holds the lower triangle of the symmetric matrix `A` and is
-/// overwritten. `None` if `A` is not positive definite.
+/// Solves `A x = b` by Cholesky decomposition. `a` holds the symmetric matrix `A` row by row; only its lower triangle
+/// is read, and `a` is overwritten. `None` if `A` is not positive definite.
 pub fn cholesky_solve(a: &mut [f64], b: &[f64]) -> Option<Vec<f64>> {
     let n = b.len();
     for j in 0..n {

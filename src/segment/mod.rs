@@ -6,19 +6,22 @@
 //!                                                                                   │
 //! features ────────────────────────────────────────────────────────────▶ classify ◀─┘ ─▶ mask, confidence, unseen
 //! ```
+//! The three outputs are fields of [`Segmentation`].
 //!
 //! The paper does not name its classifier. Here it is logistic regression, with linear or with quadratic terms of the
-//! features. Such models do not memorise single samples, so they extrapolate to surfaces that no stroke touched; trees
-//! and kernel methods do not. Cross-validation decides which of the two models is used, on which channels, and by
-//! which factor its logits are scaled (calibration). It holds out strokes and parts of strokes, not single pixels,
-//! because neighbouring pixels are too alike to test each other.
+//! features. Such a model cannot memorise single samples, so it also works on surfaces that no stroke touched. Trees
+//! and kernel methods can memorise samples, and fail on such surfaces.
+//!
+//! Cross-validation decides which of the two models is used, on which channels, and by which factor its logits are
+//! scaled (calibration). It holds out strokes and parts of strokes, not single pixels: a held-out pixel would be almost
+//! equal to its neighbours in the training set.
 //!
 //! The paper's two phases are two runs. The first run finds the plane ([`StrokeSet::plane_examples`]). The second run
 //! finds the lights within the plane's mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane
 //! and share its geometry.
 //!
-//! Known weakness: if the strokes lie on few surfaces, held-out strokes do not tell the subsets of channels apart. The
-//! simplest subset that separates the painted pixels is then chosen, and its probabilities are too confident.
+//! Known weakness: if the strokes lie on few surfaces, several subsets of channels do equally well on held-out strokes.
+//! The smallest of these subsets is then chosen, and its probabilities are too confident.
 //!
 //! No state is kept between runs: after each additional stroke, the model is learnt and validated anew. The result
 //! therefore depends on the strokes alone and not on earlier runs.
@@ -99,8 +102,8 @@ fn not_finite(bad: usize) -> Error {
 /// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes;
 /// - for lamps without positive strokes, the regions most like lamps among the brightest parts of the given mask.
 ///
-/// Errors (`Degenerate`): the strokes of a class that is needed cover no pixel of the image, and no mask can be
-/// proposed, because the features have another number of channels, or because no face, ceiling or lamp was found.
+/// Errors (`Degenerate`): strokes are missing, and no mask can be proposed, because the features do not have
+/// [`CHANNELS`] channels, or because no ceiling or lamp was found.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;

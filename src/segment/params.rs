@@ -5,13 +5,13 @@ use crate::features::CHANNELS;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Number of samples drawn from the strokes of each class, in `[1, 1e6]`.
+    /// Maximum number of sample pixels drawn from the strokes of each class, in `[1, 1e6]`.
     pub samples_per_class: usize,
     /// Feature channels to use; bit `i` stands for channel `i`. 0 leaves the choice open: if there are [`CHANNELS`]
     /// channels, cross-validation chooses one of [`SUBSETS`]; with any other number, all channels are used.
     pub channels: u32,
-    /// Strength of the ridge penalty `ridge / 2 |w|²` on the classifier's weights, relative to the mean log loss of
-    /// the samples, in `[1e-9, 1e3]`.
+    /// Strength of the ridge penalty, in `[1e-9, 1e3]`. The classifier's weights w minimise the mean log loss of the
+    /// samples plus `ridge / 2 |w|²`.
     pub ridge: f64,
     pub seed: u64,
     /// Half-width of the windows of the edge-aware filter, in pixels, in `[0, 1024]`; 0 turns the filter off. The
@@ -31,8 +31,8 @@ pub enum Subject {
     /// Lamps if a region is given and the features have [`CHANNELS`] channels, else a surface.
     #[default]
     Auto,
-    /// A surface: every pixel is classified by its features, and must lie on the face of the room that the strokes lie
-    /// on.
+    /// A surface: every pixel is classified by its features. The mask is then restricted to the face of the room that
+    /// the positive strokes lie on.
     Surface,
     /// Lamps: compact regions with a sharp contour, brighter than their surroundings ([`super::instances`]).
     Lamps,

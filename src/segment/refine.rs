@@ -140,7 +140,8 @@ widest! {
 }
 
 widest! {
-    /// Fits the affine function in the window around each pixel of a row. Pixels outside the region get zeros.
+    /// Fits the function `a · I + b` in the window around each pixel of a row. A fit is stored as 1, a (3 values) and
+    /// b; for pixels outside the region, all five values are 0.
     fn fit_row(of: &Refinement, line: &Line, fits: &mut [[f32; 5]]) {
         let width = fits.len();
         let epsilon = of.tolerance * of.tolerance;
@@ -166,18 +167,19 @@ widest! {
             if of.weight(x, line.y) > 0.0 {
                 let [a, b, c, d] = affine(&sum, epsilon).map(|v| v as f32);
                 let is_finite = a.is_finite() && b.is_finite() && c.is_finite() && d.is_finite();
-                // If the sums are too large for finite slopes, use the mean probability of the window.
+                // If the sums are so large that the fit is not finite, use the mean probability of the window.
                 *fit = if is_finite { [1.0, a, b, c, d] } else { [1.0, 0.0, 0.0, 0.0, (sum[4] / sum[0]) as f32] };
             }
         }
     }
 }
 
-/// Solves for `a = (Σ + ε)⁻¹ cov(I, p)` and `b = p̄ - a · Ī` of a window, by Cholesky decomposition.
+/// Returns the coefficients of a window's fit: `a = (Σ + ε 1)⁻¹ cov(I, p)` (3 values) and `b = p̄ - a · Ī`. Σ is the
+/// covariance matrix of the colours I, p̄ and Ī are the means in the window, and ε is the squared tolerance.
 #[inline(always)]
 fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let per_n = 1.0 / sum[0];
-    // Enlarge the penalty by the rounding error of the running sums, so that rounding alone causes no slopes.
+    // Enlarge the penalty by the rounding error of the running sums, so that rounding alone does not make `a` large.
     let epsilon = epsilon + 1e-12 * per_n * (sum[8] + sum[11] + sum[13]);
     let [r, g, b, p] = [1, 2, 3, 4].map(|k| sum[k] * per_n);
     let covariance = |k: usize, u: f64, v: f64| sum[k] * per_n - u * v;

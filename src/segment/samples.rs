@@ -14,7 +14,7 @@ pub struct Origin {
     pub positive: bool,
     /// Index of the sample's stroke among the strokes of both classes.
     pub stroke: usize,
-    /// The quarter of the stroke that holds the sample, 0 to 3, counted along the stroke's longer extent.
+    /// The quarter of the stroke that holds the sample, 0 to 3, counted along x or y, whichever extent is longer.
     pub part: usize,
 }
 
@@ -101,7 +101,8 @@ struct Owned {
 
 fn owned(input: &Input, seed: u64) -> Result<Owned> {
     let pixels = input.features.width * input.features.height;
-    // For each pixel, the index of the last stroke that covers it, and a flag if strokes of both classes cover it.
+    // For each pixel, the index of the last stroke that covers it. The highest bit is set if strokes of both classes
+    // cover the pixel.
     const NONE: u32 = u32::MAX >> 1;
     const CONTRADICTED: u32 = !NONE;
     let mut owner = try_vec(pixels, NONE)?;
@@ -186,7 +187,8 @@ fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     shares
 }
 
-/// Sorts the pixels of a stroke along its longer extent, and numbers the quarter of the stroke that holds each pixel.
+/// Sorts the pixels of a stroke along x or y, whichever extent of the stroke is longer. Returns each pixel with the
+/// quarter of the sorted list that it lies in, 0 to 3.
 fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     let position = |p: u32| (p as usize % width, p as usize / width);
     let extent = |f: fn((usize, usize)) -> usize| {

@@ -19,12 +19,13 @@ pub struct Segmentation {
     pub mask: Image,
     /// Probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out strokes.
     pub confidence: Image,
-    /// Distance of a pixel's features from the features of all strokes, mapped to `[0, 1]`: 0 if they lie among the
-    /// samples of a class. Another stroke helps most where this value is high.
+    /// How unlike all strokes a pixel is, in `[0, 1]`: 0 if its features lie among the samples of a class, near 1 if
+    /// they lie far from the samples of both classes. For lamps: 1 in regions that are almost like the painted lamps,
+    /// else 0. Another stroke helps most where this value is high.
     pub unseen: Image,
-    /// Expected share of wrong pixels, in `[0, 1]`, from cross-validation. It is a weighted mean of two errors: on
-    /// held-out parts of strokes, for pixels like the painted ones, and on held-out whole strokes, for pixels unlike
-    /// them. The mean of `unseen` is the weight of the second error.
+    /// Expected share of wrong pixels, in `[0, 1]`. For a surface: `(1 - u) e_parts + u e_strokes`, where `u` is the
+    /// mean of `unseen`. `e_parts` is the error on held-out parts of strokes, and applies to pixels like the painted
+    /// ones; `e_strokes` is the error on held-out whole strokes, and applies to pixels unlike the painted ones.
     pub error: f64,
     /// The classifier; `None` for lamps and for a mask that the caller supplied.
     pub model: Option<Model>,
@@ -45,7 +46,7 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
-    /// Removes the given pixels (`y * width + x`) from the mask.
+    /// Removes from the mask the pixels for which `is_removed(y * width + x)` is true, and sets their confidence to 0.
     pub fn remove(&mut self, is_removed: impl Fn(usize) -> bool) {
         for (i, confidence) in self.confidence.data.iter_mut().enumerate() {
             if self.mask.data[i] > 0.5 && is_removed(i) {

@@ -18,8 +18,8 @@ use crate::job::Job;
 
 /// Maximum number of folds. If there are more strokes, a fold holds several strokes.
 const FOLDS: usize = 8;
-/// Approximate maximum number of samples per class in the fits of cross-validation. So many samples suffice to compare
-/// two models.
+/// Approximate maximum number of samples per class in the fits of cross-validation. This number is enough to tell which
+/// of two models is better.
 const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
@@ -210,8 +210,8 @@ fn folds_of_parts(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| o.part).collect()
 }
 
-/// Assigns strokes to folds in turn. The parts of a class's only stroke go to different folds, so that no fold holds a
-/// whole class.
+/// Returns the fold of each sample. Strokes are assigned to folds in turn. If a class has only one stroke, the four
+/// parts of the stroke go to different folds, so that no fold holds the whole class.
 fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     let folds = (samples.strokes[0] + samples.strokes[1]).clamp(PARTS, FOLDS);
     let is_lone = |positive: bool| samples.strokes[usize::from(positive)] == 1;

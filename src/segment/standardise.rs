@@ -1,4 +1,5 @@
-//! Standardises features to zero mean and unit deviation, and computes the linear and quadratic terms of the models.
+//! Standardises features to zero mean and a standard deviation of at most 1, and computes the linear and quadratic
+//! terms of the models.
 
 use super::samples::Samples;
 use super::segmentation::Model;
@@ -7,8 +8,8 @@ use crate::error::Result;
 
 /// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have the same unit, so
 /// they share one scale: that of the component that varies most. With a scale per channel, a channel that hardly
-/// varies, such as the tint of a white ceiling, would be amplified, and dark purple frames would be classified as
-/// lamps.
+/// varies would be amplified. Example: under strokes on white lamps and a white ceiling, a* and b* vary little. With
+/// scales of their own they would outweigh brightness, and dark purple frames would be classified as lamps.
 const VECTORS: [std::ops::Range<usize>; 3] = [0..3, 4..7, 7..10];
 
 /// Standardisation of features, `(x - mean) * scale` per channel. The scale of a channel that does not vary is 0.

@@ -42,8 +42,8 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// Share of the strokes' pixels, the darkest ones, that is ignored when the least brightness of the lamps is
-/// determined, because hurried strokes run over the edges of lamps. [judged on 28 photos]
+/// The least brightness of the lamps is determined without this share of the stroke pixels, the darkest ones, because
+/// hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;

@@ -57,7 +57,8 @@ const ON_FACE: f64 = 0.9;
 /// distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
-/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
+/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the
+/// wider lamp.
 /// [bench photos:tune]
 const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
@@ -67,17 +68,18 @@ const ROUND: f64 = 1.25;
 /// the ring around a lamp under a stroke. Up to this difference, the region may lie on a part of the plane that the
 /// given mask of the plane misses. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Exponent of the area in the order in which candidates are tried. Of nested regions with almost equally sharp
-/// contours, the largest is tried first. [judged on 44 photos]
+/// Candidates are tried in descending order of contour contrast × area ^ `AREA_POWER`. Of nested regions with almost
+/// equally sharp contours, the largest is therefore tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of 1.
+/// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of at least 1.
 /// [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
 /// What a region must show to count as a lamp.
 #[derive(Clone, Copy)]
 struct Limits {
-    /// Minimum contrast, along the contour and to the ring, as a share of the model's minimum.
+    /// Minimum contrast along the contour, and minimum contrast to the ring around the region, as a share of the minima
+    /// in [`Model`].
     contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
     negatives: f64,
@@ -88,11 +90,12 @@ struct Limits {
 /// Limits for any region.
 const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0 };
 /// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
-/// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer pixels have no clear shape.
-/// [bench photos:tune]
+/// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer than 30 pixels have no clear
+/// shape. [bench photos:tune]
 const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0 };
 
-/// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
+/// Variance, in square pixels, of the blur of the photo plus the blur before the gradient is computed.
+/// [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
 /// Share of a lamp's contrast that is left after blur: the value at the centre of a disc with the lamp's area, after a
@@ -245,8 +248,8 @@ impl Search<'_> {
     }
 
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
-    /// strokes, in descending order of contour contrast times a small power of the area. Nodes that contain a lamp
-    /// under a stroke or lie inside one are left out.
+    /// strokes. For their order see [`AREA_POWER`]. Nodes that contain a chosen node, and nodes inside a lamp under a
+    /// stroke, are left out.
     fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint, limits: Limits) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;

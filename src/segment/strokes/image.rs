@@ -36,7 +36,7 @@ pub fn from_image(image: &Image) -> Result<StrokeSet> {
     };
     let kinds = try_collect(image.data.chunks_exact(image.channels).map(kind_of))?;
 
-    // Collect the connected components of each class, over all eight neighbours.
+    // Collect the connected components of each kind; a pixel is connected to its eight neighbours.
     let (width, height) = (image.width, image.height);
     let mut is_taken = try_vec(kinds.len(), false)?;
     let mut set = StrokeSet::default();
