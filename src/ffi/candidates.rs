@@ -1,7 +1,7 @@
 //! Candidates for the ceiling
 //!
 //! Lists the objects and the materials of a scene with their area, height and direction, sorted so that the likeliest
-//! ceiling comes first. A host can show this list to let the user choose the surface that receives the lights. Pass
+//! ceiling comes first. A host can show this list to let the user choose the surface that will carry the lights. Pass
 //! the name of the chosen candidate to luxfer_scene_find_surface or luxfer_transfer_set_scene. A list is a copy: later
 //! changes of the scene do not change it.
 
@@ -56,9 +56,10 @@ pub struct luxfer_candidate {
     /// Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals cancel,
     /// as for a closed box.
     pub normal: [f32; 3],
-    /// Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the scene's
-    /// bounding box), and the square of (height above the scene's lowest point) / (height of the scene). Each of the
-    /// three ratios is at most 1. A name such as "ceiling" raises the score.
+    /// Resemblance to a ceiling: s = (level_area / area) * min(1, level_area / F) * h², in [0, 1]. F is the floor area
+    /// of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the scene). If
+    /// level_area is not 0 and the name contains a word for a ceiling, such as "ceiling" or "Decke", the score is (1 +
+    /// s) / 2 instead.
     pub score: f32,
     /// Reserved; always 0.
     pub reserved: u32,

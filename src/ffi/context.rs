@@ -4,14 +4,13 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Structs: each function that fills a struct of the caller takes the size of the struct; pass sizeof. These functions
-//! are the _init functions of settings and the functions that get reports. They store the size in struct_size, the
-//! first field; leave this field as it is. From the size the library knows which version of the header the program was
-//! built with. So a program that was built with an older header works with a newer library: settings that the program
-//! does not know keep their defaults.
+//! Structs: a function that fills a struct of the caller takes sizeof the struct as an argument, and stores it in the
+//! first field, struct_size. Leave this field unchanged. It tells the library with which version of the header the
+//! program was built. A program that was built with an older header therefore works with a newer library: settings that
+//! its header lacks keep their defaults.
 //!
-//! Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. A released
-//! handle gives LUXFER_INVALID_ARGUMENT too, unless its memory has been used again.
+//! Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. So does a
+//! released handle, as long as its memory has not been reused; afterwards, the library cannot detect the mistake.
 //!
 //! Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
 //! use different objects at the same time, and also the same object: calls that change an object wait for each other.
@@ -56,8 +55,8 @@ pub struct luxfer_context_params {
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
     /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
-    /// call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as many sets
-    /// as calls run at the same time, and keeps up to four sets for later calls.
+    /// call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the same time
+    /// use different sets; the context keeps up to four idle sets for later calls.
     pub num_threads: u32,
     /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
     /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is
@@ -67,7 +66,8 @@ pub struct luxfer_context_params {
 
 versioned!(luxfer_context_params, [16], { Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 } });
 
-/// The object behind a `luxfer_context` handle: the handle's own reference to its context.
+/// The object behind a `luxfer_context` handle. It holds one of the references to the context; the objects that are
+/// created in the context hold the others.
 pub(super) struct ContextObject(Arc<Context>);
 
 impl Owned for ContextObject {

@@ -1,6 +1,6 @@
 //! Demonstration
 //!
-//! Scenes and artworks for examples and tests. The library generates them without any files, and every call gives
+//! Scenes and artworks for examples and tests. The library generates them without any files. Repeated calls give
 //! results that are equal to the bit.
 
 use super::context::luxfer_context;
@@ -23,10 +23,10 @@ pub type luxfer_demo = i32;
 pub const LUXFER_DEMO_TARGET_ROOM: luxfer_demo = 0;
 /// An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0.
 pub const LUXFER_DEMO_EXEMPLAR_ROOM: luxfer_demo = 1;
-/// A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation.
+/// A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a picture.
 pub const LUXFER_DEMO_SPHERE_ON_TABLE: luxfer_demo = 2;
-/// A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a
-/// stylisation.
+/// A vase, a ring and two balls, on the same table and under the same lamp as in LUXFER_DEMO_SPHERE_ON_TABLE: a target
+/// scene for a stylisation.
 pub const LUXFER_DEMO_STILL_LIFE: luxfer_demo = 3;
 
 /// The style of a generated artwork: a LUXFER_ARTWORK_ value.
@@ -39,7 +39,7 @@ pub const LUXFER_ARTWORK_STIPPLE: luxfer_artwork = 1;
 pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 
 /// Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
-/// LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// LUXFER_INVALID_ARGUMENT if kind is another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,

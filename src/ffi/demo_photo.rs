@@ -1,7 +1,7 @@
 //! Demonstration photo
 //!
-//! Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user
-//! would paint them. They are the input of a lighting transfer without files.
+//! Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user would
+//! paint them. Examples and tests pass both to a lighting transfer, so that they need no files.
 
 use super::context::luxfer_context;
 use super::guard::enter;

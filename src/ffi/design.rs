@@ -1,8 +1,8 @@
 //! Lighting design
 //!
-//! Helps to realise a solved light with real luminaires: the drive levels of LED primaries that mix a colour, the
-//! blackbody light that is nearest to a target, and the requirements of a standard. These calls are synchronous: they
-//! do their work before they return.
+//! Helps to realise a computed light with real luminaires. The functions find the drive levels at which LEDs mix a
+//! given colour, and the blackbody light that brings a target nearest to a wanted radiance. They also list requirements
+//! of the standard EN 12464-1. These calls are synchronous: they do their work before they return.
 
 use super::context::luxfer_context;
 use super::geometry::{list, numbers};
@@ -27,7 +27,7 @@ pub struct luxfer_mixture {
     /// 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     /// mixture.
     pub in_gamut: u32,
-    /// Linear RGB colour of the mixture.
+    /// Linear RGB colour of the mixture, in the unit of the primaries.
     pub colour: [f64; 3],
     /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
     pub delta_e: f64,
@@ -48,7 +48,7 @@ pub struct luxfer_temperature_fit {
     /// Luminance of the emission, >= 0. It is in cd/m² if the array response of luxfer_fit_temperature was measured
     /// for a white emission of 1 cd/m².
     pub luminance: f64,
-    /// Mean radiance of the target from this light and all other lights together, in cd/m².
+    /// Mean radiance of the target from this light and all other lights together, in cd/m² per channel.
     pub achieved: [f64; 3],
     /// CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the wanted
     /// radiance as middle grey.
@@ -87,11 +87,14 @@ versioned!(luxfer_preset, [56], {
     Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
 });
 
-/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
-/// primaries holds the linear RGB of each of count LEDs at drive level 1; a channel of an LED outside the gamut of
-/// Rec.709 may be negative. count is in [1, 64]. The array drives receives count drive levels in [0, max_drive];
-/// max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture with the
-/// smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
+/// Mixes a colour from the LEDs of a luminaire. colour holds linear RGB: three numbers that are finite and >= 0. The
+/// array primaries holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These
+/// numbers may be negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
+///
+/// The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
+/// infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
+/// RGB. If several mixtures have the colour, the result is the one with the smallest sum of squared drive levels. size
+/// is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -124,11 +127,12 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     })
 }
 
-/// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
-/// to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
-/// a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is the target's
-/// mean radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
-/// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
+/// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
+/// a wanted radiance, by least squares over the channels. Each array holds linear RGB: response is the mean radiance of
+/// the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is
+/// the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
+/// thread.
+/// LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(
     context: *mut luxfer_context,

@@ -34,7 +34,8 @@ pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 pub struct luxfer_distribution_report {
     /// sizeof(luxfer_distribution_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of C planes, the half-planes through the axis in which the intensities are given.
+    /// Number of C planes, the half-planes through the axis in which the intensities are given. Planes that the file
+    /// leaves out because of symmetry are included. A single plane holds for all directions around the axis.
     pub planes: u32,
     /// Number of vertical angles gamma in each C plane.
     pub angles: u32,
@@ -46,9 +47,9 @@ pub struct luxfer_distribution_report {
     pub lamp_flux: f64,
     /// Electric power in watts; 0 if unknown.
     pub watts: f64,
-    /// Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
-    /// for a round opening, as in IES: its absolute value is the diameter. IES files name the three values length,
-    /// width and height; EULUMDAT files name them width, length and height.
+    /// Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
+    /// negative values stand for a round opening: the absolute value is the diameter. IES files name the three values
+    /// length, width and height; EULUMDAT files name them width, length and height.
     pub size: [f64; 3],
 }
 
@@ -98,8 +99,8 @@ fn read(bytes: &[u8], format: luxfer_distribution_format) -> Result<Luminaire> {
 }
 
 /// Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
-/// LUXFER_UNSUPPORTED for IES photometry of types A and B, LUXFER_INVALID_ARGUMENT if the path has another extension.
+/// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
+/// LUXFER_UNSUPPORTED for IES photometry of types A and B; LUXFER_INVALID_ARGUMENT if the path has another extension.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load(
     context: *mut luxfer_context,
@@ -193,7 +194,9 @@ pub unsafe extern "C" fn luxfer_distribution_get_name(
 }
 
 /// Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
-/// the C plane around the axis, and gamma is the angle from straight down (0) to straight up (180). Any thread.
+/// the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
+/// (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_intensity(
     distribution: *mut luxfer_distribution,

@@ -1,7 +1,7 @@
 //! Emission
 //!
 //! Synthesises an emissive texture of any size and lists its luminaires. The texture continues the light pattern of an
-//! exemplar, which is an unwarped photo of a plane with lamps.
+//! exemplar: an unwarped photo of a plane with lamps, as luxfer_rectify makes it.
 
 use super::context::{Context, luxfer_context};
 use super::emission_law::{self, LUXFER_LAW_BEST, LUXFER_LAW_COPY, luxfer_emission_law};
@@ -34,12 +34,14 @@ pub type luxfer_emission_image = i32;
 pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 /// The mask of the texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
-/// The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a pixel
-/// shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3 channels, at the
-/// resolution that working_side gives.
+/// The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
+/// resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
+/// the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
+/// and clamped to [-1, 1]. L is the side of a patch or, if the law has periods, half the longer period if that is
+/// shorter.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// The guide channels of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch in the
-/// same way as the colours of the texture.
+/// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
+/// copied with the patches that give the texture its colours.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
 /// Settings of an emissive texture. Fill them with luxfer_emission_params_init.
@@ -52,22 +54,22 @@ pub struct luxfer_emission_params {
     pub width: u32,
     /// Height of the texture in texels, in [1, 65536]; default 1024.
     pub height: u32,
-    /// Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its reduction to
-    /// working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights.
+    /// Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from the
+    /// spacing of the lights. It is in pixels of the exemplar after its reduction to working_side.
     pub block: u32,
-    /// Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1.
+    /// Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1.
     pub scale: f64,
     /// Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
     /// 256.
     pub working_side: u32,
     /// Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
-    /// in [0, 1e3]; default 1; 0 is plain image quilting.
+    /// in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting.
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
     /// The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
-    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
-    /// anywhere.
+    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and patches
+    /// may lie anywhere.
     pub min_regularity: f32,
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
@@ -82,27 +84,29 @@ pub struct luxfer_emission_params {
     /// 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo.
     pub even_lamps: u32,
     /// 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
-    /// edge. A lattice is stretched until whole periods fit, by less than half a period over the whole texture. Needs
-    /// whole_lamps. Default 0.
+    /// edge. A lattice is stretched so that a whole number of periods fits; the width and the height of the pattern
+    /// change by less than half a period. Needs whole_lamps. Default 0.
     pub tileable: u32,
     /// 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
     /// so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
     pub centred: u32,
-    /// Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
-    /// lattice, in [1, 65536]; default 192.
+    /// Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if the
+    /// lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are compared
+    /// in addition.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
     /// The law: the rule by which the texture continues the lights of the exemplar, a LUXFER_LAW_ value other than
     /// LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
-    /// 1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same outline,
-    /// which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the photo and
-    /// whole_lamps. 0: each lamp has the outline that the mask gives.
+    /// 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses are
+    /// drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on their lattice.
+    /// This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
-    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left out,
-    /// as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of unwarped
-    /// pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar.
+    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left out, as
+    /// if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant parts of the
+    /// plane: the magnification is the number of unwarped pixels per photo pixel, along one side, divided by its
+    /// smallest value in the exemplar.
     pub max_magnification: f64,
 }
 
@@ -160,8 +164,9 @@ impl luxfer_emission_params {
     }
 }
 
-/// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality.
-/// For a plan (luxfer_emission_start_plan), only the fields that need no texels are set.
+/// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
+/// plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error is 0. If there are
+/// several exemplars, regularity and the fields of the law describe the first one.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -169,31 +174,37 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires in the texture; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
-    /// of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
-    /// exemplar_lamps is small. NaN for a plan, which has no texels yet.
+    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
+    /// whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %. It means
+    /// little if exemplar_lamps is small. NaN for a plan.
     pub error: f64,
-    /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
+    /// Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two periods the
+    /// lower value. 0 if the lights have no period, or if the period was found from the distances between lamps.
     pub regularity: f64,
-    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
-    /// many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they are
-    /// completed to rectangles if clean_lamps is 1.
+    /// Number of whole lamps in the exemplars. If it is below six, the statistics in the field error are unreliable,
+    /// because the border then cuts a large share of the lamps. If there is no whole lamp, the texture is made from the
+    /// lamps that the border cuts; with clean_lamps, they are completed to rectangles unless the photo contradicts
+    /// this.
     pub exemplar_lamps: u32,
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-    /// ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are
-    /// as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0 for
-    /// LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for blended exemplars, and for a plan.
+    /// ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
+    /// of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
+    /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a plan, and if
+    /// the texture is hardly larger than the exemplar.
     pub sampling_error: f32,
     /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
-    /// The law with the best score among all laws that were not chosen: a LUXFER_LAW_ value.
+    /// The law with the best score among the laws that were not chosen: a LUXFER_LAW_ value. It equals the field law if
+    /// the two laws differ only in their periods, or if no other law was compared.
     pub runner_up: luxfer_emission_law,
-    /// Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps
-    /// weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
-    /// few of the lights are whole lamps.
+    /// Score of the chosen law, in [0, 1]: how well it predicts the position of each lamp of the photo from the other
+    /// lamps. Lamps weigh in proportion to their pixels in the photo. LUXFER_LAW_WHOLE and LUXFER_LAW_FREE predict
+    /// nothing and have a fixed score. NaN if no score was computed, for example because too few of the lights are
+    /// whole lamps.
     pub law_score: f64,
-    /// law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores slightly
-    /// better.
+    /// law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen although
+    /// runner_up scores slightly better: LUXFER_LAW_BEST prefers the law of LUXFER_LAW_CORRELATION, and lattices along
+    /// the axes of the room.
     pub margin: f64,
 }
 
@@ -222,13 +233,13 @@ pub struct luxfer_luminaire {
     pub corners: u32,
     /// Centre in texels, x and y.
     pub centre: [f64; 2],
-    /// Lengths of the principal axes in texels, the longer first.
+    /// Extents of the lamp along its two principal axes, in texels, the longer one first.
     pub size: [f64; 2],
-    /// Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2].
+    /// Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2].
     pub orientation: f64,
-    /// Area in square texels; texels at the edge count with the share that the lamp covers.
+    /// Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers.
     pub area: f64,
-    /// Share of the luminous flux of all lamps of the texture, in [0, 1].
+    /// This lamp's share of the luminous flux of all lamps of the texture, in [0, 1].
     pub flux_share: f64,
     /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
@@ -256,6 +267,7 @@ versioned!(luxfer_luminaire, [80], {
 pub(super) struct Exemplar {
     /// The unwarped photo, the unwarped confidence of its lights, and the mask of the pixels where both are valid.
     pub unwarped: [Arc<Pixels>; 3],
+    /// The photo, and the homography from unwarped pixels to photo pixels.
     pub photo: Option<(Arc<Pixels>, Homography)>,
 }
 
@@ -263,7 +275,9 @@ pub(super) struct Exemplar {
 #[derive(Clone)]
 pub(super) struct AddedExemplar {
     pub exemplar: Exemplar,
+    /// Number of unwarped pixels per texel, along one side.
     pub scale: f64,
+    /// Weight of this exemplar at each place of the texture, in [0, 1].
     pub weights: Arc<Pixels>,
 }
 
@@ -332,7 +346,7 @@ impl Inputs {
     }
 }
 
-/// Returns the texture of a stage; an error if the stage has made none or only a plan.
+/// Returns the texture of a stage. Returns an error if the stage has no result, or has only a plan.
 fn texture(stage: &Stage<Inputs, Output>) -> Result<Arc<Emission>> {
     stage.output()?.texture.clone().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, "the stage has planned a texture; luxfer_emission_start makes one as a whole")
@@ -381,9 +395,9 @@ pub unsafe extern "C" fn luxfer_emission_create(
     })
 }
 
-/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
-/// (1 channel, in [0, 1]) and the mask of the pixels where both images are valid (1 channel, 1 or 0).
-/// luxfer_emission_add_style adds more exemplars. Any thread.
+/// Sets the exemplar: three images of one size. unwarped is the unwarped photo (linear RGB). light is the unwarped
+/// confidence of the lights (1 channel, in [0, 1]). valid is 1 at the pixels where both other images are valid, else 0
+/// (1 channel). luxfer_emission_add_style adds more exemplars. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,
@@ -421,8 +435,8 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
 /// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
 /// luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
-/// LUXFER_DEGENERATE if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
-/// range.
+/// LUXFER_DEGENERATE if the exemplar has no lights, or not the lattice or row that the setting law asks for;
+/// LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -439,8 +453,8 @@ pub unsafe extern "C" fn luxfer_emission_start(
     })
 }
 
-/// Gets the image of the texture that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
+/// Gets the image that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later plan has replaced its texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(
     emission: *mut luxfer_emission,
@@ -461,8 +475,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the quality of the texture. For a plan (luxfer_emission_start_plan), only the fields that need no texels are
-/// set. size is sizeof *report. Any thread.
+/// Gets the description of the texture, or of the plan after luxfer_emission_start_plan. size is sizeof *report. Any
+/// thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -500,10 +514,11 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture; index starts at 0. After luxfer_emission_start_plan there are no texels yet,
-/// so a luminaire is described as it appears in the exemplar, cut at the edges of the texture; only lights that run
-/// through the whole exemplar, such as light bands, are described as the texture will show them. size is sizeof
-/// *luminaire. Any thread.
+/// Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
+///
+/// A plan (luxfer_emission_start_plan) has no texels yet. Its luminaires are measured in the exemplar, and cut at the
+/// edges of the texture. Only lights that are copied patch by patch are measured as the texture will show them: lights
+/// that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -534,11 +549,11 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 /// Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
 ///
 /// The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
-/// the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
-/// larger than texels, these figures are in unwarped pixels.
+/// the sides of the outline are accurate to a quarter of a texel, and its corners to 0.71 texels. If unwarped pixels
+/// are larger than texels, these figures are in unwarped pixels.
 ///
-/// In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only
-/// 0 and 1, and for lights of a plan that run through the whole exemplar.
+/// In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
+/// and 1, and for lights of a plan that are copied patch by patch (see luxfer_emission_get_luminaire).
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(

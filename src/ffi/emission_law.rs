@@ -7,17 +7,17 @@ use crate::error::{Error, Result};
 
 /// The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best. LUXFER_LAW_CORRELATION is used unless another law is clearly
-/// better.
+/// In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
+/// unless another law predicts the lamps clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a shift by
-/// this period is at least min_regularity of luxfer_emission_params.
+/// In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the correlation
+/// after a shift by this period is at least the setting min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
-/// The lamps form a row with one period; the extent of the exemplar serves as the other period.
+/// The lamps form a row with one period. Across the row, the strip that the exemplar shows is repeated edge to edge.
 pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
-/// The exemplar repeats as a whole, edge to edge.
+/// The exemplar repeats as a whole, edge to edge, in both directions.
 pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
 /// The lights have no period: patches of the exemplar are placed anywhere in the texture.
 pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
