@@ -5,8 +5,8 @@
 //!
 //! 1. For each pair of channels, fit a line to the pixels in which both channels are unclipped.
 //! 2. In the other pixels, predict a clipped channel from an unclipped one with this line.
-//! 3. Limit the prediction, because it is an extrapolation: it is at least the clipped value, and at most the value
-//!    that the ratio of the two channels' means gives.
+//! 3. Limit the prediction, because it is an extrapolation. It is at least the clipped value, and at most `r x`, where
+//!    `x` is the value of the unclipped channel and `r` the ratio of the two channels' means in step 1.
 //!
 //! If all channels of a pixel are clipped, the pixel keeps its values, which are lower bounds.
 
@@ -22,8 +22,8 @@ const LEAST_WHOLE: f64 = 0.02;
 const EVEN: f64 = 0.05;
 
 /// Returns the mean colour of `pixels`, and for each channel the share of pixels in which its value remains unknown,
-/// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true. Returns
-/// `None` if there are no pixels.
+/// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true: all pixels
+/// then show one plane. Returns `None` if there are no pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;

@@ -37,7 +37,8 @@ const WHITE: f32 = 1.001;
 /// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
 const MOSTLY: f64 = 0.5;
 
-/// Computes the mean colour of the chosen part of the photo.
+/// Computes the mean colour of the chosen part of the photo. If the halos cover the whole plane, the pixels of the
+/// plane outside the lights are used, halos included.
 pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image, job: Job) -> Result<Target> {
     photo.check_same_size("the photo", plane, "the plane's mask")?;
     photo.check_same_size("the photo", lights, "the lights' mask")?;

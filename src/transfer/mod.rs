@@ -103,7 +103,8 @@ pub struct Input {
 #[derive(Clone, Debug)]
 pub struct Params {
     pub rectify: rectify::Params,
-    /// Settings of the unwarping. Without `axes`, the axes of the face of the room's layout that holds the plane.
+    /// Settings of the unwarping. If `axes` is `None` and the plane lies on one face of the room's layout, the transfer
+    /// sets `axes` to the two room axes along this face.
     pub unwarp: rectify::UnwarpParams,
     pub features: features::Params,
     /// Settings of the first phase of segmentation, which finds the plane.
@@ -161,14 +162,14 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view before its correction. `None` if the lamps have not corrected the view; otherwise, `view` holds the
-    /// corrected one.
+    /// The view found from the photo's lines, if the sizes of the lamps have led to a corrected view; `view` then holds
+    /// the corrected view. `None` if the view has not been corrected.
     pub view_by_lines: Option<Arc<View>>,
     /// Whether the caller has set the view. Such a view is not corrected.
     pub view_is_given: bool,
     pub features: Option<Arc<Features>>,
-    /// The lamps to which the room was enlarged, because they lay beyond the ceiling of the first room layout. They
-    /// serve as examples of the plane.
+    /// Lamps that lay beyond the plane of the lights in the first room layout. The room was enlarged until it contained
+    /// them. When the plane is segmented again, their pixels are positive examples.
     pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,

@@ -8,7 +8,7 @@ use crate::scene::surface::Surface;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Determines the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
+/// The length that determines the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// The distance of the photo's camera from the lit plane: [`super::Params::plane_distance`] or, if that is 0, an
@@ -19,8 +19,8 @@ pub enum Scale {
     /// The shorter period of the lamps' lattice; without a lattice, the median distance from a lamp to its nearest
     /// neighbour.
     Spacing(f64),
-    /// The plane in the photo is scaled to the width of the surface, so that both have the same number of lamps side
-    /// by side.
+    /// The width of the surface: the plane in the photo is scaled to this width, so that the surface has as many lamps
+    /// side by side as the plane in the photo.
     Across,
 }
 
@@ -94,8 +94,8 @@ impl Pattern {
     }
 
     /// Computes the size of an unwarped pixel on the surface, in metres. `pixel` is this size divided by the distance
-    /// of the photo's camera from the lit plane. `plane_distance` is this distance in metres; if it is 0, the distance
-    /// is estimated from the lamps.
+    /// of the photo's camera from the lit plane. `plane_distance` is the distance in metres. If `plane_distance` is 0,
+    /// the distance is estimated from the lamps.
     pub(super) fn sizing(
         &self,
         (pixel, plane_distance): (f64, f64),
@@ -127,10 +127,11 @@ impl Pattern {
         Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
-    /// Chooses the size and the number of the texels on the surface. The size is `texel_size`. If that is 0, it is the
-    /// size of an unwarped pixel or, if the surface would then need more than `max_texels` along its longer side, the
-    /// smallest size that is allowed. The longer side of the unwarped photo has `pixels` pixels of `pixel` metres
-    /// each.
+    /// Chooses the size and the number of the texels on the surface. The longer side of the unwarped photo has `pixels`
+    /// pixels of `pixel` metres each. The size of a texel is
+    /// - `texel_size`, if it is not 0;
+    /// - else `pixel`, the size of an unwarped pixel;
+    /// - but longer side of the surface / `max_texels`, if `pixel` is smaller than that.
     pub(super) fn texel_grid(
         &self,
         surface: &Surface,

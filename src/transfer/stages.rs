@@ -15,8 +15,8 @@ use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
 /// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the
-/// room stays as it is. The second value applies if the room layout is uncertain: the user painted no strokes on the
-/// plane, or the photo's lines do not determine the camera. [bench photos:tune, photos:real]
+/// room stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain, because strokes for the plane
+/// are missing, or because the photo's lines do not determine the camera. [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
@@ -67,7 +67,8 @@ impl Transfer {
         if let Some(surfaces) = &features.surfaces {
             let size = [plane.mask.width, plane.mask.height];
             let is_off = |pixel: usize| surfaces.is_off_plane(pixel, size);
-            // Strokes that were painted after the features had been computed may contradict the surfaces.
+            // Remove the pixels that lie off the plane according to the surfaces. Exception: if most of a positive
+            // stroke lies there, it was painted after the features had been computed, and the surfaces are outdated.
             let share_off = |s: &segment::Stroke| {
                 s.pixels.iter().filter(|p| is_off(**p as usize)).count() as f64 / s.pixels.len().max(1) as f64
             };
@@ -101,8 +102,8 @@ impl Transfer {
         self.enlarge_room(job.part(0.6, 1.0))
     }
 
-    /// If lines do not determine the view, replaces it by the view in which the lamps have equal sizes. Returns
-    /// whether it was replaced.
+    /// If the photo's lines do not determine the view, replaces it by the view in which all lamps have the same size
+    /// and shape. Returns whether the view was replaced.
     fn correct_view(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(false);
@@ -315,7 +316,8 @@ impl LitScene {
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 
-    /// Returns a copy of the lit scene with white lamps that have the luminance of the coloured ones, for comparison.
+    /// Returns a copy of the lit scene in which each lamp is white and keeps its luminance, for comparison with the
+    /// coloured lamps.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
         let material = &mut scene.materials[self.placed.material];

@@ -1,5 +1,5 @@
-//! Chooses a camera for scenes without one. It stands in a corner of the room, below the lit surface, and has the most
-//! open view of several candidates.
+//! Chooses a camera for a scene that has no camera. The chosen camera stands in a corner of the room, below the lit
+//! surface, and has the most open view of several candidates.
 
 use crate::render::World;
 use crate::scene::surface::Surface;
@@ -34,8 +34,8 @@ pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     best.1.unwrap_or_else(|| candidate(surface, 0, INSETS[0], HEIGHTS[0] * depth))
 }
 
-/// Returns the distance from the surface to the farthest vertex on its lit side, or half the surface's longer side if
-/// there is none.
+/// Returns the distance from the surface to the farthest vertex of the scene on the lit side of the surface. If there
+/// is no such vertex, returns half of the surface's longer side.
 fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
     let points = scene.meshes.iter().flat_map(|m| &m.positions);
     let depth = points.map(|p| (*p - surface.origin).dot(surface.normal)).fold(0.0, f32::max);
