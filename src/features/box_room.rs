@@ -44,26 +44,28 @@ impl Face {
 pub struct Layout {
     /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
     pub sides: [f64; 4],
-    /// Agreement of the segments with the box: at most 1 if no segment lies on a seam, an edge at which two faces
-    /// meet; it may be higher otherwise.
+    /// Agreement of the segments with the box, in `[-1.5, 3]`. It is 1 if all segments lie on faces that can contain
+    /// them, and higher if segments also lie on seams, the edges at which two faces meet.
     pub score: f64,
     /// Confidence in the box as a whole, in `[0, 1]`. It rises with the number of segments, and with the lead of the
     /// box's score over the score of the best clearly different box.
     pub trust: f64,
 }
 
-/// Returns the room's axes, with z along the viewing direction and x to its right; the vertical axis is unchanged.
+/// Returns the room's axes as columns in camera space. If the room's z axis points backwards, x and z are negated: z
+/// then points into the photo, x to the right, and the vertical axis is unchanged.
 pub fn facing_axes(perspective: &Perspective) -> DMat3 {
     let axes = perspective.axes;
     if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
 }
 
-/// Returns the two faces that a ray meets first, each with the inverse of the ray parameter at the face.
+/// Returns the two faces that a ray from the camera meets first, each with `1/t`, where the ray meets the plane of the
+/// face at the point `t ray`. `ray` is in the axes of [`facing_axes`].
 pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     let x = if ray.x < 0.0 { (Face::Left, -ray.x / sides[0]) } else { (Face::Right, ray.x / sides[1]) };
     let y = if ray.y < 0.0 { (Face::Ceiling, -ray.y / sides[2]) } else { (Face::Floor, ray.y / sides[3]) };
     let z = (Face::Back, ray.z.max(0.0));
-    // Inside a convex room, the ray hits the face with the largest inverse parameter.
+    // Inside a convex room, the ray hits the face with the largest 1/t.
     let (high, low) = if x.1 >= y.1 { (x, y) } else { (y, x) };
     if z.1 >= high.1 {
         [z, high]
@@ -74,8 +76,8 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     }
 }
 
-/// When the room is enlarged to make a face include given pixels, it becomes larger than necessary by this factor, so
-/// that the face also surrounds lamps at these pixels. [convention]
+/// A room that is enlarged until a face contains given points becomes larger than necessary by this factor. The face
+/// then reaches beyond these points, and surrounds lamps that lie there. [convention]
 const MARGIN: f64 = 1.05;
 
 /// Pixels share a face of the room if at least this share of them lies on it. [convention]
@@ -133,8 +135,8 @@ impl Layout {
         (Self { sides: sides.map(|side| side / back), ..*self }, growth)
     }
 
-    /// Returns the face seen along a direction in the axes of `facing_axes`, and the inverse of the ray parameter at
-    /// the face.
+    /// Returns the face seen along a ray in the axes of [`facing_axes`], and `1/t`, where the ray meets the face at the
+    /// point `t ray`.
     pub fn hit(&self, ray: DVec3) -> (Face, f64) {
         faces(&self.sides, ray)[0]
     }

@@ -8,7 +8,8 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// The estimated surface at each pixel. Stores inverse depth, which is affine on planes: `1/z = (n · ray) / c`.
+/// The estimated surface at each pixel. Stores inverse depth `1/z`, which is affine in pixel coordinates on a plane
+/// `n · p = c`: the point is `p = z ray`, so `1/z = (n · ray) / c`.
 pub struct Surface {
     /// Inverse depth `1/z`, positive. The depth `z` has the same unit of length as [`Frustum::near`].
     pub inverse_depth: Image,
@@ -103,7 +104,8 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
 }
 
 /// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling
-/// above and the floor below. `1/z` rises quadratically with the distance from mid-height, to twice its central value.
+/// above and the floor below. `1/z` rises quadratically with the distance from mid-height. At the top and the bottom
+/// border of the photo it is twice the value at mid-height.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;

@@ -19,12 +19,14 @@ const LONGEST: usize = 400;
 const SIGMA: f32 = 1.0;
 /// Strokes grow up to this gradient, in units of CIELAB per pixel of the reduced image. [judged on 58 photos]
 const MAX_GRADIENT: f32 = 1.5;
-/// Strokes own a pixel if they reach it at less than this share of the cost of the others. [judged on 58 photos]
+/// The strokes of one class own a pixel if they reach it at less than this share of the cost at which the strokes of
+/// the other class reach it. [judged on 58 photos]
 const CLEARLY: f32 = 0.7;
 /// The part of a stroke on one smooth surface grows only if it holds at least this share of the stroke: hurried
 /// strokes run over edges by up to a tenth of their length. [bench photos:tune]
 const MIN_PART: f64 = 0.2;
-/// Blur and widened edges keep strokes this number of pixels away from the edge of their surface.
+/// Blur and widened edges stop strokes about this number of pixels before the edge of their surface. The grown parts
+/// are therefore widened by this number.
 const MARGIN: usize = 3;
 /// Number of steps of the cost from 0 to `MAX_GRADIENT / CLEARLY`, the highest cost that matters.
 const LEVELS: usize = u8::MAX as usize;
@@ -40,8 +42,8 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// Whether a pixel (`y * width + x`) of a photo of the given size surely lies off the plane. Pixels outside the
-    /// photo do not.
+    /// Whether a pixel (`y * width + x`) of a photo of the given size surely lies off the plane; false for pixels
+    /// outside the photo.
     pub fn is_off_plane(&self, pixel: usize, [width, height]: [usize; 2]) -> bool {
         let (x, y) = (pixel % width * self.width / width, pixel / width * self.height / height);
         self.on_plane.get(y * self.width + x) == Some(&Some(false))

@@ -1,11 +1,11 @@
 //! The built-in depth: lays out the room as a single box aligned with the room's axes, seen from inside (after Hedau,
 //! Hoiem and Forsyth 2009).
 //!
-//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall is at
-//! distance one. This fixes the scale, which a single image cannot determine (if the camera is 1.6 m above the floor,
-//! the wall is at `1.6 / bottom` metres). The four numbers are then also the sides of the back wall in its projection
-//! from the camera. Candidates for a side are the detected segments that could be this side of the back wall; `search`
-//! covers all boxes that the candidates form, and `score` rates each box.
+//! In room axes the [box](Layout) is `-left <= x <= right`, `-top <= y <= bottom`, `z <= 1`. The back wall is at
+//! distance one. This fixes the scale, which a single image cannot determine: if the camera is 1.6 m above the floor,
+//! the wall is at `1.6 / bottom` metres. The four numbers are then also the sides of the back wall as seen from the
+//! camera, in the coordinates `x/z` and `y/z`. Candidates for a side are the detected segments that could be this side
+//! of the back wall. The module `search` covers all boxes that the candidates form, and `score` rates each box.
 
 use super::box_room::{Face, Layout, facing_axes};
 use super::depth::Surface;

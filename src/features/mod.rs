@@ -10,14 +10,14 @@
 //! | channel | meaning | range |
 //! |---|---|---|
 //! | 0-2 | CIELAB of the photo (D65, display white = 1) | L* in `[0, 100]` for display-referred photos |
-//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near, 1 on the far plane | `[-far/near, far / (far - near)]` |
+//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near, 1 on the far plane | up to `far / (far - near)` |
 //! | 4-6 | position by Eq. 1, in the unit of length of `near`; in room axes if the room is known | finite |
 //! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
 //!
 //! Axes are x right, y down, z forward: camera axes, or the room's axes if the room is known ([`RoomView`]). If the
 //! perspective is known, its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from the real focal length,
-//! so that planes stay planes. Only ratios of depth are meaningful; the nearest depth (its 2 % quantile) is put on the
-//! near plane.
+//! so that planes stay planes. Only ratios of depth are meaningful. Depth from a map or from a layout is therefore
+//! scaled so that the 2 % quantile of the depth lies on the near plane.
 //!
 //! A depth map may also be estimated from the photo alone, by a network that the caller supplies as an ONNX file
 //! (Cargo feature `onnx`).

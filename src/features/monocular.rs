@@ -7,9 +7,10 @@
 //! the input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of
 //! 32.
 //!
-//! Output of the network: the map is resized back by cubic convolution, normalised by its extremes to `m` in `[0, 1]`,
-//! and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then lies on the near plane of
-//! [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of Eq. 1 (see `frustum`).
+//! Output of the network: the map is resized to the photo by cubic convolution. Its values v are normalised to
+//! `m = (v - min v) / (max v - min v)` and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest
+//! pixel then lies on the near plane of [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of
+//! Eq. 1 (see `frustum`).
 //!
 //! Not modelled: the unknown offset of the network's inverse depth, which the far plane replaces; metric networks.
 
@@ -84,8 +85,8 @@ impl DepthNetwork {
         }
     }
 
-    /// Estimates the depth along z of every pixel of a photo (linear RGB, 1 = display white), from `near` to `far`;
-    /// one channel.
+    /// Estimates the depth along z of every pixel of a photo (linear RGB, 1 = display white). Returns an image with one
+    /// channel and values from `near` to `far`.
     pub fn estimate(&self, photo: &Image, near: f32, far: f32, job: Job) -> Result<Image> {
         let (width, height) = (photo.width, photo.height);
         let [rows, columns] = self.input_size(width, height)?;

@@ -23,9 +23,9 @@ const SEAM: f64 = 2.0;
 /// A segment lies on the seam of two faces if the distances to both faces along its rays differ by less than this
 /// share. [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
-/// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
-/// this face too (`ELSEWHERE`). Both exceed the differences that lines usually make between boxes: strokes win unless
-/// the lines exclude nearly all boxes that agree with them. [origin not recorded]
+/// `ON_PLANE`: reward if all positive strokes lie on one face of the box. `ELSEWHERE`: penalty if all negative strokes
+/// lie on this face too. Two boxes usually differ less in their agreement with the lines. If strokes and lines
+/// disagree, the strokes therefore usually decide. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Weight of the surfaces over which strokes have grown, relative to the strokes. [bench photos:masks]
@@ -43,8 +43,8 @@ struct RoomSegment {
     weight: f64,
 }
 
-/// Sample points of the segments that run along one room axis: the absolute coordinates of their rays along this axis
-/// (`own`) and along the two other axes (`p`, `q`).
+/// Sample points of the segments that run along one room axis: the absolute values of the coordinates of their rays
+/// along this axis (`own`) and along the two other axes (`p`, `q`), and the weights of the points.
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,
@@ -60,8 +60,8 @@ struct Points {
 pub struct Quadrant {
     /// For each room axis, the sample points of the segments that run along it.
     points: [Points; 3],
-    /// For each stroke sample, the absolute coordinates of its ray, and the sample's weight in the score of the face
-    /// that the ray hits.
+    /// For each stroke sample, the absolute values of the coordinates of its ray, and the sample's weight in the score
+    /// of the face that the ray hits; the weight is negative for samples of negative strokes.
     stroke_samples: Vec<(DVec3, f64)>,
 }
 
@@ -139,8 +139,8 @@ impl Evidence {
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns candidate distances of one side (left, right, ceiling or floor), sorted by decreasing support. With the
-    /// side at one of these distances, a detected segment is an edge of the back wall.
+    /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor), sorted by decreasing
+    /// support. If the side is at a candidate distance, its edge with the back wall coincides with a segment.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
@@ -168,7 +168,8 @@ impl Evidence {
     }
 }
 
-/// Returns the quadrant to which a ray points, and the ray's absolute coordinates; a negative z becomes 0.
+/// Returns the index of the quadrant to which a ray points, and the absolute values of the ray's x and y with its z; a
+/// negative z becomes 0.
 fn quadrant(ray: DVec3) -> (usize, DVec3) {
     let index = usize::from(ray.x >= 0.0) + 2 * usize::from(ray.y >= 0.0);
     (index, DVec3::new(ray.x.abs(), ray.y.abs(), ray.z.max(0.0)))

@@ -109,8 +109,8 @@ fn objects(random: &mut Random, sides: &[f64; 4], [low, high]: [DVec3; 2]) -> Ve
     lines
 }
 
-/// Projects the edges as a photo shows them: broken into pieces, slightly displaced, and one in twenty assigned to the
-/// wrong axis.
+/// Projects the edges as a photo shows them: broken into pieces, slightly displaced, and one in twenty assigned to a
+/// random axis.
 fn projected(random: &mut Random, camera: &Perspective, lines: Vec<Edge>) -> Vec<(Segment, Option<usize>)> {
     let seen = |p: DVec3| {
         let c = camera.axes * p;
@@ -176,7 +176,8 @@ impl Cluttered {
         Self { camera, sides, segments, strokes }
     }
 
-    /// Returns the share of the view on the correct face, and the median absolute logarithm of the depth error.
+    /// Returns the share of the view on the correct face, and the median of |ln(found depth / true depth)| after both
+    /// depths have been brought to one scale.
     fn judge(&self, layout: &Layout) -> [f64; 2] {
         let pixels = (4..SIZE[1]).step_by(8).flat_map(|y| (4..SIZE[0]).step_by(8).map(move |x| (x, y)));
         let (mut right, mut logs) = (0, Vec::new());
