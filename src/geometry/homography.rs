@@ -25,8 +25,8 @@ impl Homography {
                 ));
             }
         }
-        // Set up two rows per point, and solve for eight entries with the last entry fixed to 1. If the origin maps to
-        // infinity, the last entry is 0 and the system is singular: fix another entry instead.
+        // Set up two rows per point, fix the last entry of the matrix to 1, and solve for the other eight entries. If
+        // the origin maps to infinity, the last entry is 0 and the system is singular: then fix another entry to 1.
         let mut a = [[0.0; 9]; 8];
         for i in 0..4 {
             let (x, y, u, v) = (f[i].x, f[i].y, t[i].x, t[i].y);
