@@ -1,5 +1,5 @@
-//! Self-contained demonstration data: two generated rooms, with a photo of one; a sphere on a table, with drawings and
-//! a painting of that scene; and a still life.
+//! Self-contained demonstration data. For the lighting transfer: two generated rooms, and a photo of one of them. For
+//! the stylisation: a sphere on a table, artworks of this scene, and a still life.
 //!
 //! [`target_room`] is the furnished room to be lit; it has no lights. [`exemplar_room`] is a different room, an office
 //! under a grid of luminaires whose positions and colour are known. A rendering of the office can serve as the

@@ -1,4 +1,5 @@
-//! Procedural textures of linear reflectance for the demonstration rooms. All of them tile without seams.
+//! Procedural textures of linear reflectance for the demonstration rooms. All of them, except [`painting`], tile
+//! without seams.
 
 use crate::error::Result;
 use crate::image::Image;

@@ -54,7 +54,7 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     };
     let film = render::run(&world, camera, &settings, job.part(0.05, 0.9), &mut |_| {})?;
 
-    // Lens: a slight blur, and a glow around very bright parts.
+    // Model the lens: compute a slightly blurred image, and a strongly blurred one for the glow around bright parts.
     let sharp = pyramid::blur(&film.beauty, LENS_BLUR, job.part(0.9, 0.92))?;
     let glow = pyramid::blur(&film.beauty, GLARE.1, job.part(0.92, 0.96))?;
 
@@ -70,7 +70,7 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     let balance = mean.powf(-WHITE_BALANCE);
     let balance = balance / luminance(mean * balance);
 
-    // Sensor: vignetting, shot and read-out noise, saturation, 8 bits.
+    // Model vignetting and the sensor: shot noise, read-out noise, clipping at white, and rounding to 8 bits.
     let mut photo = Image::new(params.width, params.height, 3)?;
     let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
     let half_diagonal = centre[0].hypot(centre[1]);

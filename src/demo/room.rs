@@ -11,7 +11,7 @@ const SIZE: Vec3 = Vec3::new(6.0, 2.8, 4.0);
 const CELL: f32 = 0.25;
 /// Depth in metres of the door and window openings. [convention]
 const REVEAL: f32 = 0.12;
-/// Lower and upper corner, along x and y, of the openings in the wall at z = 0.
+/// Lower left and upper right corner (x, y), in metres, of the openings in the wall at z = 0.
 const WINDOW: [Vec2; 2] = [Vec2::new(1.1, 0.95), Vec2::new(3.1, 2.25)];
 const DOOR: [Vec2; 2] = [Vec2::new(4.3, 0.0), Vec2::new(5.2, 2.05)];
 

@@ -6,8 +6,8 @@ use crate::image::colour::{linear_to_srgb, luminance};
 use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
-/// `AXIS`: axis in camera space, around which the strokes on objects run. `TABLE`: direction in the picture of the
-/// strokes on the table.
+/// `AXIS`: strokes on objects run around this axis (camera space: x right, y up, z towards the viewer). `TABLE`:
+/// strokes on table and wall run in this direction (in the picture: x right, y down).
 const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
 const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
@@ -47,8 +47,8 @@ impl Subject {
         };
         // Take the material in the top-left corner as the background.
         let background = guides.materials.pixel(0, 0);
-        // Scale the object's tones by its own brightest light, so that a dark paint is drawn no darker than a light
-        // one.
+        // Scale the object's tones so that its brightest direct light (98 % quantile) becomes 0.7. An object of dark
+        // paint is then drawn no darker than an object of light paint.
         let objects =
             direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
         let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
