@@ -25,9 +25,12 @@ use crate::image::Image;
 ///
 /// The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
 /// added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
-/// gets the remaining weight. Each lamp of the texture comes from one exemplar, chosen at random with the weights as
-/// probabilities, so that the light per area blends linearly. The lattice of each exemplar keeps its own period and
-/// phase.
+/// gets the remaining weight.
+///
+/// Each lamp of the texture comes from one exemplar, chosen at random with the weights at the lamp's centre as
+/// probabilities. On average, the light per area is therefore the weighted mean of the exemplars. Lights that run
+/// beyond the border of their exemplar are not chosen at random; they are dimmed by their exemplar's weight instead.
+/// The lattice of each exemplar keeps its own period and phase.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_add_style(
     emission: *mut luxfer_emission,
@@ -63,9 +66,9 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
 }
 
 /// Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
-/// texture that luxfer_emission_start has made. params, and the statuses of the call and the job, are as for
-/// luxfer_emission_start. luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan.
-/// The caller releases *job. Any thread.
+/// texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
+/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the plan and its lamps. The caller releases
+/// *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_plan(
     emission: *mut luxfer_emission,
@@ -86,11 +89,11 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
     })
 }
 
-/// Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
-/// texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
-/// bit to the texture and mask of luxfer_emission_start, whatever the sizes of the tiles and the order in which they
-/// are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads
-/// may render tiles at the same time.
+/// Renders a rectangle (a tile) of a planned texture: width x height texels, of which the top-left one is texel (x, y)
+/// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
+/// the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
+/// they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
+/// threads may render tiles at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
 /// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

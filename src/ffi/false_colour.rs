@@ -1,7 +1,7 @@
 //! False colour
 //!
-//! Shows a luminance or illuminance image in false colours, which become brighter as the value rises, with a scale
-//! bar.
+//! Shows a luminance or illuminance image in false colours, with a scale bar. The colours become lighter as the value
+//! rises.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -39,7 +39,7 @@ pub struct luxfer_false_colour_params {
     pub unit: luxfer_unit,
     /// 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar.
     pub bar: u32,
-    /// Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of the
+    /// Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale, 0 stands for a thousandth of the
     /// value that gets the lightest colour.
     pub minimum: f64,
     /// Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the image.
@@ -77,10 +77,10 @@ impl luxfer_false_colour_params {
     }
 }
 
-/// Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: an image in linear RGB,
-/// grey where a value is NaN. params may be NULL for the defaults. The call takes a few milliseconds per megapixel.
-/// The caller releases *shown. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is
+/// Converts an image to false colours: an image in linear RGB. A source of 1 channel is shown by its values, a linear
+/// RGB source by its luminance. Values beyond the range get the colour of its nearer end; NaN becomes grey. params may
+/// be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller releases *shown. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the range is empty: maximum is not greater than minimum, or maximum is 0 and the image is
 /// black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_false_colour(

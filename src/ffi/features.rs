@@ -1,10 +1,9 @@
 //! Features
 //!
-//! Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
-//! position x, y, z and normal x, y, z. The depth comes from one of four sources: a depth map that the caller
-//! supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found
-//! by a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the
-//! photo.
+//! Computes ten values for each pixel of a photo, its features, by which segmentation compares pixels: colour, depth,
+//! position and normal. The depth comes from the first source that is available: (1) a depth map of the caller; (2) a
+//! network in an ONNX file; (3) a box-shaped room, which is fitted to the lines that a luxfer_rectify has found and to
+//! strokes on one plane of the room; (4) a fixed default that does not depend on the photo.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -49,16 +48,20 @@ pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 /// An image of the features: a LUXFER_FEATURES_ value.
 pub type luxfer_features_image = i32;
-/// The ten channels of the features; luxfer_image_read reads up to four of them at a time.
+/// The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
+/// the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
+/// near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
+/// those of the camera or, after luxfer_features_set_view, those of the room. luxfer_image_read reads up to four
+/// channels at a time.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
-/// The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1 channel. Set it
-/// as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
+/// The distance along the viewing axis that a network has estimated, in [near_plane, far_plane]; 1 channel. Set it as
+/// the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// How the photo's colours are normalised for a network: a LUXFER_NORMALISATION_ value. An ONNX file does not state
-/// it.
+/// How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
+/// does not state it.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.
@@ -87,14 +90,15 @@ pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
 pub struct luxfer_features_params {
     /// sizeof(luxfer_features_params), set by luxfer_features_params_init.
     pub struct_size: u32,
-    /// Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
-    /// unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this plane.
+    /// Distance of the near plane, where the depth channel is 0, in [1e-3, 1e3]; default 1. All depths are multiplied
+    /// by one factor, so that the nearest part of the photo (the 2 % quantile of its depths) lies on this plane. The
+    /// unit of length is therefore arbitrary.
     pub near_plane: f32,
     /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
     /// near_plane; default 10.
     pub far_plane: f32,
-    /// Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in [0, 64];
-    /// default 0: chosen by the photo's size.
+    /// A pixel's normal is that of a plane fitted in a square window around the pixel. This is half the width of the
+    /// window in pixels, in [0, 64]; 0, the default: 1 % of the photo's width, but at least 2 and at most 64.
     pub normal_radius: u32,
 }
 
@@ -204,12 +208,12 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
     })
 }
 
-/// Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
-/// input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096. Its first output is a map of
-/// relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on near_plane
-/// and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
-/// The call reads the file, which is not needed afterwards. Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
+/// Sets a network in an ONNX file, which estimates the depth if there is no depth map; path is UTF-8. The network has
+/// one input: the photo as a float tensor [1, 3, rows, columns], with up to 4096 rows and columns. Its first output is
+/// a map of relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on
+/// near_plane and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no
+/// network. The call reads the file, which is not needed afterwards. Any thread.
+/// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged; LUXFER_UNSUPPORTED if it needs an operator
 /// that the library does not support, or if the library was built without the Cargo feature onnx.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_network(
@@ -249,7 +253,7 @@ fn network(path: &str, _: luxfer_normalisation) -> Result<DepthNetwork> {
     ))
 }
 
-/// Computes the features. A network, if there is one, estimates the depth unless the caller has set a depth map.
+/// Computes the features. If the caller has set a network and no depth map, the network estimates the depth.
 #[cfg(feature = "onnx")]
 fn compute(
     input: &features::Input,
@@ -296,10 +300,10 @@ pub unsafe extern "C" fn luxfer_features_set_view(
 }
 
 /// Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
-/// prefers a room in which one surface, such as the ceiling, contains all positive strokes, those of
-/// LUXFER_PHASE_PLANE and of LUXFER_PHASE_LIGHTS, and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes
-/// have no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes;
-/// NULL removes them. Any thread.
+/// prefers rooms in which one surface, such as the ceiling, contains all positive strokes (of both phases,
+/// LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes have
+/// no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL
+/// removes them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

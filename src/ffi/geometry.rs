@@ -16,10 +16,10 @@ use crate::image::MAX_SIDE;
 use crate::rectify;
 use glam::{DMat3, DVec2};
 
-/// Computes the homography that maps four points to four other points. The array from holds x and y of the four
-/// points, 8 doubles; the array to holds x and y of the points to which they are mapped. homography receives the nine
-/// entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
-/// LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
+/// Computes the homography that maps four points to four other points. The array from holds x and y of the four points,
+/// 8 doubles; the array to holds x and y of the points to which they are mapped, in the same order. homography receives
+/// the nine entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
+/// LUXFER_DEGENERATE if three points of one array lie on one line or two coincide, or if a coordinate is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_homography_from_corners(
     context: *mut luxfer_context,
@@ -37,10 +37,11 @@ pub unsafe extern "C" fn luxfer_homography_from_corners(
     })
 }
 
-/// Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. The pixel at p takes
-/// the value of the source at to_source(p); to_source holds the nine entries of the matrix. Pixels that lie outside
-/// the source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint
-/// where it is minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+/// Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. to_source is the
+/// homography from points of the new image to points of the source: nine matrix entries, row by row. Each pixel of the
+/// new image takes the value of the source at the point to which its centre is mapped, or 0 if that point lies outside
+/// the source. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it is
+/// minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
 /// LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]

@@ -1,8 +1,9 @@
 //! Glare of observers
 //!
 //! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
-//! scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening
-//! as seen from the eye.
+//! scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as
+//! seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose opening the eye sees
+//! edge-on, have no such area and are not rated.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -21,7 +22,8 @@ use glam::Vec3;
 pub struct luxfer_observer {
     /// Position of the eye, in metres.
     pub position: [f32; 3],
-    /// Line of sight; any length but 0, and not vertical.
+    /// Line of sight; any length but 0. It must not be vertical: its horizontal part must be at least 2 % of its
+    /// length.
     pub direction: [f32; 3],
 }
 
@@ -29,15 +31,17 @@ pub struct luxfer_observer {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer_glare {
-    /// Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire is in
-    /// view; infinity if a luminaire is in view and the background is black.
+    /// Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view, with
+    /// their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible;
+    /// 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is in view and the
+    /// background is black.
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
     pub background: f64,
     /// Standard error of the field background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
-    /// emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.
+    /// Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are not
+    /// rated, point, spot and directional lights, emissive surfaces, and the environment.
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
     pub solid_angle: f64,

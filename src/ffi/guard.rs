@@ -10,7 +10,8 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard};
 
-/// Runs an entry point that takes no object, and returns the status of its result.
+/// Runs the body of an entry point, and returns the status of its result. Entry points that take an object call it
+/// through [`enter`].
 pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
     let (_mode, _quiet) = (FloatMode::enter(), Quiet::enter());
     match catch(work) {
@@ -19,8 +20,8 @@ pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
     }
 }
 
-/// Turns a panic into an error. Data that the panic left half-written is never read: results are stored only after
-/// success.
+/// Turns a panic into an error. A panic may leave data half-written; nobody reads them, because results are stored only
+/// after success.
 pub(super) fn catch<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let message = format!("a defect in luxfer, please report it: {}", panic_text(&*panic));
@@ -38,7 +39,8 @@ fn panic_text(panic: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Locks a mutex, even if another holder has panicked: every holder leaves the state consistent.
+/// Locks a mutex, even if another thread panicked while it held the lock. No holder leaves the locked data inconsistent
+/// when it panics.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
@@ -49,7 +51,8 @@ mod tests {
     use crate::ffi::status::{LUXFER_FORMAT, LUXFER_INTERNAL};
     use crate::job::Monitor;
 
-    /// Causes panics on the calling thread, on a worker and on a job's thread; the guard catches all of them.
+    /// Causes panics on the calling thread, on a worker of a pool and on a job's thread, all of which the library
+    /// catches. Then causes panics of the host, which must still print their messages.
     #[test]
     #[ignore = "a program of its own: a_defect_is_silent runs it and looks at its stderr"]
     fn has_defects() {
