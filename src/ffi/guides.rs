@@ -26,25 +26,29 @@ pub struct luxfer_guides {
     _opaque: [u8; 0],
 }
 
-/// A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m².
+/// A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m². The expressions in parentheses
+/// describe their light paths: L is a light, D a diffuse reflection, S a reflection or transmission at a glossy
+/// surface, mirror or clear pane, E the camera.
 pub type luxfer_guides_image = i32;
-/// All light, reflected any number of times.
+/// All light (L.*E): lights that are seen directly, and light that is reflected or transmitted any number of times.
 pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
 /// Light reflected once, by a diffuse surface (LDE).
 pub const LUXFER_GUIDES_DIRECT: luxfer_guides_image = 1;
-/// Light that comes by way of one glossy surface, mirror or clear pane (LSE).
+/// Light reflected or transmitted once, at a glossy surface, mirror or clear pane (LSE).
 pub const LUXFER_GUIDES_SPECULAR: luxfer_guides_image = 2;
 /// Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding.
 pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
 /// Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows.
 pub const LUXFER_GUIDES_TWO_BOUNCES: luxfer_guides_image = 4;
-/// Normals in camera space: x right, y up, z towards the camera; 3 channels.
+/// Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3 channels.
 pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
-/// Edges of shapes, in [0, 1]; 1 channel.
+/// Edges of shapes: 1 on an edge, 0 away from edges; 1 channel.
 pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
-/// A colour code for each material, derived from its name; 3 channels.
+/// A colour for each material, derived from its name, so that materials of equal name match in all scenes; black where
+/// there is no surface; 3 channels.
 pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
-/// Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes (LS+DE).
+/// Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces, mirrors or clear
+/// panes (LS+DE).
 pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
 /// Settings of the guides. Fill them with luxfer_guides_params_init.
@@ -199,16 +203,16 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
     })
 }
 
-/// Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides is
-/// the current frame; the parameter previous is the frame before it. For each pixel of the current frame, the image motion
-/// holds the offset, x and y in pixels, to the position of the pixel's surface point in the previous frame; NaN where
-/// the previous frame does not show the point. The caller releases *motion. Any thread.
+/// Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides
+/// holds the current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the
+/// current frame, the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the
+/// previous frame. It is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
 ///
-/// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
-/// equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
-/// correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
-/// luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane itself,
-/// not of the objects that are seen in it.
+/// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
+/// the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and
+/// both frames have the same number of them, they correspond in their order. If an object has no counterpart in the
+/// previous frame, its motion is NaN, and luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has
+/// the motion of the mirror or pane itself, not of the objects that are seen in it.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

@@ -1,8 +1,8 @@
 //! Handles: a handle points to a `Shell`, which holds a tag for the kind of the object and a reference to the object.
 //!
-//! The shell counts the references of the host. The object inside counts the references of the library: a job keeps
-//! its stage, an image its context. So a host that releases an object once too often damages only its own count: its
-//! handle becomes invalid, and the object may live on.
+//! The shell counts the references of the host. The object inside counts the references of the library: a job keeps its
+//! stage alive, and an image keeps its context alive. If the host releases an object once too often, only the handle
+//! becomes invalid; the object stays alive as long as the library uses it.
 
 use super::context::Context;
 use crate::error::{Error, Result};

@@ -1,7 +1,8 @@
 //! Illuminance
 //!
-//! Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. An image gives the
-//! standard error of each point, and a report gives the mean, the minimum and the maximum.
+//! Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. The results are an
+//! image of the illuminances, an image of their standard errors, and a report with the mean, the minimum and the
+//! maximum.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -28,7 +29,7 @@ pub struct luxfer_illuminance {
 pub type luxfer_illuminance_image = i32;
 /// Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover.
 pub const LUXFER_ILLUMINANCE_LUX: luxfer_illuminance_image = 0;
-/// Standard error of each value, in lux; 1 channel.
+/// Standard error of each illuminance, in lux; 1 channel; NaN in texels that the mesh does not cover.
 pub const LUXFER_ILLUMINANCE_ERROR: luxfer_illuminance_image = 1;
 
 /// Settings of an illuminance calculation. Fill them with luxfer_illuminance_params_init.
@@ -98,7 +99,8 @@ impl luxfer_illuminance_grid {
 pub struct luxfer_illuminance_report {
     /// sizeof(luxfer_illuminance_report), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of points; on a mesh, the texels that the surface covers.
+    /// Number of points with a value: on a mesh, the number of texels that the mesh covers. If it is 0, the other
+    /// values are 0.
     pub points: u32,
     /// Smallest illuminance. The uniformity U0 is minimum / mean.
     pub minimum: f64,
@@ -156,7 +158,7 @@ pub unsafe extern "C" fn luxfer_illuminance_set_scene(
 /// Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
 /// releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the grid has no normal, or a setting is out of range.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the normal of the grid is 0, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     illuminance: *mut luxfer_illuminance,
@@ -170,12 +172,13 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     })
 }
 
-/// Starts a job that computes the illuminance on a mesh at columns x rows texels, which divide u and v of its first
-/// set of texture coordinates. back is 0 for the front side of the triangles (by their winding) and 1 for the back
-/// side. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that computes the illuminance on a mesh. The first set of texture coordinates maps the mesh to an image
+/// of columns x rows texels: columns divide u, rows divide v. Each texel gets the illuminance at the surface point of
+/// its centre. back is 0 for the front side of the triangles, from which they wind counter-clockwise, and 1 for the
+/// back side. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
-/// if a setting is out of range.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if
+/// a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_start_mesh(
     illuminance: *mut luxfer_illuminance,

@@ -173,13 +173,13 @@ impl Pixels {
         }
     }
 
-    /// Width and height.
+    /// Returns width and height in pixels.
     pub(super) fn size(&self) -> (usize, usize) {
         (self.image().width, self.image().height)
     }
 
-    /// Returns the image as an object of its own. An image inside a stage's result is copied, because the result
-    /// cannot be split.
+    /// Returns a shared pointer to the image. An image inside a stage's result is copied first, because the result owns
+    /// it together with other data.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),
@@ -192,12 +192,12 @@ impl Pixels {
         }
     }
 
-    /// Metadata of the file that the image was loaded from.
+    /// Returns the metadata of the file that the image was loaded from; defaults for other images.
     pub(super) fn metadata(&self) -> &PhotoMetadata {
         &self.metadata
     }
 
-    /// Creates the object of an image that the caller owns; `charge` counts it in the memory budget.
+    /// Creates the object of an image that the caller will own; `charge` is its share of the memory budget.
     fn own(context: &Arc<Context>, image: Image, charge: Charge, metadata: PhotoMetadata) -> Arc<Self> {
         Arc::new(Self {
             context: context.clone(),
@@ -295,18 +295,21 @@ pub unsafe extern "C" fn luxfer_image_create(
 /// *image. Any thread.
 ///
 /// The formats are JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR (its display window).
-/// Grey with alpha becomes RGBA; palettes and CMYK become RGB; colours are not multiplied by alpha.
+/// Grey with alpha becomes RGBA; palettes and CMYK become RGB. Colours are not premultiplied by alpha, except in
+/// OpenEXR files, whose samples stay as stored.
 ///
-/// With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709 from the colour space that the file
-/// states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
+/// Load pictures with LUXFER_COLOUR_SRGB. Their colours are converted to linear Rec.709 from the colour space that the
+/// file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
 /// COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
-/// linear; luxfer_photo_metadata.colour tells which case applied. With LUXFER_COLOUR_LINEAR, for data such as masks
-/// and depth, samples are not converted.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
-/// the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
-/// raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
-/// R, G, B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side,
-/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// linear. luxfer_photo_metadata.colour tells which of these cases applied.
+///
+/// Load data such as masks and depth with LUXFER_COLOUR_LINEAR. Their samples are not converted.
+/// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged or of no known format; LUXFER_OUT_OF_MEMORY
+/// beyond the memory budget.
+/// LUXFER_UNSUPPORTED if the picture is larger than 2^28 pixels or 65536 on a side, or if the library recognises the
+/// format but does not read it. The message then names the format, such as AVIF, HEIC, JPEG XL, raw data of cameras,
+/// TIFF with JPEG compression, deep or luminance-chroma OpenEXR, or an OpenEXR layer with neither R, G, B nor a single
+/// channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load(
     context: *mut luxfer_context,
@@ -369,10 +372,10 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 ///   used.
 ///
 /// All functions of this library write files as follows. An existing file is replaced only once the new one is
-/// complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs and files with several hard
-/// links are written in place.
-/// LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
-/// file cannot be written.
+/// complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs, files with several hard links,
+/// and files in folders that accept no new files are written in place.
+/// LUXFER_INVALID_ARGUMENT if the extension is another one, the number of channels is not allowed, or exposure is out
+/// of range for a .png; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(
     image: *mut luxfer_image,
@@ -424,9 +427,9 @@ pub unsafe extern "C" fn luxfer_image_get_size(
     })
 }
 
-/// Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
-/// of the image, starting at first_channel. Integer samples are clamped to their range and rounded; NaN becomes 0 in
-/// them. Any thread.
+/// Copies an image into the caller's pixels. The view must have the image's width and height. It receives
+/// view->channels channels of the image, starting at first_channel; with LUXFER_COLOUR_SRGB, the library encodes them
+/// with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN becomes 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_read(

@@ -41,8 +41,9 @@ pub struct luxfer_importance_params {
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the relative half-width of the 95 % confidence interval of the light that the target would receive
-    /// from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
+    /// Stop when the light that the target would receive from a uniform emission is known to this relative error, in
+    /// [0, 1]; default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 % confidence
+    /// interval divided by the mean, in the worst channel.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -79,8 +80,8 @@ pub struct luxfer_importance_report {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
-    /// comes from the size of the cells is about a third of this change.
+    /// The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
+    /// that comes from the size of the cells is about a third of this difference, which also contains noise.
     pub band_error: [f64; 3],
 }
 
@@ -137,11 +138,11 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
     })
 }
 
-/// Starts a job that traces the map. The new map replaces the earlier one and the placement that was found with it.
+/// Starts a job that traces the map. The new map replaces the earlier map and the placement that was found with it.
 /// params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
-/// range.
+/// range; LUXFER_DEGENERATE if the target has no area.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start(
     importance: *mut luxfer_importance,
@@ -199,9 +200,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
 }
 
 /// Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
-/// is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
-/// row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
-/// thread.
+/// is a 3 x 3 matrix M, row by row, with the last row 0 0 1: M (u, v, 1) is the point of the texture that lies at the
+/// texture coordinates (u, v) of the surface. NULL is the identity. The call takes a few milliseconds. size is sizeof
+/// *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(
@@ -226,8 +227,8 @@ pub unsafe extern "C" fn luxfer_importance_respond(
 }
 
 /// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
-/// blue) in cd/m², each in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and
-/// placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+/// blue) in cd/m², each in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new
+/// paths. texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(

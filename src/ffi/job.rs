@@ -1,13 +1,14 @@
 //! Job
 //!
 //! Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
-//! runs on threads of the library. It works on the inputs as they are at the start: changing or releasing them later
-//! does not affect the job. While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION).
-//! Read the results from the object after the job has succeeded. Releasing the last reference to a running job cancels
-//! the job and waits until it has ended.
+//! runs on threads of the library. The job works on the inputs as they are at its start: changing or releasing them
+//! later does not affect the job. While a job runs, its object refuses changes and further jobs
+//! (LUXFER_INVALID_OPERATION). Read the results from the object after the job has succeeded. Releasing the last
+//! reference to a running job cancels the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
-//! waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
+//! waiting job at once. All other calls never wait for jobs, except luxfer_job_wait and the release of a running job.
+//! They may also be made from a progress function.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
@@ -28,17 +29,18 @@ pub struct luxfer_job {
     _opaque: [u8; 0],
 }
 
-/// Receives the progress of a job: fraction starts at 0 and never falls. The fraction is exactly 1 only once: in the
-/// last call, after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait
-/// calls the function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer
-/// function. The function must not throw an exception or leave by longjmp.
+/// Receives the progress of a job: fraction is in [0, 1] and never falls. It is 1 only in the last call, after the job
+/// has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
+/// times a second, on the waiting thread and with no lock held, so it may call any luxfer function. The function must
+/// not throw an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// Interval between two calls of the progress function by a waiting thread.
 const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
-/// The object behind a `luxfer_job` handle. It keeps the context alive until the job's thread has ended; otherwise
-/// that thread or a worker of the pool could drop the last reference to the pool, and the pool would wait for itself.
+/// The object behind a `luxfer_job` handle. It keeps the context alive until the job's thread has ended. Otherwise the
+/// job's thread or a worker of the pool could drop the last reference to the pool. Dropping the pool joins its threads,
+/// and so that thread would wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,
@@ -113,7 +115,8 @@ impl Job {
 impl Drop for Job {
     fn drop(&mut self) {
         self.shared.monitor.cancel();
-        // A function that runs as a job may release that job, on the job's own thread, which cannot wait for itself.
+        // The function of luxfer_job_start may release its own job. This code then runs on the job's own thread, which
+        // cannot wait for itself.
         let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
         if let Some(thread) = lock(&self.thread).take().filter(is_other) {
             // The thread catches all panics, so it always ends well.
@@ -126,10 +129,10 @@ impl Drop for Job {
 /// During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
 /// thread; several threads may wait for one job.
 ///
-/// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
-/// message of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the
-/// other job also cancels this job.
-/// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
+/// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the message
+/// of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other
+/// job also cancels this job.
+/// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY if the wait timed out (the job continues);
 /// LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
@@ -207,8 +210,8 @@ pub unsafe extern "C" fn luxfer_job_get_progress(
     })
 }
 
-/// Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
-/// request after the end has no effect. Any thread.
+/// Asks a job to end early and returns at once; the job ends within about 100 ms. A request cannot be withdrawn. A
+/// request after the end of the job has no effect. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_cancel(job: *mut luxfer_job) -> luxfer_status {
     enter(job, |job| {

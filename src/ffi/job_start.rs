@@ -27,13 +27,13 @@ struct User(*mut c_void);
 unsafe impl Send for User {}
 
 /// Starts a job that runs work, a function of the caller, on a thread of its own with 4 MiB of stack. The function
-/// receives the pointer user, and may call any function of the library. The progress of its calls in this context, and
-/// of the jobs that it waits for, is the progress of this job, which never falls. The caller releases *job. Any
-/// thread.
+/// receives the pointer user, and may call any function of the library. The job reports the progress of the calls that
+/// the function makes in this context, and of the jobs that it waits for; the reported progress never falls. The caller
+/// releases *job. Any thread.
 ///
-/// A cancel request to this job makes the function's calls in this context end with LUXFER_CANCELLED; a call that
-/// loads a file ends between two meshes or pictures. The request also cancels the jobs that the function waits for. If
-/// the function returns an error, the job gets the message of the last call that failed on its thread.
+/// A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
+/// this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture. If the
+/// function returns an error, the message of the job is that of the last call that failed on its thread.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(

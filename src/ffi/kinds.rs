@@ -28,7 +28,7 @@ use super::warning::{self, HasWarnings, luxfer_warnings};
 use crate::error::{Error, Result};
 use std::ffi::c_void;
 
-/// Creates the list of warnings of an object of one kind.
+/// A function that creates the list of warnings of an object; there is one for each kind with warnings.
 type CreateWarnings = fn(*mut c_void, *mut *mut luxfer_warnings) -> luxfer_status;
 
 /// One kind of handle, with the functions that serve it.

@@ -6,11 +6,12 @@ use crate::relight::{Aspect, Constraint, Goal, Quantity, TargetGeometry};
 use crate::scene::Scene;
 use glam::Vec3;
 
-/// A surface or a grid, and the light that it should receive.
+/// A surface or a grid, and the light that it should have.
 #[derive(Clone)]
 pub(super) struct StoredGoal {
     pub geometry: StoredGeometry,
     pub quantity: Quantity,
+    /// Mean radiance in cd/m² per channel; for illuminance, the value in lux divided by π.
     pub target: Vec3,
     pub aspect: Aspect,
     pub constraint: [Constraint; 3],

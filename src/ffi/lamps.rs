@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds powers for the lamps of an emission, within bounds, with which a scene comes nearest to several goals. A goal
-//! is a surface or a calculation grid that should receive a given light. One set of paths per goal measures the light
-//! from all lamps at once, even from thousands.
+//! Finds the powers of the lamps of an emission with which a scene comes nearest to several goals. The power of a lamp
+//! is a factor for its emission, within bounds. A goal is a surface or a calculation grid that should receive a given
+//! light. One set of paths per goal measures the light from all lamps at once, even from thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -35,16 +35,17 @@ pub type luxfer_group = i32;
 pub const LUXFER_GROUP_ALL: luxfer_group = 0;
 /// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
-/// Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of the
-/// meshes.
+/// Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the emission has a
+/// texture, the texture coordinate u takes the place of x.
 pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
-/// Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of the
-/// meshes.
+/// Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the emission has a
+/// texture, the texture coordinate v takes the place of y.
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
-/// Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes.
+/// Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
+/// texture, all lamps form one group.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot lights
-/// form another, and luminaires with the same distribution form one group for each distribution.
+/// Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+/// and luminaires with the same distribution form one group for each distribution.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the solver for lamps. Fill them with luxfer_lamps_params_init.
@@ -55,24 +56,26 @@ pub struct luxfer_lamps_params {
     pub struct_size: u32,
     /// Lamps that share one power: a LUXFER_GROUP_ value; default LUXFER_GROUP_EACH.
     pub group: luxfer_group,
-    /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
-    /// coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
+    /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of the
+    /// coordinates by which the lamps are grouped, in metres or as a texture coordinate, >= 0; default 0.01. A larger
+    /// gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
-    /// luxfer_lamps_add_mesh. 0, the default: solve for the power only.
+    /// 1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
+    /// luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour.
     pub free_colour: u32,
-    /// Largest factor for the emission of a group, >= 0; default infinity.
+    /// Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity.
     pub max_scale: f64,
-    /// Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
-    /// met, with large values the powers are nearly equal.
+    /// Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
+    /// small weight the goals are met, with a large weight the powers are nearly equal.
     pub regularisation: f64,
-    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the goal's
-    /// light; default 0.01.
+    /// A goal counts as met if its light differs from the target by at most tolerance times the target's brightest
+    /// channel, plus the half-width of the 95 % confidence interval of the light; in [1e-6, 1]; default 0.01.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light from
-    /// all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
+    /// Stop tracing when, for every goal, the light from all lamps together is known to this relative error, in [0, 1];
+    /// default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 % confidence interval
+    /// divided by the mean, in the worst channel.
     pub target_error: f32,
     /// Stop tracing after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
@@ -102,6 +105,8 @@ versioned!(luxfer_lamps_params, [64], {
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
+    /// The scene, and the index of the emitting material; `None` in place of the index if the lamps are the punctual
+    /// lights.
     pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
     pub goals: Vec<StoredGoal>,
     /// Dimming levels of the drivers; empty for drivers without steps.
@@ -138,9 +143,9 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene, and the emitting material whose lamps are solved for. The solution is a factor for the emission
-/// that each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by
-/// the indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
+/// Sets the scene, and the material whose lamps are solved for. The solution is a factor for the emission that each
+/// lamp has in the scene. If material is LUXFER_NONE, the lamps are the punctual lights of the scene, numbered by the
+/// indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_scene(
@@ -163,12 +168,13 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
     })
 }
 
-/// Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
-/// with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
-/// Any thread.
+/// Starts a job that measures how much light each lamp sends to each goal, and solves for the powers. If the goals
+/// cannot be met, the job succeeds with the powers that come nearest within the bounds. params may be NULL for the
+/// defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job is already running. The job may end with
-/// LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
-/// emission has no lamp, there are more than 64 goals, goals times lamps exceed 2^20, or a setting is out of range.
+/// LUXFER_UNREACHABLE if no goal receives light from any lamp; LUXFER_DEGENERATE if the surface of a goal has no area;
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, there are more than 64 goals, goals
+/// times lamps exceed 2^20, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_start(
     lamps: *mut luxfer_lamps,

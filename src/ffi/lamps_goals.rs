@@ -1,7 +1,7 @@
 //! Goals of lamps
 //!
-//! Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit. Also
-//! the dimming levels of the lamps' drivers.
+//! A goal is a surface or a calculation grid that should receive a given light, exactly or as a limit. The dimming
+//! levels of the lamps' drivers are set here too.
 
 use super::geometry::list;
 use super::guard::enter;
@@ -113,8 +113,9 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
 
 /// Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
 /// and >= 0, in any order; at most 4096 factors are allowed. The solution then gives each group one of these levels,
-/// chosen for all groups together so that the goals are met best, and the half-widths of the powers include the
-/// distance from the level to the power without steps. If count is 0, the drivers have no steps. Any thread.
+/// chosen for all groups together so that the goals are met best. The difference between the level and the power that a
+/// stepless driver would have is added to the half-width of the power. If count is 0, the drivers have no steps. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(

@@ -1,7 +1,7 @@
 //! Results of lamps
 //!
-//! The powers that the solver has found, the light that each goal receives, and the contribution of each lamp to each
-//! goal.
+//! The functions of this section return the powers that the solver has found, the light that each goal receives, and
+//! the contribution of each lamp to each goal.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -33,7 +33,7 @@ pub struct luxfer_lamps_report {
     pub goals: u32,
     /// Number of paths traced for each goal.
     pub paths: u32,
-    /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason.
+    /// 1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason.
     pub all_goals_met: u32,
 }
 
@@ -49,8 +49,8 @@ pub struct luxfer_lamp {
     pub struct_size: u32,
     /// Index of the group that the lamp belongs to.
     pub group: u32,
-    /// Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
-    /// metres.
+    /// Centre of the lamp: (u, v, 0) in texture coordinates if the emission has a texture, else the position in metres;
+    /// 0 for directional lights.
     pub centre: [f64; 3],
     /// Factor for the lamp's emission, per channel, >= 0.
     pub scale: [f64; 3],
@@ -70,8 +70,8 @@ pub struct luxfer_lamps_goal {
     pub struct_size: u32,
     /// LUXFER_OUTCOME_ value of each channel.
     pub outcome: [luxfer_outcome; 3],
-    /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid, illuminance /
-    /// pi.
+    /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
+    /// wanted illuminance divided by pi.
     pub target: [f64; 3],
     /// Mean radiance of the goal's surface with the powers found, in cd/m² per channel.
     pub achieved: [f64; 3],
@@ -84,8 +84,8 @@ pub struct luxfer_lamps_goal {
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,
-    /// Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if the
-    /// errors of all channels have the same sign.
+    /// Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, computed as if the
+    /// errors of all channels had the same sign.
     pub half_width_lux: f64,
     /// Illuminance from all light but the lamps, in lux.
     pub background_lux: f64,
@@ -236,8 +236,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_response(
 }
 
 /// Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
-/// the zero. The text is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text
-/// needs. Any thread.
+/// the zero. The text is empty if all goals of positive weight are met. *needed, unless NULL, receives the capacity
+/// that the whole text needs. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_reason(
