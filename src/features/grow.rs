@@ -1,10 +1,11 @@
 //! Grows the user's strokes over the surfaces on which they lie (after Adams and Bischof 1994, "Seeded Region
 //! Growing").
 //!
-//! The cost of a path is the largest gradient of colour along it. A pixel belongs to the surfaces of the strokes that
-//! reach it at the lower cost, if this cost is small and clearly lower than the cost of the other strokes. A wall and
-//! a ceiling of one colour are thus parted at the seam between them, however faint it is. Behind strong edges the
-//! pixels belong to no stroke.
+//! Two classes of strokes compete: those on the plane, and those off the plane. The cost of a path is the largest
+//! gradient of colour along it. The cost of a class at a pixel is the lowest cost of a path from its strokes to the
+//! pixel. The pixel goes to the class of lower cost, if this cost is small and clearly lower than that of the other
+//! class. A wall and a ceiling of one colour are thus separated at the seam between them, even if the seam is faint.
+//! Pixels behind strong edges go to neither class.
 
 use super::input::PlaneStroke;
 use crate::error::Result;
@@ -22,13 +23,14 @@ const MAX_GRADIENT: f32 = 1.5;
 /// The strokes of one class own a pixel if they reach it at less than this share of the cost at which the strokes of
 /// the other class reach it. [judged on 58 photos]
 const CLEARLY: f32 = 0.7;
-/// The part of a stroke on one smooth surface grows only if it holds at least this share of the stroke: hurried
+/// Edges divide a stroke into parts. A part grows only if it holds at least this share of the stroke, because hurried
 /// strokes run over edges by up to a tenth of their length. [bench photos:tune]
 const MIN_PART: f64 = 0.2;
 /// Blur and widened edges stop strokes about this number of pixels before the edge of their surface. The grown parts
 /// are therefore widened by this number.
 const MARGIN: usize = 3;
-/// Number of steps of the cost from 0 to `MAX_GRADIENT / CLEARLY`, the highest cost that matters.
+/// Costs are stored as integers from 0 to this number, which stands for the gradient `MAX_GRADIENT / CLEARLY` and all
+/// steeper ones: above it, a cost does not change which class owns a pixel.
 const LEVELS: usize = u8::MAX as usize;
 
 /// The parts of a photo over which strokes have grown.
@@ -79,7 +81,8 @@ pub fn grow(photo: &Image, strokes: &[PlaneStroke], job: Job) -> Result<Option<S
     Ok(Some(Surfaces { width: size[0], height: size[1], on_plane }))
 }
 
-/// Adds the pixels of the reduced image that a stroke covers to the seeds, without the small parts of the stroke.
+/// Adds the smooth pixels of the reduced image that a stroke covers to the seeds. Parts of the stroke with less than
+/// the share [`MIN_PART`] of these pixels are left out.
 fn add_seeds(
     stroke: &PlaneStroke,
     photo: &Image,
@@ -103,7 +106,7 @@ fn add_seeds(
     Ok(())
 }
 
-/// Cost below which a pixel is smooth: that of `MAX_GRADIENT`.
+/// A pixel is smooth if its cost is below this value, the cost of the gradient `MAX_GRADIENT`.
 const SMOOTH: u8 = (CLEARLY * LEVELS as f32) as u8;
 
 /// The cost of each pixel of the reduced image, from 0 to `LEVELS`.

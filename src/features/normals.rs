@@ -38,7 +38,7 @@ struct Best {
 #[derive(Clone, Copy)]
 struct Windows<'a> {
     fits: FitRow<'a>,
-    /// Offset from the window centre to the pixel, in columns and rows.
+    /// Offset from the pixel to the window centre, in columns and rows.
     steps: [f32; 2],
     /// Factor on the cost of these windows; a smaller factor favours them.
     favour: f32,

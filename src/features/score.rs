@@ -39,7 +39,8 @@ struct RoomSegment {
     axis: usize,
     /// Ray through the segment's midpoint, in room axes.
     middle: DVec3,
-    /// Weight: the segment's share of the length of all segments.
+    /// Weight: the segment's share of the length of all used segments. A segment longer than a quarter of the photo's
+    /// diagonal counts with this length.
     weight: f64,
 }
 

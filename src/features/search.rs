@@ -35,7 +35,7 @@ const PEAKS: usize = 24;
 /// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
-/// Number of rays along each side of the photo in the grid of rays along which boxes are compared.
+/// Two boxes are compared along a grid of `RAYS × RAYS` rays over the photo.
 const RAYS: usize = 9;
 /// `STARTS`: maximum number of boxes that are refined. `REFINEMENTS`: ratio of neighbouring values of a side in each
 /// of the two refinements. `VALUES_EITHER_SIDE`: number of values tried on either side of the current value.

@@ -42,7 +42,7 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Jo
             break;
         }
 
-        // Take a Newton step, and halve its length until the objective falls.
+        // Take a Newton step; halve its length as long as it would raise the objective.
         let mut length = 1.0;
         let (next, there) = loop {
             let next = moved(length);

@@ -102,8 +102,8 @@ fn not_finite(bad: usize) -> Error {
 /// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes;
 /// - for lamps without positive strokes, the regions most like lamps among the brightest parts of the given mask.
 ///
-/// Errors (`Degenerate`): strokes are missing, and no mask can be proposed, because the features do not have
-/// [`CHANNELS`] channels, or because no ceiling or lamp was found.
+/// Errors (`Degenerate`): strokes are missing, and no mask can be proposed. Either the features do not have
+/// [`CHANNELS`] channels, or no face, ceiling or lamp was found.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;

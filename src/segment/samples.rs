@@ -14,7 +14,8 @@ pub struct Origin {
     pub positive: bool,
     /// Index of the sample's stroke among the strokes of both classes.
     pub stroke: usize,
-    /// The quarter of the stroke that holds the sample, 0 to 3, counted along x or y, whichever extent is longer.
+    /// The quarter of the stroke that holds the sample, 0 to 3, counted along x if the stroke is wider than high, else
+    /// along y.
     pub part: usize,
 }
 
@@ -187,7 +188,7 @@ fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     shares
 }
 
-/// Sorts the pixels of a stroke along x or y, whichever extent of the stroke is longer. Returns each pixel with the
+/// Sorts the pixels of a stroke along x if the stroke is wider than high, else along y. Returns each pixel with the
 /// quarter of the sorted list that it lies in, 0 to 3.
 fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     let position = |p: u32| (p as usize % width, p as usize / width);

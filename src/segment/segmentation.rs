@@ -27,7 +27,8 @@ pub struct Segmentation {
     /// mean of `unseen`. `e_parts` is the error on held-out parts of strokes, and applies to pixels like the painted
     /// ones; `e_strokes` is the error on held-out whole strokes, and applies to pixels unlike the painted ones.
     pub error: f64,
-    /// The classifier; `None` for lamps and for a mask that the caller supplied.
+    /// The classifier. `None` if there is none: for lamps, for a proposal that is a whole face of the room, and for a
+    /// mask that the caller supplied.
     pub model: Option<Model>,
     /// The channels that the classifier uses; bit `i` stands for channel `i`.
     pub channels: u32,

@@ -98,9 +98,9 @@ struct Trial<'a> {
 
 /// Chooses the model and the features with the lowest expected loss over the whole image.
 ///
-/// The expected loss of pixels like the painted ones is the log loss on held-out parts of strokes; that of all other
-/// pixels is the log loss on held-out whole strokes. Each term of a model adds a price of one over the number of
-/// samples (Akaike's criterion), so that the simpler of two equally good models wins.
+/// The expected loss of pixels like the painted ones is the log loss on held-out parts of strokes; the expected loss of
+/// all other pixels is the log loss on held-out whole strokes. A price is added to the loss: number of terms / number
+/// of samples (Akaike's criterion). The simpler of two equally good models therefore wins.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);

@@ -17,7 +17,7 @@ const MAX_CONTRADICTORY: f64 = 0.05;
 /// A warning is given if the number of stroke pixels outside the photo, divided by the number of samples, exceeds
 /// this. [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
-/// A warning is given if the expected error of the mask exceeds this. [judged on 38 photos]
+/// A warning is given if the expected share of wrong pixels exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
 /// A warning is given if the mask assigns more than this share of the painted pixels to the wrong class.
 /// [judged on 38 photos]
@@ -148,7 +148,7 @@ impl Segmentation {
             let count = wrong().count();
             painted += stroke.pixels.len();
             missed += count;
-            // The place to show is the middle of the wrong pixels of the stroke that has most of them.
+            // Show a place on the stroke with the most wrong pixels: the middle one of these pixels.
             if count > largest.0 {
                 largest = (count, wrong().nth(count / 2));
             }
@@ -237,7 +237,7 @@ fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f
         return None;
     }
     plane.sort_unstable_by(f32::total_cmp);
-    // Plane pixels of equal lightness count half.
+    // A plane pixel of equal lightness counts as half a darker pixel.
     let darker = |l: f32| (plane.partition_point(|p| *p < l) + plane.partition_point(|p| *p <= l)) as f64 / 2.0;
     let (mut count, mut sum) = (0, 0.0);
     let mut least = (f64::INFINITY, 0);

@@ -22,8 +22,8 @@ const LEAST_WHOLE: f64 = 0.02;
 const EVEN: f64 = 0.05;
 
 /// Returns the mean colour of `pixels`, and for each channel the share of pixels in which its value remains unknown,
-/// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true: all pixels
-/// then show one plane. Returns `None` if there are no pixels.
+/// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true, that is, if
+/// all pixels show one plane. Returns `None` if there are no pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;

@@ -22,7 +22,7 @@ pub struct Fixture {
     pub size: DVec2,
     /// Area in m².
     pub area: f64,
-    /// Mean luminance per channel in cd/m².
+    /// Mean emission: linear RGB whose luminance is in cd/m².
     pub radiance: Vec3,
     /// Luminous flux in lumens: π × luminance × area, because the lamp is Lambertian.
     pub flux: f64,

@@ -52,8 +52,8 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// Draws a round spot with a soft rim. `opacity` lies in `[0, 1]`; a thin spot is broken up by the surface
-    /// texture.
+    /// Draws a round spot of ink with a soft rim. `opacity` lies in `[0, 1]`. The surface texture breaks up a spot of
+    /// low opacity.
     pub fn spot(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
             let taken = cover * opacity * (0.55 + 0.9 * canvas.tooth[i]).min(1.0);

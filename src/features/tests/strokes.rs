@@ -215,7 +215,8 @@ fn strokes_bring_more_of_cluttered_rooms_onto_the_right_face() {
     assert!(both[1] < 0.9 * lines[1], "{means:?}");
 }
 
-/// A picture rail lies below a hidden ceiling seam: from lines alone, the ceiling begins at the rail.
+/// The seam of the ceiling is hidden, and a picture rail lies below it. From lines alone, the ceiling is found at the
+/// height of the rail; a stroke between rail and ceiling must correct this.
 #[test]
 fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     let camera = camera(0.1, 0.2, 0.0, SIZE[0], SIZE[1]);

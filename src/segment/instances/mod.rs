@@ -12,7 +12,7 @@
 //! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it. Without
 //!    positive strokes, [`proposed`] chooses the regions most like lamps.
 //! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.
-//! 5. [`soft`] computes the confidence, which falls to one half on each region's contour, between pixels.
+//! 5. [`soft`] computes the confidence. It is one half on the contour of each region, which may run between pixels.
 //!
 //! Not modelled: lamps darker than the plane that they light, such as the housing of an uplight; lamps behind a grid.
 

@@ -13,14 +13,14 @@ pub const MIN_AREA: f64 = 6.0;
 /// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
 /// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// If a region is this many times as long as its stroke, its gain (score) is halved. [judged on 28 photos]
+/// If a region is this many times as long as its stroke, its gain (see `of_stroke`) is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Exponent with which the share of the stroke's pixels that a region holds enters the region's gain. (The gain is the
-/// score by which regions under a stroke compete.) Because the exponent is above 1, one region has a larger gain than
-/// its parts together, at equal contrast. [judged on 44 photos]
+/// Exponent of the cover in the gain of a region (see `of_stroke`). The cover is the share of the stroke's pixels that
+/// the region holds. Because the exponent is above 1, a region has a larger gain than its parts together, at equal
+/// contrast. [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
-/// Exponent with which the purity of a region enters its gain. Purity is the share of positive pixels among the
-/// painted pixels of the region. The exponent all but rules out regions with many negative pixels.
+/// Exponent of the purity in the gain of a region (see `of_stroke`). The purity is the share of positive pixels among
+/// the painted pixels of the region. The exponent all but rules out regions with many negative pixels.
 /// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
 /// Minimum contrast of a region, relative to the region with the sharpest contour under the same stroke. Regions below
@@ -54,9 +54,9 @@ pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
     !tree.ancestors(node).skip(1).any(|n| is_chosen[n as usize])
 }
 
-/// Finds the disjoint nodes with the largest sum of gains. The gain of a node is its contrast, times factors for the
-/// share of the stroke that it holds, for its purity and for its length. `covered` holds zeros before and after the
-/// call.
+/// Finds the disjoint nodes under a stroke with the largest sum of gains. The gain is the score by which the nodes
+/// compete: contrast × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²), where l is
+/// the length of the node and s the length of the stroke. `covered` holds zeros before and after the call.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
     // Collect the nodes that hold pixels of the stroke, parents first, and count these pixels in `covered`.
     let mut nodes = Vec::new();

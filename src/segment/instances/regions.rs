@@ -13,7 +13,8 @@ use crate::job::Job;
 const SMOOTHING: f32 = 0.6;
 /// Standard deviation of the blur of L* before its gradient is computed, in pixels. [convention: Canny]
 const GRADIENT_SMOOTHING: f32 = 1.0;
-/// Brightness levels per unit of L*, up to L* = 100: about as many as an 8-bit photo has. [convention]
+/// Brightness levels per unit of L*. Up to L* = 100 there are 255 levels, about as many as in an 8-bit photo.
+/// [convention]
 const LEVELS_PER_L: f32 = 2.55;
 /// Brightness levels per doubling of L* above 100. Only photos with values above white reach them. [convention]
 const LEVELS_PER_DOUBLING: f32 = 32.0;

@@ -31,8 +31,9 @@ const MIN_AREA_RATIO: f64 = 1.0 / 27.0;
 /// Maximum ratio of a lamp's area in pixels to the area of the largest lamp under a stroke. It applies only if the
 /// room has no box layout. [judged on 28 photos]
 const MAX_AREA_RATIO: f64 = 1.6;
-/// Maximum factor by which the area of a lamp on the plane may be below the smallest, or above the largest, area of
-/// the lamps under the strokes. Bloom and blur enlarge distant lamps. [judged on 44 photos]
+/// The area of a lamp, measured on the plane, must lie between the smallest area of the lamps under the strokes divided
+/// by this factor, and their largest area times this factor. Bloom and blur enlarge distant lamps.
+/// [judged on 44 photos]
 const MAX_FACE_AREA_RATIO: f64 = 4.0;
 /// The aspect (length over width) of a lamp on the plane must lie between the least aspect of the lamps under the
 /// strokes divided by `ROUNDER`, and their largest aspect times `LONGER`. Blur widens thin lamps, and lengthens
@@ -58,8 +59,7 @@ const ON_FACE: f64 = 0.9;
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the
-/// wider lamp.
-/// [bench photos:tune]
+/// wider lamp. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]

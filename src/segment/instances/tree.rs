@@ -56,8 +56,8 @@ impl Tree {
             }
         }
 
-        // Each node is represented by its darkest pixel, the first one in this order. From dark to bright, redirect
-        // each parent to the pixel that represents its node.
+        // A node is represented by the first of its pixels in `order`, which is one of its darkest. From dark to
+        // bright, redirect each parent to the pixel that represents its node.
         for &p in &order {
             let up = parent[p as usize] as usize;
             if levels[parent[up] as usize] == levels[up] {

@@ -130,7 +130,8 @@ fn painted_lamps_no_brighter_than_the_plane_raise_a_warning_with_a_place_on_the_
     // At equal lightness the probability is one half.
     let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [7.0]).unwrap();
     assert_eq!(dim_lamps(&flat, &plane, &[lamp(100.0)]).unwrap().severity, 0.5);
-    // Strokes marked "not light" count as plane. They count alone if plane strokes run over lamps.
+    // Strokes marked "not light" count as plane. If plane strokes run over lamps, the comparison with the "not light"
+    // strokes alone decides.
     let beside = |x: f64| stroke(false, [x, 5.0], [x, 9.0]);
     assert!(dim_lamps(&ramp, &[], &[lamp(100.0), beside(140.0)]).is_some());
     let over = [stroke(true, [80.0, 15.0], [140.0, 15.0])];

@@ -60,7 +60,7 @@ fn a_clipped_channel_follows_from_the_others() {
 fn known_light_is_recovered_from_a_clipped_photo() {
     let (size, high) = (4.0, 2.5);
     let (x, y, z) = (Vec3::X * size, Vec3::Y * high, Vec3::Z * size);
-    // Use materials without gloss, which the mean colour of a target does not include.
+    // Use materials without gloss, because the solver leaves gloss out of the mean colour of a target.
     let matt = |albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse("matt", albedo) };
     let lamp = Material { emission: Vec3::new(1000.0, 900.0, 700.0), ..matt(Vec3::ZERO) };
     let side = |corner, u, v, material| Mesh::parallelogram(corner, u, v, material);
@@ -79,7 +79,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     };
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
-    // Seen from below, the picture shows all of the ceiling and nothing else.
+    // A camera near the floor looks straight up. Its picture shows the whole ceiling and nothing else.
     const SIDE: usize = 80;
     let eye = Vec3::new(size / 2.0, 0.3, size / 2.0);
     let fov = 2.0 * (size / 2.0 / (high - eye.y)).atan();
