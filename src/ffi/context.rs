@@ -47,7 +47,7 @@ pub struct luxfer_context {
     _opaque: [u8; 0],
 }
 
-/// Settings of a context. Fill it with luxfer_context_params_init.
+/// Settings of a context. Fill them with luxfer_context_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_context_params {

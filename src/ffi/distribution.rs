@@ -1,7 +1,8 @@
 //! Luminous intensity distributions
 //!
-//! The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
-//! calls are synchronous: they do their work before they return.
+//! A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63) or
+//! EULUMDAT files, and can be written to both formats. These calls are synchronous: they do their work before they
+//! return.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;

@@ -37,7 +37,7 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
 /// resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
 /// the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
-/// and clamped to [-1, 1]. L is the side of a patch or, if the law has periods, half the longer period if that is
+/// and clamped to [-1, 1]. L is the side of a patch or, if the lights have periods, half the longer period if that is
 /// shorter.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
 /// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
@@ -395,9 +395,9 @@ pub unsafe extern "C" fn luxfer_emission_create(
     })
 }
 
-/// Sets the exemplar: three images of one size. unwarped is the unwarped photo (linear RGB). light is the unwarped
-/// confidence of the lights (1 channel, in [0, 1]). valid is 1 at the pixels where both other images are valid, else 0
-/// (1 channel). luxfer_emission_add_style adds more exemplars. Any thread.
+/// Sets the exemplar: three images of one size. unwarped is the unwarped photo (linear RGB). light is the unwarped mask
+/// of the lights: the confidence that a pixel shows a light (1 channel, in [0, 1]). valid is 1 at the pixels where both
+/// other images are valid, else 0 (1 channel). luxfer_emission_add_style adds more exemplars. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,

@@ -1,8 +1,9 @@
 //! Styles and tiles
 //!
-//! Textures from several exemplars, and textures that are too large to make as a whole. For such large textures,
-//! luxfer_emission_start_plan decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of
-//! the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
+//! luxfer_emission_add_style adds exemplars, whose lights are then mixed in one texture. Textures that are too large to
+//! make as a whole are made in tiles: luxfer_emission_start_plan decides where every lamp lies, and
+//! luxfer_emission_render_tile renders any rectangle of the texture. A plan holds the exemplars, the place of each lamp
+//! and the outlines of the patches, but no texels.
 
 use super::emission::{
     AddedExemplar, Exemplar, Output, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,

@@ -42,7 +42,8 @@ pub struct luxfer_false_colour_params {
     /// Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale, 0 stands for a thousandth of the
     /// value that gets the lightest colour.
     pub minimum: f64,
-    /// Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the image.
+    /// Value that gets the lightest colour, greater than minimum; 0, the default: the largest finite value of the
+    /// image.
     pub maximum: f64,
 }
 

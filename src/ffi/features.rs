@@ -97,8 +97,8 @@ pub struct luxfer_features_params {
     /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
     /// near_plane; default 10.
     pub far_plane: f32,
-    /// A pixel's normal is that of a plane fitted in a square window around the pixel. This is half the width of the
-    /// window in pixels, in [0, 64]; 0, the default: 1 % of the photo's width, but at least 2 and at most 64.
+    /// Half the width, in pixels, of the square window around a pixel in which a plane is fitted to find the normal of
+    /// the pixel; in [0, 64]. 0, the default: 1 % of the photo's width, but at least 2 and at most 64.
     pub normal_radius: u32,
 }
 

@@ -88,7 +88,8 @@ pub(super) fn is_inherited<H: Handle>(handle: *const H) -> bool {
     shell(handle, "the handle").is_ok_and(|shell| unsafe { (*shell).object.context().check_process().is_err() })
 }
 
-/// Returns the object behind `handle`, an argument of a call in `context`; an error if it belongs to another context.
+/// Returns the object behind `handle`, an argument of a call in `context`; an error if the object belongs to another
+/// context.
 pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let object = borrow(handle, name)?;
     if Arc::ptr_eq(object.context(), context) {

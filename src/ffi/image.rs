@@ -1,8 +1,9 @@
 //! Image
 //!
-//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top
-//! to bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels
-//! in the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
+//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. It has up to 64
+//! channels; width and height are at most 65536 pixels. Rows run from top to bottom. An image never changes after its
+//! creation, so results are shared and not copied. A view describes pixels in the caller's memory; the library never
+//! keeps a pointer to them.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::enter;
@@ -270,8 +271,8 @@ fn cost(width: usize, height: usize, channels: usize) -> u64 {
     (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
 }
 
-/// Creates an image from a copy of the caller's pixels. Integers and sRGB are decoded; NaN and infinities are kept.
-/// The caller releases *image. Any thread.
+/// Creates an image from a copy of the caller's pixels. Integers are mapped to [0, 1], and sRGB is decoded to linear
+/// values; NaN and infinities are kept. The caller releases *image. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_create(
@@ -291,7 +292,7 @@ pub unsafe extern "C" fn luxfer_image_create(
     })
 }
 
-/// Loads an image file and rotates the picture upright by its EXIF orientation; path is UTF-8. The caller releases
+/// Loads an image file and turns the picture upright by its EXIF orientation; path is UTF-8. The caller releases
 /// *image. Any thread.
 ///
 /// The formats are JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR (its display window).

@@ -7,8 +7,7 @@
 //! reference to a running job cancels the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
-//! waiting job at once. All other calls never wait for jobs, except luxfer_job_wait and the release of a running job.
-//! They may also be made from a progress function.
+//! waiting job at once. Of all other calls, only luxfer_job_wait and the release of a running job wait for jobs.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
@@ -40,7 +39,7 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
 /// The object behind a `luxfer_job` handle. It keeps the context alive until the job's thread has ended. Otherwise the
 /// job's thread or a worker of the pool could drop the last reference to the pool. Dropping the pool joins its threads,
-/// and so that thread would wait for itself.
+/// so the dropping thread would wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,

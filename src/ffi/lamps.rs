@@ -28,8 +28,8 @@ pub struct luxfer_lamps {
     _opaque: [u8; 0],
 }
 
-/// Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture,
-/// or a connected piece of the meshes if the emission has no texture.
+/// Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture; a
+/// connected piece of the meshes if the emission has no texture; or a punctual light if the material is LUXFER_NONE.
 pub type luxfer_group = i32;
 /// All lamps form one group.
 pub const LUXFER_GROUP_ALL: luxfer_group = 0;
@@ -68,8 +68,9 @@ pub struct luxfer_lamps_params {
     /// Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
     /// small weight the goals are met, with a large weight the powers are nearly equal.
     pub regularisation: f64,
-    /// A goal counts as met if its light differs from the target by at most tolerance times the target's brightest
-    /// channel, plus the half-width of the 95 % confidence interval of the light; in [1e-6, 1]; default 0.01.
+    /// Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target by at
+    /// most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence interval of the
+    /// light.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
