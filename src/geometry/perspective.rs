@@ -13,7 +13,7 @@ pub enum FocalSource {
     Assumed,
     /// It comes mainly from the photo's metadata, because the vanishing points are less accurate.
     Metadata,
-    /// It follows from the shapes of lamps on a plane, which are assumed to be alike.
+    /// It follows from the images of lamps on a plane, on the assumption that all these lamps have the same shape.
     Lamps,
 }
 

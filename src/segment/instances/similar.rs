@@ -53,9 +53,9 @@ const MIN_CUT_AREA: f64 = 0.06;
 const ON_PLANE: f64 = 0.5;
 /// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// A region off the plane counts as a lamp only if it is like another lamp, under a stroke or on the plane: the
-/// region's area divided by the lamp's, and its aspect divided by the lamp's, must lie in these ranges. Blur enlarges
-/// distant lamps. [bench photos:tune]
+/// A region is like a lamp that is known already if region's area / lamp's area and region's aspect / lamp's aspect lie
+/// in these ranges. Regions off the plane, and regions that meet only the weaker limits [`ALIKE`], must be like a known
+/// lamp. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the
@@ -110,7 +110,8 @@ pub struct Similar {
     pub found: Vec<u32>,
     /// Regions on the plane whose likeness to the lamps under the strokes is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions off the plane that would count as lamps if the plane continued there.
+    /// Regions off the plane that look like lamps and lie in a row with lamps of the same size and shape: they suggest
+    /// that the plane continues there.
     pub beyond: Vec<u32>,
 }
 
