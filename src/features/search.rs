@@ -24,7 +24,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// [origin not recorded]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
-/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`.
+/// For each side, the values `MIN_SIDE × RATIO^k` with `k < GRID` are tried besides those that the segments suggest.
 /// [origin not recorded]
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
