@@ -57,9 +57,8 @@ pub struct luxfer_candidate {
     /// as for a closed box.
     pub normal: [f32; 3],
     /// Resemblance to a ceiling: s = (level_area / area) * min(1, level_area / F) * h², in [0, 1]. F is the floor area
-    /// of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the scene). If
-    /// level_area is not 0 and the name contains a word for a ceiling, such as "ceiling" or "Decke", the score is (1 +
-    /// s) / 2 instead.
+    /// of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the scene). A name with
+    /// a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2, unless level_area is 0.
     pub score: f32,
     /// Reserved; always 0.
     pub reserved: u32,

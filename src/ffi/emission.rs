@@ -166,7 +166,7 @@ impl luxfer_emission_params {
 
 /// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
 /// plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error is 0. If there are
-/// several exemplars, regularity and the fields of the law describe the first one.
+/// several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {

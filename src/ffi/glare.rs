@@ -16,7 +16,8 @@ use crate::image::try_vec;
 use crate::render::glare::{self, Eye, Rating};
 use glam::Vec3;
 
-/// An observer: an eye that looks in a direction. An element of arrays, so this struct never changes.
+/// An observer: an eye that looks in a direction. Callers pass arrays of this struct, so its size and fields never
+/// change in later versions.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer {
@@ -27,7 +28,8 @@ pub struct luxfer_observer {
     pub direction: [f32; 3],
 }
 
-/// The glare that an observer experiences. An element of arrays, so this struct never changes.
+/// The glare that an observer experiences. Callers pass arrays of this struct, so its size and fields never change in
+/// later versions.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer_glare {

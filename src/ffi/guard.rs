@@ -20,7 +20,7 @@ pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
     }
 }
 
-/// Turns a panic into an error. A panic may leave data half-written; nobody reads them, because results are stored only
+/// Turns a panic into an error. Data that a panic leaves half-written is never read, because results are stored only
 /// after success.
 pub(super) fn catch<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {

@@ -139,8 +139,8 @@ pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,
     metadata: PhotoMetadata,
-    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
-    /// invisible in the image. 0 if the image is not a rendering.
+    /// Number of point lights, spot lights and luminaires without luminous opening in the rendered scene. They light
+    /// the scene but are invisible in the image. 0 if the image is not a rendering.
     unseen_lights: usize,
 }
 
@@ -242,8 +242,8 @@ impl Pixels {
         Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default(), unseen_lights })
     }
 
-    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
-    /// invisible in the image.
+    /// Returns the number of point lights, spot lights and luminaires without luminous opening in the rendered scene.
+    /// They light the scene but are invisible in the image.
     pub(super) fn unseen_lights(&self) -> usize {
         self.unseen_lights
     }
