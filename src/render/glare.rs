@@ -246,7 +246,7 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
 /// Returns the background luminance, its standard error, and the direct illuminance from lights that the rating
 /// ignores.
 fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
-    let vertex = Vertex::free(world, eye.position, eye.direction.normalize());
+    let vertex = Vertex::free(world, world.from_scene(eye.position), eye.direction.normalize());
     let per_batch = params.samples.div_ceil(BATCHES);
     let (mut means, mut unrated) = ([0.0; BATCHES as usize], DVec3::ZERO);
     for (batch, mean) in means.iter_mut().enumerate() {

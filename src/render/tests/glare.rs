@@ -145,6 +145,19 @@ fn the_background_is_the_indirect_illuminance() {
     assert!(off.abs() < 4.0 * error + 2e-3 * direct && error < 0.02 * total.mean, "{off} ± {error}");
 }
 
+/// All coordinates are multiples of 1/8 m, which f32 represents exactly at both places.
+#[test]
+fn a_room_in_map_coordinates_rates_as_at_the_origin() {
+    let shift = Vec3::new(524_288.0, 0.0, -1_048_576.0);
+    let (at, eye) = (Vec3::new(3.0, 2.75, 4.5), Eye { position: Vec3::new(3.0, 1.25, 7.5), ..EYE });
+    let home = rated(room(panel(), &[at]), eye, 256);
+    let mut scene = room(panel(), &[at + shift]);
+    scene.meshes.iter_mut().flat_map(|mesh| &mut mesh.positions).for_each(|p| *p += shift);
+    let away = rated(scene, Eye { position: eye.position + shift, ..eye }, 256);
+    assert!((away.background / home.background - 1.0).abs() < 1e-3, "{away:?} {home:?}");
+    assert!((away.ugr - home.ugr).abs() < 1e-2, "{} {}", away.ugr, home.ugr);
+}
+
 #[test]
 fn hidden_parts_do_not_glare() {
     let at = Vec3::new(3.0, 2.7, 4.5);
