@@ -67,7 +67,7 @@ pub unsafe extern "C" fn luxfer_job_start(
 /// Makes the error of a job from the status that the caller's function has returned.
 fn error(context: &Context, status: luxfer_status) -> Error {
     let kind = ErrorKind::from_value(status).unwrap_or(ErrorKind::Unknown);
-    // SAFETY: a static string.
+    // SAFETY: the pointer leads to a static, zero-terminated string.
     let name = unsafe { CStr::from_ptr(luxfer_status_get_name(status)) }.to_string_lossy();
     let message = context.last_message(|message| match message {
         "" => format!("the function of the job returned {status} ({name})"),
