@@ -108,12 +108,18 @@ fn the_job_has_the_result_and_the_message_of_the_function() {
     unsafe extern "C" fn invent(_: *mut c_void) -> luxfer_status {
         4711
     }
+    unsafe extern "C" fn wait_too_short(_: *mut c_void) -> luxfer_status {
+        LUXFER_NOT_READY
+    }
     assert_eq!(run(succeed, None).0, LUXFER_OK);
     let (status, text, ..) = run(fail_to_load, None);
     assert_eq!(status, LUXFER_IO);
     assert!(text.contains("/no/such/file.png"), "{text}");
     let (status, text, ..) = run(invent, None);
     assert_eq!((status, text.contains("4711")), (LUXFER_UNKNOWN, true), "{text}");
+    // LUXFER_NOT_READY would say that the job still runs.
+    let (status, text, ..) = run(wait_too_short, None);
+    assert_eq!((status, text.contains("LUXFER_NOT_READY")), (LUXFER_INVALID_OPERATION, true), "{text}");
 
     let context = context(1);
     let mut job = null_mut();

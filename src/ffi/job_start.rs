@@ -33,7 +33,8 @@ unsafe impl Send for User {}
 ///
 /// A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
 /// this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture. If the
-/// function returns an error, the message of the job is that of the last call that failed on its thread.
+/// function returns an error, the message of the job is that of the last call that failed on its thread. If it returns
+/// LUXFER_NOT_READY, the job ends with LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY says that a job runs.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(
@@ -66,7 +67,11 @@ pub unsafe extern "C" fn luxfer_job_start(
 
 /// Makes the error of a job from the status that the caller's function has returned.
 fn error(context: &Context, status: luxfer_status) -> Error {
-    let kind = ErrorKind::from_value(status).unwrap_or(ErrorKind::Unknown);
+    let kind = match ErrorKind::from_value(status).unwrap_or(ErrorKind::Unknown) {
+        // luxfer_job_wait returns this status when it times out, so a caller would wait for ever.
+        ErrorKind::NotReady => ErrorKind::InvalidOperation,
+        kind => kind,
+    };
     // SAFETY: the pointer leads to a static, zero-terminated string.
     let name = unsafe { CStr::from_ptr(luxfer_status_get_name(status)) }.to_string_lossy();
     let message = context.last_message(|message| match message {

@@ -4,8 +4,9 @@
 /// Computes `eˣ` to a relative error below 3e-7; `x` is clamped to `[-87, 88]`.
 #[inline(always)]
 pub fn exp_f32(x: f32) -> f32 {
+    // ln 2 in two parts. The first has few bits, so its product with an integer is exact. [paper: Cody and Waite 1980]
     const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
-    // Adding 1.5 × 2²³ rounds to an integer, which then stands in the lowest bits of the mantissa.
+    // Adding 1.5 × 2²³ rounds to an integer, which then stands in the lowest bits of the mantissa. [rounding]
     const ROUND: f32 = 12_582_912.0;
     let x = x.clamp(-87.0, 88.0);
     let shifted = x * std::f32::consts::LOG2_E + ROUND;
@@ -18,9 +19,10 @@ pub fn exp_f32(x: f32) -> f32 {
 /// Computes `eˣ` to a relative error below 1e-12; `x` is clamped to `[-708, 709]`.
 #[inline(always)]
 pub fn exp_f64(x: f64) -> f64 {
+    // As in `exp_f32`, with 1.5 × 2⁵². [paper: Cody and Waite 1980]
     const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
     const ROUND: f64 = 6_755_399_441_055_744.0;
-    /// Taylor coefficients `1 / k!` for k from 10 down to 0.
+    /// Taylor coefficients `1 / k!` for k from 10 down to 0; the next term is below 1e-12 of the sum. [rounding]
     const TAYLOR: [f64; 11] = [
         1.0 / 3_628_800.0,
         1.0 / 362_880.0,
@@ -46,6 +48,7 @@ pub fn exp_f64(x: f64) -> f64 {
 /// power series of artanh.
 #[inline(always)]
 pub fn ln(y: f64) -> f64 {
+    // Coefficients `1 / k` for odd k from 13 down to 1; the next term is below 1e-12. [rounding]
     const SERIES: [f64; 7] = [1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];
     let s = (y - std::f64::consts::SQRT_2) / (y + std::f64::consts::SQRT_2);
     let square = s * s;

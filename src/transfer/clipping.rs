@@ -14,12 +14,15 @@ use glam::{BVec3, DVec3, Vec3};
 
 /// A channel of the photo counts as clipped from this linear value on; only the two largest 8-bit values reach it. In
 /// the unwarped photo, whose pixels are means of photo pixels, the limit is lower (`emission::Params::clip_level`).
+/// [convention]
 const CLIPPED: f32 = 0.987;
 /// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
-const LEAST_WHOLE: f64 = 0.02;
+/// [origin not recorded]
+const MIN_UNCLIPPED_SHARE: f64 = 0.02;
 /// Strength of the regularisation of the fitted line. If the relative standard deviation of the plane's brightness is
 /// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels.
-const EVEN: f64 = 0.05;
+/// [origin not recorded]
+const RIDGE: f64 = 0.05;
 
 /// Returns the mean colour of `pixels`, and for each channel the share of pixels in which its value remains unknown,
 /// because it is clipped and was not estimated. Clipped values are estimated only if `one_plane` is true, that is, if
@@ -37,7 +40,7 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
     if count == 0.0 {
         return None;
     }
-    let least = if one_plane { LEAST_WHOLE * count } else { f64::INFINITY };
+    let least = if one_plane { MIN_UNCLIPPED_SHARE * count } else { f64::INFINITY };
     let lines = moments.map(|row| row.map(|m| m.line(least)));
     let (mut sum, mut unknown) = (DVec3::ZERO, DVec3::ZERO);
     for rgb in pixels {
@@ -107,7 +110,7 @@ impl Moments {
             return None;
         }
         let (variance, covariance) = ((self.xx / self.n - x * x).max(0.0), self.xy / self.n - x * y);
-        let pull = (EVEN * x).powi(2);
+        let pull = (RIDGE * x).powi(2);
         let slope = ((covariance + pull * y / x) / (variance + pull)).max(0.0);
         Some(Line { start: y - slope * x, slope, ratio: y / x })
     }

@@ -31,10 +31,12 @@ pub(super) struct Target {
 }
 
 /// Width of the halo of glare around a lamp, as a share of the photo's longer side.
+/// [origin not recorded]
 const HALO: f32 = 0.01;
-/// A photo with a value above this has values beyond white (1), so it is not clipped at white.
+/// A photo with a value above this has values beyond white (1), so it is not clipped at white. [rounding]
 const WHITE: f32 = 1.001;
 /// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
+/// [convention]
 const MOSTLY: f64 = 0.5;
 
 /// Computes the mean colour of the chosen part of the photo. If the halos cover the whole plane, the pixels of the

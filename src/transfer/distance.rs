@@ -4,7 +4,7 @@
 //! The method applies Bayes' rule to the logarithm of the distance, on a grid. The prior covers rooms and halls. The
 //! likelihood of a lamp's two sides is a mixture of the usual lamp sizes and a broad distribution of all sizes.
 
-/// Range of the distances in the grid, in metres, and number of grid points.
+/// Range of the distances in the grid, in metres, and number of grid points. [convention]
 const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
 
@@ -26,7 +26,7 @@ const SIZES: [[f64; 3]; 8] = [
     [0.3, 0.3, 0.01],
     [1.2, 1.2, 0.01],
 ];
-/// Probability of a lamp of any other size.
+/// Probability of a lamp of any other size. [convention]
 const OTHER: f64 = 0.5;
 /// Shortest and longest side, in metres, of a lamp that has none of the usual sizes. The logarithm of each of its
 /// sides is uniformly distributed in this range. [convention]

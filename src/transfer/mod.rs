@@ -72,7 +72,7 @@ pub const STAGES: [Stage; 8] = [
     Stage::Render,
 ];
 
-/// Expected share of each stage in the time of a whole run, for the progress bar only.
+/// Expected share of each stage in the time of a whole run, for the progress bar only. [convention]
 const WEIGHTS: [f64; 8] = [0.06, 0.06, 0.03, 0.03, 0.06, 0.12, 0.14, 0.5];
 
 #[derive(Clone, Debug, Default)]

@@ -9,9 +9,10 @@ use crate::scene::surface::Surface;
 use crate::segment;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
-/// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost.
+/// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost. [rounding]
 const CRACK: f64 = 1e-3;
 /// A surface counts as a full rectangle if its area is at least this share of its bounding rectangle's area.
+/// [rounding]
 const FULL: f32 = 0.9999;
 
 /// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has

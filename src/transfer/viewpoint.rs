@@ -6,11 +6,12 @@ use crate::scene::surface::Surface;
 use crate::scene::{Camera, Scene};
 use glam::{Vec2, Vec3};
 
-/// Vertical angle of view in radians.
+/// Vertical angle of view in radians. [convention]
 const FOV_Y: f32 = 0.9;
-/// Distances of the candidate cameras from a corner of the surface, as shares of the surface's sides.
+/// Distances of the candidate cameras from a corner of the surface, as shares of the surface's sides. [convention]
 const INSETS: [f32; 2] = [0.08, 0.2];
 /// Distances of the candidate cameras from the surface, as shares of the depth of the scene below the surface.
+/// [convention]
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
 /// Numbers of rays, horizontally and vertically, with which the mean line of sight of a camera is measured.
 const RAYS: [usize; 2] = [12, 8];

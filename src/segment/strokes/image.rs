@@ -11,7 +11,7 @@ const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::NotLight, [0.0, 0.0, 1.0]),
 ];
 /// Largest deviation from a stroke colour in any sRGB channel, in `[0, 1]`. It allows for JPEG artefacts and soft
-/// brushes; two stroke colours are too far apart for a pixel to match both.
+/// brushes; two stroke colours are too far apart for a pixel to match both. [origin not recorded]
 const TOLERANCE: f32 = 0.3;
 /// Minimum number of pixels of a stroke; smaller components are compression artefacts.
 const SPECK: usize = 4;
