@@ -18,8 +18,8 @@
 //! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
 //!    is sampling error.
 //!
-//! A texture that fits inside the exemplar is copied from it. The exception is an exemplar whose lamps have ragged
-//! outlines and lie on a lattice: such lamps are placed and drawn anew.
+//! A texture that fits inside the exemplar is copied from it, unless it is to be tileable or centred. Another exception
+//! is an exemplar whose lamps have ragged outlines and lie on a lattice: such lamps are placed and drawn anew.
 //!
 //! Beyond the paper:
 //!

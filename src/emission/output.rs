@@ -35,7 +35,7 @@ pub struct Emission {
     /// Sampling error of the exemplar's statistics, which arises because the exemplar shows only a part of its
     /// ceiling. No method can be expected to have a smaller `error`. It is estimated as the root mean square
     /// difference between the whole texture and parts of the texture as large as the exemplar. 0 for blended
-    /// exemplars, and if the texture shows nothing that the exemplar does not.
+    /// exemplars, for a copy or a repetition of the exemplar, and for a texture too small to hold several parts.
     pub sampling_error: f64,
     /// Number of lamps that the photos of the exemplars show completely.
     pub exemplar_lamps: usize,

@@ -478,7 +478,8 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     assert_eq!((measured.lamp_sides, measured.width), ([14.0, 10.0], 200.0));
     assert_eq!(measured.lamp_fill, 1.0);
     assert!((measured.spacing - 36.0).abs() < 0.1, "{}", measured.spacing);
-    // Without a lattice, the spacing is the distance between neighbouring lamps, which is at least their gap.
+    // Without a lattice, the spacing is the median distance between nearest neighbours. `blobs` keeps all distances
+    // between centres above 26 pixels.
     let scattered = of(&blobs(256, 256, 26.0).0).spacing;
     assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));

@@ -1,28 +1,32 @@
-//! The pair correlation function of a pattern of lamps, which compares the distances between lamps at all ranges.
+//! Compares two patterns of lamps by their pair correlation functions: how often two lamps lie at each distance from
+//! each other, up to a few times the distance between neighbours.
 
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Longest distance that is compared, and half width of the kernel, both as multiples of the mean distance between
-/// nearest neighbours.
+/// `MAX_DISTANCE`: longest distance between two points that is compared. `KERNEL_HALF_WIDTH`: half width of the kernel
+/// that smooths the distances. Both are multiples of the mean distance between nearest neighbours.
 const MAX_DISTANCE: f64 = 2.5;
 const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the range of distances is divided.
 const STEPS: usize = 100;
 
-/// Points in a window of the given size; one corner of the window is the origin.
+/// Points in a window that reaches from the origin to `size`. Any unit of length will do, if both patterns of a
+/// comparison have it.
 pub struct Points<'a> {
     pub at: &'a [DVec2],
     pub size: DVec2,
 }
 
-/// Difference between two patterns in the distances between close points: the share of one pattern's pairs that would
-/// have to change their distance to match the other pattern. 0 if both have equal shares of pairs at each distance, 1
-/// if they have no distance in common. `None` if a pattern has no two points close to each other.
+/// Difference between two patterns in the distances between their points: ½ Σ |p(r) - q(r)|. Here p(r) and q(r) are
+/// the shares of the pairs of each pattern that lie at the distance r; the sum runs over r up to `MAX_DISTANCE`. The
+/// difference is 0 if p = q, and 1 if the patterns have no distance in common. `None` if a pattern has no pair of
+/// points within `MAX_DISTANCE`.
 ///
-/// A pair is weighted by the inverse of the window area in which a pair with this offset can appear (translation
-/// correction, Ohser 1983). A kernel spreads each pair over neighbouring distances (Stoyan and Stoyan 1994); its width
-/// is set by the first pattern.
+/// In a window of w × h, a pair with the offset (x, y) has the weight 1 / ((w - |x|) (h - |y|)), because fewer pairs
+/// with a large offset fit into the window (translation correction, Ohser 1983). A kernel spreads each pair over
+/// neighbouring distances (Stoyan and Stoyan 1994). `MAX_DISTANCE` and the kernel's width are multiples of the mean
+/// distance between nearest neighbours in the first pattern, `of`.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;
@@ -35,7 +39,8 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
 }
 
-/// Computes, for each step of distance, the density of pairs of points, up to a constant factor: `g(r) r`.
+/// Computes the density of pairs of points at each of `STEPS` distances r, up to a constant factor: r g(r), where g is
+/// the pair correlation function. `spacing` is the mean distance between nearest neighbours.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
     let (reach, width) = (MAX_DISTANCE * spacing, KERNEL_HALF_WIDTH * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();

@@ -125,7 +125,8 @@ impl Statistics {
     }
 }
 
-/// Root mean square distance of points from the best-fitting lattice of the given basis, as a share of its periods.
+/// Root mean square distance of points from the nearest positions of a lattice. Its basis is `a`, `b`; its origin is
+/// chosen to fit the points. Distances are in cell coordinates: a step of `a`, or of `b`, has length 1.
 pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
     // Compute the points in cell coordinates; the circular mean of their fractional parts is the origin of the
     // lattice.

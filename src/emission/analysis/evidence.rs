@@ -1,7 +1,8 @@
-//! The lamps of an exemplar, as evidence for a law.
+//! The lamps of an exemplar, as evidence for a law: the rule by which their pattern continues, such as a lattice.
 //!
-//! The photo shows only a part of a lamp that its border cuts. If that lamp resembles whole lamps, it has their size,
-//! and the edges that the border does not cut give its centre. Such a lamp shows a period as well as a whole lamp does.
+//! The border of the photo may cut a lamp, so that only a part is visible. If this part resembles a whole lamp, the cut
+//! lamp is assumed to have that lamp's size. The edges that the border does not cut then give its centre, so the cut
+//! lamp is as good evidence for a period as a whole lamp.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
@@ -9,16 +10,16 @@ use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
 use glam::{BVec2, DVec2};
 
-/// The border cuts a side of a lamp if at least this share of the side's length lies at the border. Less is fraying of
-/// the mask. [rounding]
+/// The border cuts a side of a lamp if at least this share of the side's length lies at the border. A smaller contact
+/// counts as fraying of the mask. [rounding]
 const MIN_CUT_SHARE: f64 = 0.1;
 
-/// The lamps of an exemplar. Each list begins with the lamps that most photo pixels show.
+/// The lamps of an exemplar. Each list is in descending order of the number of photo pixels that show the lamp.
 pub struct Evidence {
     /// The lamps that the photo shows completely.
     pub whole: Vec<MeasuredLamp>,
     /// The lamps that the border cuts and whose size is known, with the centre of the whole lamp and the weight of the
-    /// visible part. Empty for a luminous ceiling, whose panes the border may have cut at any bar.
+    /// visible part. Always empty for a luminous ceiling, because it is not known at which bar a cut pane would end.
     pub completed: Vec<MeasuredLamp>,
     /// The visible parts of the other lamps that the border cuts.
     pub parts: Vec<MeasuredLamp>,
@@ -36,15 +37,17 @@ impl Evidence {
         Self { whole, completed, parts }
     }
 
-    /// Whether the photo shows a single lamp, or one whole lamp and an unlike part: these show no period.
+    /// Whether the photo shows exactly one whole lamp, no completed one, and at most one part of another lamp (no part,
+    /// for a luminous ceiling). Such an exemplar shows no period.
     pub fn is_single(&self, exemplar: &Exemplar) -> bool {
         let max_parts = usize::from(!exemplar.is_luminous_ceiling());
         self.whole.len() == 1 && self.completed.is_empty() && self.parts.len() <= max_parts
     }
 }
 
-/// The whole lamp of which the photo shows `part`. `None` if no whole lamp has its size, or if the border cuts both
-/// ends of an axis.
+/// Completes a cut lamp of which the photo shows `part`: takes the size of a whole lamp that `part` resembles, and
+/// computes the centre. `None` if `part` does not have the role `Cut`, if it resembles no whole lamp, or if the border
+/// cuts it at both ends of an axis.
 fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) -> Option<MeasuredLamp> {
     if exemplar.roles[part.component] != Role::Cut {
         return None;
@@ -56,7 +59,8 @@ fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) ->
         return None;
     }
 
-    // Find a whole lamp that is as long along the axes that are not cut, and no shorter along the others.
+    // Find a whole lamp that is about as long as the part along the axes that are not cut, and at least as long as the
+    // part along the cut axes.
     let is_cut = cut_low | cut_high;
     let size = whole.iter().find_map(|other| {
         let size = DVec2::select(is_cut, part.size.max(other.size), part.size);

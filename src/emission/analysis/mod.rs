@@ -30,16 +30,16 @@ const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
-/// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
+/// Score of a law without a period, which predicts no lamp: repetition of the whole exemplar, or patches without a
+/// lattice. A lattice or row must score higher if it is to replace another law. [judged on 20 photos]
 const SCORE_WITHOUT_PERIOD: f64 = 0.35;
 /// If the lattice or row found in the whole exemplar with the threshold `min_regularity` scores below this value, it
 /// is dropped, and the pattern counts as having no period. [judged on 20 photos]
 const MIN_SCORE: f64 = 0.15;
-/// The lattice or row found in the whole exemplar with the threshold `min_regularity` is replaced only by one whose
-/// score is higher by more than this. [judged on 20 photos]
+/// One score is clearly higher than another if it is higher by more than this. [judged on 20 photos]
 const CLEAR_MARGIN: f64 = 0.1;
-/// Laws are compared only if lamps have at least this share of the photo pixels of all lights; the other
-/// lights run through the photo. [judged on 20 photos]
+/// Laws are compared only if whole lamps have enough photo pixels, in comparison with the lights that run through the
+/// photo: at least this share of the photo pixels of both together. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
 /// Two lattices or rows count as equal if the relative difference between their periods is at most this.
 /// [judged on 20 photos]
@@ -48,8 +48,8 @@ const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps
-    /// for a comparison.
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if no laws were compared, for example because
+    /// the photo shows too few whole lamps.
     pub score: f64,
     /// The best alternative law, and its score; the score is 0 if there is no alternative.
     pub runner_up: Law,
@@ -97,8 +97,9 @@ impl Proposal {
         Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
     }
 
-    /// Turns the lattice parallel to the axes of the room. Returns the proposal unchanged if the lamps contradict this,
-    /// and for the panes of a luminous ceiling.
+    /// Makes the periods of a lattice that are nearly parallel to the axes of the unwarped image exactly parallel.
+    /// Returns the proposal unchanged if this would lower the score by [`CLEAR_MARGIN`] or more, and for the panes of a
+    /// luminous ceiling.
     fn aligned(self, exemplar: &Exemplar, score: impl Fn(Law) -> f64) -> Self {
         let law = self.law.aligned();
         if law == self.law || exemplar.is_luminous_ceiling() {
@@ -108,8 +109,8 @@ impl Proposal {
         if aligned.score > self.score - CLEAR_MARGIN { aligned } else { self }
     }
 
-    /// The value by which proposals are compared: the score, plus the clear margin if the law follows the axes of the
-    /// room, as most ceilings do.
+    /// The value by which proposals are compared: the score, plus [`CLEAR_MARGIN`] if the periods are parallel to the
+    /// axes of the unwarped image, as on most ceilings. Panes of a luminous ceiling get no such bonus.
     fn rank(&self, exemplar: &Exemplar) -> f64 {
         let is_preferred = self.law.is_aligned() && !exemplar.is_luminous_ceiling();
         self.score + if is_preferred { CLEAR_MARGIN } else { 0.0 }
@@ -169,7 +170,7 @@ impl Analysis {
         let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
         let endless: f64 = through.map(|(_, area)| area).sum();
         if evidence.is_single(exemplar) && endless == 0.0 {
-            // A single lamp shows no repetition, even if its few pixels correlate.
+            // A single lamp shows no repetition, even if the autocorrelation of its few pixels has a peak.
             self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
             return Ok(());
         }
@@ -260,8 +261,8 @@ impl Analysis {
         Ok(proposals)
     }
 
-    /// Chooses the law with the highest score: among the rows if `mode` is [`LawMode::Row`], else among the lattices.
-    /// Errors: `Degenerate` if none was proposed.
+    /// Chooses a row if `mode` is [`LawMode::Row`], else a lattice. Keeps the law found so far if it is one. Otherwise
+    /// takes the one with the highest score among all proposals. Errors: `Degenerate` if none was proposed.
     fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Law| match mode {
             LawMode::Row => matches!(c, Law::Row(_)),

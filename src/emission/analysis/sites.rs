@@ -29,28 +29,28 @@ const MAX_SITES: usize = 20_000;
 /// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Position of the site in the cell of its first lamp, in unwarped pixels.
+    /// Position of the site in the lattice cell that holds its first lamp, in unwarped pixels.
     pub at: DVec2,
     /// The lamps at this site; lamps with most photo pixels come first.
     pub lamps: Vec<MeasuredLamp>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
-    /// Area in photo pixels of predicted lamps that the light mask lacks although their position is in full view.
-    /// `unmarked` counts positions that shine in the photo, `missing` those that do not.
+    /// Area, in photo pixels, of predicted lamps that the light mask lacks although their position is in full view. It
+    /// belongs to `unmarked` if the photo shines at the position, else to `missing`.
     pub unmarked: f64,
     pub missing: f64,
     /// The part of `missing` that lies between lamps of the site, in photo pixels, and its number of positions.
     pub holes: f64,
     pub hole_count: usize,
-    /// The cells, counted from `at`, in which the pattern continues: from the first to the last lamp along both
-    /// periods, and without limit on a side where no predicted lamp is missing. Beyond a side where some are missing,
-    /// the pattern has ended, for example because a wall is near.
+    /// First and last cell, along both periods, in which the pattern continues; cell 0 holds `at`. If no predicted lamp
+    /// is missing beyond the last lamp, the pattern has no known end on this side, and the value is infinite. If some
+    /// are missing, for example because a wall is near, the pattern ends with the last lamp. The first cell likewise.
     pub cells: [DVec2; 2],
 }
 
 impl Site {
-    /// Share of the positions that have a lamp or shine among those in view between the first and the last lamp,
-    /// weighted by photo pixels.
+    /// Of the visible positions between the first and the last lamp, the share with a lamp or with light that the mask
+    /// lacks. Positions are weighted by photo pixels: (shown + unmarked) / (shown + unmarked + holes).
     pub fn occupancy(&self) -> f64 {
         let seen = self.shown + self.unmarked;
         seen / (seen + self.holes).max(f64::MIN_POSITIVE)
@@ -152,8 +152,10 @@ impl Sites {
         cell.cmpge(site.cells[0]).all() && cell.cmple(site.cells[1]).all()
     }
 
-    /// Tests the positions in full view where the lattice predicts a lamp of this site (one of `all` lamps) but the
-    /// light mask shows none, and adds them to the site. A lamp that covers the position off its centre counts as dark.
+    /// Finds the positions in full view where the lattice predicts a lamp of this site but the light mask shows none.
+    /// Sets the site's `unmarked`, `missing`, `holes`, `hole_count` and `cells` from them. `all` holds the lamps of all
+    /// sites. A position also counts as empty if the lamp that covers it has the size of this site's lamps but belongs
+    /// to another site.
     fn with_empty_positions(&self, mut site: Site, all: &[MeasuredLamp], exemplar: &Exemplar) -> Site {
         let Site { at, ref lamps, .. } = site;
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
@@ -219,13 +221,14 @@ impl Sites {
         site
     }
 
-    /// How well the lattice predicts the lamps, in [0, 1]. The score is the product of two shares:
+    /// How well the lattice predicts the lamps: (P / A) (1 - s / n), in [0, 1].
     ///
-    /// - the photo pixels of correctly predicted lamps among those of all lamps that are seen or predicted;
-    /// - the number of lamps that are not the first of their site, among all lamps.
+    /// - P: photo pixels of the lamps that are predicted correctly.
+    /// - A: photo pixels of all lamps, and of lamps that are predicted but missing.
+    /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
     ///
-    /// Cut lamps whose size is known count as lamps if a site leads to them. The visible parts of other cut lamps count
-    /// as predicted if a site leads to any place on them.
+    /// A cut lamp is predicted if whole steps from a site lead to its centre or, if its size is not known, to any place
+    /// on its visible part. Of the cut lamps, n counts those of known size that are predicted.
     pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),

@@ -14,7 +14,8 @@ pub fn colour(image: &Image, p: DVec2) -> Option<Vec3> {
     let [x, y] = (p - 0.5).to_array().map(floor);
     let t = (p - 0.5 - DVec2::new(x as f64, y as f64)).as_vec2();
     let [across, down] = [weights(t.x), weights(t.y)];
-    // A pixel is read as four floats, so the last column that is read must not be the last one of the image.
+    // Each pixel is read as four floats: its three channels and the first channel of the next pixel. So the last column
+    // that is read must not be the last one of the image.
     let is_inner = x >= 1 && y >= 1 && x + 3 < image.width as isize && y + 2 < image.height as isize;
     let [above, upper, lower, below] = if is_inner && image.channels == 3 {
         let first = 3 * ((y as usize - 1) * image.width + x as usize - 1);
@@ -37,7 +38,8 @@ pub fn colour(image: &Image, p: DVec2) -> Option<Vec3> {
     Some(if sum_rgb.is_finite() { sum.max(least).min(most).truncate() } else { sum_rgb })
 }
 
-/// Four neighbouring pixels of an image with three channels. The fourth lanes hold the next pixels' red.
+/// Four neighbouring pixels of an image with three channels. The fourth lane of each holds the red channel of the next
+/// pixel, and is ignored.
 #[inline(always)]
 fn pixels_of_row(row: &[f32]) -> [Vec4; 4] {
     let row = &row[..13];

@@ -6,13 +6,12 @@
 //! 1. The pattern of each exemplar is planned over the whole texture.
 //! 2. Each lamp gets a random number in [0, 1). Lamps of different exemplars that would overlap share one number.
 //! 3. The weights at the lamp's centre divide [0, 1) into one interval per exemplar. The lamp is kept if its number
-//!    lies in the interval of its own exemplar. Of two overlapping lamps with equal weights, at most one is kept, and
-//!    the mean light per area follows the weights.
+//!    lies in the interval of its own exemplar. The intervals are disjoint, so of two overlapping lamps at most one is
+//!    kept if the weights are equal at both centres. The mean light per area follows the weights.
 //!
 //! If many lamps overlap several others, all lamps in a square of the texture share one number, and the style changes
 //! from square to square. If two kept lamps overlap all the same, the lamp of the exemplar that comes first in the
-//! list stays. Lights that run beyond the border of their exemplar are not chosen at random: the weight dims them
-//! instead.
+//! list stays. Lights that run through their exemplar are not chosen at random: the weight dims them instead.
 //!
 //! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], each
 //! lattice has a site, or a midpoint between sites, at the texture's centre.
@@ -28,8 +27,8 @@ use std::collections::HashMap;
 /// Where lamps are dense, all lamps in one square of the texture share a random number. This is the square's side, as
 /// a multiple of the longest lamp's length.
 const SHARED_SQUARE: f64 = 3.0;
-/// Lamps are dense if more than this share of the lamps of all exemplars but the first each overlap several lamps of
-/// preceding exemplars.
+/// Lamps are dense if, of the lamps of the second and all further exemplars, more than this share overlap two or more
+/// lamps of earlier exemplars.
 const MIN_DENSE_SHARE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.

@@ -1,8 +1,8 @@
 //! Lists the lamps of a composition without rendering the whole texture.
 //!
 //! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and a position for
-//! each lamp. If a texel is not exactly one unwarped pixel, these outlines are more exact than outlines measured in
-//! the texture, which consist of whole texels.
+//! each lamp. The outlines are measured in the unwarped image, so their accuracy does not depend on the size of the
+//! texels.
 //!
 //! Some lights are copied patch by patch and not as a whole: lights that run through their exemplar and, without
 //! [`crate::emission::Params::whole_lamps`], all lights. Only their outlines are measured in the texture.

@@ -55,9 +55,10 @@ pub struct Layer {
     /// The designs (one size and one outline per kind of lamp) from which lamps are drawn; empty if lamps keep the
     /// outlines of the photo.
     pub designs: Designs,
-    /// The sites at which lamps are placed exactly; `None` if copied patches alone give their places.
+    /// The sites of the lattice at which lamps are placed exactly; `None` if lamps stay where copied patches show them.
     sites: Option<Sites>,
-    /// The photo at half its size, at a quarter, and so on, as far as texels that cover many of its pixels need it.
+    /// Copies of the photo at 1/2, 1/4, 1/8, … of its size. Texels that cover many photo pixels are read from them;
+    /// there are only as many copies as these texels need.
     pub smaller_photos: Vec<Image>,
     /// The blocks of the exemplar that have light.
     pub lit_blocks: LitBlocks,
@@ -199,7 +200,8 @@ impl Layer {
 /// Number of points along each axis at which the size of a texel in the photo is measured.
 const MEASURED: usize = 16;
 
-/// The smaller copies of the photo that texels need.
+/// Makes copies of the photo at 1/2, 1/4, … of its size, as many as the texels need. `scale` is the number of unwarped
+/// pixels per texel.
 fn smaller_photos(input: &Input, exemplar: &Exemplar, scale: f64, job: Job) -> Result<Vec<Image>> {
     let Some((photo, to_photo)) = input.photo else { return Ok(Vec::new()) };
     let (width, height) = (exemplar.width, exemplar.height);
@@ -236,7 +238,8 @@ struct LayerExemplar {
     choice: Choice,
 }
 
-/// Analyses the exemplar. If the texture fits into it, also finds the part of the exemplar that the texture copies.
+/// Analyses the exemplar. If the texture fits into the exemplar, and is neither tileable nor centred, also finds the
+/// part of the exemplar that the texture copies.
 fn source(
     analysis: Option<Analysis>,
     input: &Input,
@@ -280,8 +283,8 @@ fn source(
     Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
 }
 
-/// If the pattern does not change along an axis, makes the lights along this axis run through the exemplar: joints or
-/// the border have only cut them into pieces.
+/// If the pattern does not change along an axis, gives the long lights along this axis the role `Through` (running
+/// through the exemplar), because they are pieces of a line that joints or the border interrupt.
 fn continue_lines(exemplar: &mut Exemplar, law: Law) {
     let periods = law.lattice().into_iter().flatten();
     for axis in periods.filter(|period| period.length() <= basis::MAX_UNCHANGING_LENGTH) {
@@ -362,8 +365,8 @@ impl<'a> PatternPlacement<'a> {
         })
     }
 
-    /// The sites of the lattice at which lamps are placed exactly. `None` if there are no designs (except for panes) or
-    /// no sites, and for a row that ends within the exemplar.
+    /// The sites of the lattice at which lamps are placed exactly. `None` if the law has no sites, for a row that ends
+    /// within the exemplar, and if no lamp has a design. The panes of a luminous ceiling need no design.
     fn sites(&self, exemplar: &Exemplar, designs: &Designs) -> Option<Sites> {
         let ends = match self.law {
             Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),

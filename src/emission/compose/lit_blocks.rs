@@ -41,8 +41,8 @@ impl LitBlocks {
         Ok(Self { columns, rows, sets })
     }
 
-    /// Whether a light of the set may lie less than a pixel from the square with the given corner (its smallest
-    /// coordinates) and side. False only if there is none.
+    /// Whether a light of the set may lie in a square, or less than a pixel from it. The square is given by the corner
+    /// with the smallest coordinates, and by its side, in unwarped pixels. False only if there is certainly no light.
     pub fn may_reach(&self, set: LightSet, corner: DVec2, side: f64) -> bool {
         // The cast turns negative coordinates into 0.
         let block = |at: f64| at as usize / BLOCK;

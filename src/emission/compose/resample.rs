@@ -52,7 +52,8 @@ pub fn smaller(
     Ok(copies)
 }
 
-/// How often the photo is halved before a quadrangle is read whose shorter side is `pixels` long; at most `max`.
+/// How many times the photo is halved before a quadrangle is read from it; at most `max`. The shorter side of the
+/// quadrangle is `pixels` photo pixels long.
 fn level(pixels: f64, max: usize) -> usize {
     // The cast turns NaN into 0.
     let ratio = (pixels / MIN_PIXELS) as usize;
@@ -136,7 +137,7 @@ mod tests {
         let found = mean(&photo, &wide, DVec2::new(0.0, 5.5), 1.0).unwrap();
         assert!((found.x - (3.0 + 165.0)).abs() < 0.2, "{found}");
         assert_eq!(mean(&photo, &wide, DVec2::new(-1.0, 5.5), 1.0), None);
-        // A mean with a pixel that is not finite is none.
+        // The mean is `None` if it would include a pixel that is not finite.
         let mut hole = photo.clone();
         hole.data[3 * (12 * 96 + 54)] = f32::NAN;
         assert_eq!(mean(&hole, &wide, DVec2::new(4.5, 4.2), 1.0), None);
@@ -152,7 +153,7 @@ mod tests {
     fn wide_squares_are_read_from_smaller_copies() {
         let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(40.0, 20.0, 1.0)));
         let centres = || [DVec2::new(3.0, 4.0)].into_iter();
-        // A ramp under stripes that are two pixels wide.
+        // A linear ramp plus stripes that are two pixels wide and average to 0.
         let stripe = |x: usize| if x % 4 < 2 { 200.0 } else { -200.0 };
         let photo = Image::from_fn(240, 160, |x, y| [x as f32 + 10.0 * y as f32 + stripe(x); 3]).unwrap();
         let smaller = smaller(&photo, &wide, centres(), 1.0, Monitor::default().job()).unwrap();
@@ -160,7 +161,7 @@ mod tests {
         let found = Levels { photo: &photo, smaller: &smaller }.mean(&wide, DVec2::new(3.0, 4.0), 1.0, |colour| colour);
         // The mean of a ramp is its value at the centre, (120, 80) in the photo; pixels are sampled at their centres.
         assert!((found.unwrap().x - (119.5 + 795.0)).abs() < 0.5, "{found:?}");
-        // Only as many copies as needed are made.
+        // A square of 0.3 unwarped pixels covers 12 × 6 photo pixels, which needs no smaller copy.
         let none = super::smaller(&photo, &wide, centres(), 0.3, Monitor::default().job()).unwrap();
         assert!(none.is_empty());
     }

@@ -40,7 +40,8 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
-/// The colour and coverage that one lamp, or a group of lights, gives to a texel.
+/// The colour and coverage that one lamp, or a group of lights, gives to a texel. The colour is already multiplied by
+/// the lit share of the texel.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
@@ -148,8 +149,9 @@ impl TexelSource<'_> {
         Some(Texel { colour: colour * share, share, coverage: share })
     }
 
-    /// The point of a lamp that stands for the point `p` of its design: `p` itself if the photo shows the lamp there, or
-    /// the first visible point of the lamp on the way to its visible centre. The border hides a part of cut lamps.
+    /// The point at which the colour for the point `p` of a lamp's design is read. The border hides a part of a cut
+    /// lamp: if it hides `p`, returns the first visible point of the lamp on the way from `p` to the centre of the
+    /// visible part. Otherwise returns `p`.
     fn shown_point(&self, component: usize, p: DVec2) -> DVec2 {
         let exemplar = &self.layer.exemplar;
         if exemplar.roles[component] != Role::Partial {

@@ -6,7 +6,7 @@ use crate::emission::quilt::patch_map::{PatchMap, Shift};
 use crate::error::Result;
 use glam::DVec2;
 
-/// A part of the exemplar with the size of the texture.
+/// A part of the exemplar with the size of the texture, given by its upper left corner in unwarped pixels.
 pub struct Window {
     pub corner: DVec2,
     /// Whether the photo shows every pixel of this part.

@@ -206,8 +206,8 @@ impl<'a> Lines<'a> {
     pub fn cut(&self, bar: &Bar, sections: &[Section], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Section| s.sharpness >= bluntest && s.depth < MIN_SECTION_DEPTH * bar.depth;
         let absent: Vec<bool> = sections.iter().map(is_absent).collect();
-        // A section in which another bar crosses seems to have no bar, because both bars are equally dark. Remove it
-        // nevertheless.
+        // Where another bar crosses, this bar seems absent, because the pixels on both sides of it belong to the other
+        // bar and are as dark. Such a section is removed nevertheless.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| {
             is_shown(n.saturating_sub(MAX_HIDDEN_SECTIONS), n) && is_shown(n + 1, n + 1 + MAX_HIDDEN_SECTIONS)

@@ -1,4 +1,4 @@
-//! Connected components of a light mask: each is one lamp.
+//! Connected components of a light mask: each is a lamp, or a part of one.
 
 use crate::error::Result;
 use crate::image::try_vec;
@@ -21,8 +21,8 @@ impl Component {
         [self.max[0] - self.min[0] + 1, self.max[1] - self.min[1] + 1]
     }
 
-    /// The corners of the bounding box with the smallest and the largest coordinates. A pixel reaches from its indices
-    /// to the next ones.
+    /// The corners of the bounding box with the smallest and the largest coordinates. Pixel (i, j) covers
+    /// [i, i + 1) × [j, j + 1).
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let corner = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);
         (corner(self.min), corner(self.max) + 1.0)

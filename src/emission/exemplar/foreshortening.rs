@@ -44,8 +44,8 @@ impl LocalMap {
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,
-    /// Largest allowed value of the homography's denominator. The magnification of lengths is proportional to the
-    /// denominator to the power of 3/2.
+    /// Largest allowed value of |w|, where w is the third homogeneous coordinate of a point that the homography has
+    /// mapped. The magnification of lengths is proportional to |w|^(3/2).
     max_denominator: f64,
 }
 

@@ -18,10 +18,11 @@ use glam::DVec2;
 /// A group of similar pieces is a major kind of lamps if it has at least this share of the photo pixels of all lamps.
 /// [judged on 20 photos]
 const MIN_KIND_SHARE: f64 = 0.15;
-/// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
+/// A fragment covers less than this share of the photo pixels that a lamp of the smallest major kind would cover in its
+/// place. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
-/// A fragment is close to another light if their distance is at most this multiple of a lamp's longer side.
-/// [judged on 20 photos]
+/// A fragment is close to another light if their distance is at most this multiple of the longer side of a lamp of the
+/// smallest major kind. [judged on 20 photos]
 const MAX_GAP: f64 = 0.35;
 /// A group of at least this many similar small pieces counts as a kind of lamps; only the pieces close to other lights
 /// are then fragments. [judged on 20 photos]

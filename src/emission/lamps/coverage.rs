@@ -55,11 +55,14 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// Calls `add` for each lit area that counts towards a lamp texel. If none of the eight texels around it is dark
-    /// (covered by less than half), this is the whole lamp texel. Otherwise these are its own lit part, and a share of
-    /// the lit part of each dark texel around it: the lit part of a dark texel is divided equally among all lamp
-    /// texels around it. The arguments of `add` are the step from the lamp texel to the texel that holds the area, and
-    /// the area in texels.
+    /// Calls `add` for each lit area that is attributed to the lamp texel `at`. A texel is dark if light covers less
+    /// than half of it.
+    ///
+    /// - If none of the eight texels around `at` is dark, `add` gets the whole texel `at`.
+    /// - Otherwise `add` gets the lit part of `at`, and a share of the lit part of each dark texel around `at`. The lit
+    ///   part of a dark texel is divided equally among all lamp texels around that texel.
+    ///
+    /// The arguments of `add` are the step from `at` to the texel that holds the area, and the area in texels.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -77,9 +80,9 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// The share of an edge texel that light would cover if the lamp's edge were sharp. If coverage needs more than
-    /// two texels to rise from 0 to 1, the edge is blurred. The coverage then gives the distance from the edge, and
-    /// the distance gives the share.
+    /// The share of an edge texel that light would cover if the lamp's edge were sharp. An edge is blurred if the
+    /// coverage c changes by a step d < 0.5 from this texel to the next one across the edge. The edge is then
+    /// (c - 0.5) / d texels from the texel's centre, and the share is 0.5 + (c - 0.5) / d. At a sharp edge it is c.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -3,14 +3,14 @@
 use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
-/// Maximum length, in texels, of a crumb with an area below `crumb` texels.
+/// Maximum side, in texels, of the bounding box of a crumb. The area of a crumb is below `crumb` texels.
 pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Removes every connected piece of light with an area below `crumb` texels and a length of at most [`reach`]. Keeps a
-/// piece if it is the visible part of a larger light, that is, if `is_cut` returns true for its first and last column
-/// and row.
+/// Removes every connected piece of light whose area is below `crumb` texels and whose bounding box is at most
+/// [`reach`] texels wide and high. Keeps a piece that is the visible part of a larger light: `is_cut` returns true for
+/// its first column and row, and its last column and row.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,

@@ -1,8 +1,8 @@
 //! Completes the lamps that the border of the photo cuts.
 //!
-//! The texture shows a cut lamp only if the photo shows no whole lamp like it. The visible part of a rectangle is a
-//! triangle or a wedge where the border runs obliquely, and few lamps have such shapes. So the lamp becomes its bounding
-//! rectangle, unless the photo shows a place in this rectangle that is not light.
+//! The texture shows a cut lamp only if the photo shows no whole lamp like it. Where the border runs obliquely, the
+//! visible part of a rectangle is a triangle or a wedge, and few lamps have such shapes. So a cut lamp becomes the
+//! bounding rectangle of its visible part, unless the photo shows that some of this rectangle is dark.
 
 use super::design::{Design, Designs, Fitted, Shape};
 use crate::emission::exemplar::Exemplar;
@@ -11,8 +11,8 @@ use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Of the pixels of the rectangle that the photo shows, at least this share must be light. A half or a quarter of a disc
-/// fills the rectangle around it to 0.79. [convention]
+/// Of the pixels of the rectangle that the photo shows, at least this share must be light. It excludes a half or a
+/// quarter of a disc, which covers only π/4 = 0.79 of its bounding rectangle. [convention]
 const MIN_LIT: f64 = 0.92;
 
 /// Adds the designs of the lamps that the border cuts.

@@ -51,10 +51,11 @@ const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// (`BLOOM`), both in photo pixels. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, the bloom
-/// is at most `MAX_BLOOM`, and it explains at least the share `MIN_EXPLAINED` of the variation of their sides. Lamps of
-/// several lengths, and partly hidden lamps, fail this test, because their sides do not grow with magnification.
-/// `MIN_SIDE`: minimum side without bloom, as a share of the shortest measured side. [bench photos:tune, photos:real]
+/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, the
+/// bloom is at most `MAX_BLOOM`, and it explains at least the share `MIN_EXPLAINED` of the variation of their sides.
+/// Lamps of several lengths, and partly hidden lamps, fail this test, because their sides do not grow with
+/// magnification. `MIN_SIDE`: minimum side without bloom, as a share of the shortest measured side.
+/// [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 6.0;
 const MAX_BLOOM: f64 = 10.0;
 const MIN_EXPLAINED: f64 = 0.5;
@@ -179,7 +180,8 @@ impl Member {
         })
     }
 
-    /// Whether the lamp and the image of a photo pixel are both elongated, in about the same direction.
+    /// Whether the lamp and the shape of a photo pixel in the unwarped image are both elongated, in about the same
+    /// direction.
     fn is_smeared(&self) -> bool {
         let [[short, x], [long, y]] = principal(self.moments);
         let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
@@ -253,13 +255,16 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps that are discs, without their bloom; `None` if they are not discs.
+/// The diameter of lamps that are discs, without their bloom; `None` if they are not discs. `are_round` states that an
+/// ellipse fits the lamps better than a rectangle.
 ///
 /// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. If this
-/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Otherwise lamps are
-/// discs if at least half of them, by weight, are elongated along their blur, and one of three conditions holds: an
-/// ellipse fits them better than a rectangle, because lamps are rarely oval, while bloom and lenses below the ceiling
-/// make discs oval; or they are small in the photo; or they are not all elongated in the same direction.
+/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Otherwise they are
+/// discs if at least half of them, by weight, are elongated along their blur, and if one of these conditions holds:
+///
+/// - They are round: lamps are rarely oval, but bloom, or a lens below the ceiling, makes discs look oval.
+/// - They are small in the photo.
+/// - They are not all elongated in one common direction.
 fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
     let pixel = |m: &Member, x: f64, y: f64| (m.inverse_map.transpose() * DVec2::new(x, y)).length();
     let sides = |m: &&Member| {
@@ -304,9 +309,10 @@ fn common_axis(members: &[&Member]) -> DVec2 {
     if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The common side of lamps without bloom. Each item of `sides` holds the measured side of a lamp, and the length of a
-/// photo pixel there, both in unwarped pixels. As much bloom is taken off as the sides of at least [`MIN_BLOOM_LAMPS`]
-/// lamps show; if they do not show it, as the prior [`BLOOM`] allows.
+/// The common side of lamps without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a lamp,
+/// and the length of a photo pixel there, both in unwarped pixels. The bloom is estimated from the sides, if at least
+/// [`MIN_BLOOM_LAMPS`] lamps show it ([`BloomFit::shown`]). Otherwise it is estimated with the narrow prior [`BLOOM`].
+/// A single lamp, and lamps that seem smaller than in reality (bloom below 0), keep their mean side.
 fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let fit = BloomFit::new(sides);
     let shown = if fit.count >= MIN_BLOOM_LAMPS { fit.shown() } else { None };
@@ -316,8 +322,8 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     })
 }
 
-/// A least-squares fit of `side = s + 2 bloom × photo pixel`: the side `s` of lamps without bloom in unwarped pixels, and
-/// the bloom at each edge in photo pixels.
+/// A least-squares fit of `side = s + 2 bloom × photo pixel`: the side `s` of lamps without bloom in unwarped pixels,
+/// and the bloom at each edge in photo pixels.
 struct BloomFit {
     /// Normal equations for the side and the bloom, and the weighted sum of squared sides.
     gram: DMat2,
@@ -341,7 +347,8 @@ impl BloomFit {
         fit
     }
 
-    /// The side and the bloom, for a normal prior on the bloom with mean 0.
+    /// The side in unwarped pixels, and the bloom in photo pixels. The prior of the bloom is normal, with mean 0 and
+    /// the given standard deviation in photo pixels.
     fn solve(&self, deviation: f64) -> DVec2 {
         (self.gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * self.sums
     }
@@ -543,7 +550,7 @@ mod tests {
 
     #[test]
     fn a_few_ovals_that_are_long_along_their_blur_are_discs() {
-        // Too few lamps show their bloom, so the discs are as wide as the short side of the ovals.
+        // Two lamps are too few for measuring bloom, so the discs get the diameter of the short side of the ovals.
         let lamps = || [2.5, 2.6].into_iter().enumerate().map(|(k, pixel)| bloomed_disc(k, pixel));
         let (design, _) = fit(&lamps().collect::<Vec<_>>(), 0).unwrap();
         assert_eq!((design.shape, design.size.x), (Shape::Ellipse, design.size.y));

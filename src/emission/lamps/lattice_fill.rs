@@ -115,8 +115,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     kept
 }
 
-/// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo, those with a design
-/// if there are any. Returns its first lamp if there is no whole lamp.
+/// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo. If any whole lamp
+/// has a design, only lamps with a design are returned. If there is no whole lamp, returns the site's first lamp.
 fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
     let whole = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
     let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();

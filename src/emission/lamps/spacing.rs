@@ -38,7 +38,8 @@ fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
     }
 }
 
-/// Drops each copy that comes much closer to an earlier one than any two whole lamps of the photo do.
+/// Drops each copy whose gap to an earlier copy is below [`MIN_GAP_SHARE`] times the smallest gap between two whole
+/// lamps of the photo.
 pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instance>) -> Vec<Instance> {
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();

@@ -3,14 +3,14 @@
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of lamps whose pairs are compared; of more lamps, an even selection is taken.
+/// Maximum number of lamps whose pairs are compared; if there are more, every second, every third, … lamp is taken.
 /// [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
-/// Maximum length, in unwarped pixels, of a basis vector that stands for a direction in which the pattern does not
-/// change, and not for a period: the lattice search returns a shift of one pixel there. [rounding]
+/// If the pattern does not change along an axis, the search for lattices returns a shift of one pixel along the axis in
+/// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
 /// Makes a period whose slant, as a tangent, is below `max_slant` exactly parallel to its axis, and keeps its length.

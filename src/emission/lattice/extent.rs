@@ -18,23 +18,24 @@ const FEW_LAMPS: usize = 6;
 /// [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
-/// Width and height of the usable box of the exemplar, in unwarped pixels.
+/// Width and height of the bounding box of the exemplar's usable pixels, in unwarped pixels.
 pub fn of(exemplar: &Exemplar) -> DVec2 {
     let [x0, y0, x1, y1] = exemplar.working.usable_box();
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// Width and height of the box around the panes of a luminous ceiling and one of the widest bars between them, in
-/// unwarped pixels.
+/// The repeat of the panes of a luminous ceiling along x and y, in unwarped pixels: the length of the box around all
+/// panes, plus the width of the widest bar between them.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let [[width, column], [height, row]] = [spread(exemplar, 0, usize::max), spread(exemplar, 1, usize::max)];
-    // A single column or row of panes shows the bars of the other direction only.
+    // A single column or row of panes has bars of one direction only: take their width for both directions.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
     DVec2::new(width + bar(column, row), height + bar(row, column))
 }
 
-/// The length of the box around all lamps along an axis, and one of the gaps that no lamp reaches into along this axis,
-/// chosen by `choose` from two gaps at a time; 0 without a gap.
+/// The length of the box around all lamps along an axis, and the length of a gap between lamps along this axis, in
+/// unwarped pixels. A gap is an interval of the axis that no lamp reaches into. If there are several, `choose` picks
+/// the longest or the shortest one; without a gap, the length is 0.
 fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
     let mut spans: Vec<[usize; 2]> =
         exemplar.components.list.iter().map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
@@ -50,9 +51,10 @@ fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -
     [(end - first) as f64, gap.unwrap_or(0) as f64]
 }
 
-/// Width and height with which the rows of an exemplar repeat. Along an axis on which the lamps lie in several groups,
-/// it is at least so long that the gap between the groups of adjacent repetitions equals the shortest gap in the photo.
-/// Otherwise, groups at both borders of the photo would come in pairs.
+/// The repeat of the rows of an exemplar along x and y, in unwarped pixels: the size of the exemplar, or more. If
+/// there are gaps between lamps along an axis, the repeat is at least the length of the box around all lamps plus the
+/// shortest gap. Otherwise two rows at opposite borders of the photo would lie side by side in the texture, almost
+/// without a gap.
 pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
     let spaced = |axis: usize| {
         let [length, gap] = spread(exemplar, axis, usize::min);

@@ -55,8 +55,9 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
     }
 }
 
-/// A row with the given period; the extent of the exemplar serves as its second period. Panes of a luminous ceiling that
-/// fill the exemplar continue beyond a bar, and rows at both borders continue at the distance of neighbouring rows.
+/// A row with the given period. Its second period, across the row, is the extent of the exemplar, or longer if lamps
+/// lie at both borders: copies of the exemplar must keep a bar between panes ([`extent::of_panes`]), or the shortest
+/// gap between other lamps ([`extent::of_rows`]).
 pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     let extent = match exemplar.is_luminous_ceiling() {
         true => extent::of(exemplar).max(extent::of_panes(exemplar)),

@@ -8,8 +8,8 @@ use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// Number of neighbours whose distances are proposed as periods: the next lamp, the lamp after it, and the third one.
-/// Windows of up to three panes along an axis thus give their own period. [convention]
+/// Number of neighbours whose distances are proposed as periods: the next lamp, the second and the third one. For
+/// windows of n ≤ 3 panes along an axis, the distance to the n-th neighbour is the period of the windows. [convention]
 const ORDERS: usize = 3;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.

@@ -10,8 +10,9 @@ const STANDARD_ERRORS: f32 = 2.0;
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
 const MIN_UNCHANGING: f32 = 0.95;
 
-/// A peak counts only if the correlation falls by `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of it, along x
-/// or y, whichever is closer to the shift. Otherwise the lights do not repeat but run on in that direction.
+/// A peak counts only if the correlation falls by `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of the peak,
+/// along the axis (x or y) that is closer to the direction of the shift. Otherwise the lights do not repeat along this
+/// axis, but are continuous.
 const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.
@@ -23,8 +24,8 @@ pub struct Repeat {
 }
 
 impl Repeat {
-    /// The correlation minus [`STANDARD_ERRORS`] standard errors, because it may be too high by chance. `lights` is
-    /// the number of lights that are compared.
+    /// The correlation r minus [`STANDARD_ERRORS`] standard errors, because r may be too high by chance. The standard
+    /// error is (1 - r²) / √(n - 1), where n is `lights`, the number of lights that are compared.
     pub fn lower_bound(&self, lights: f32) -> f32 {
         self.value - STANDARD_ERRORS * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }

@@ -9,8 +9,8 @@ use crate::image::try_vec;
 
 /// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp.
 /// `ON_LATTICE` equals the squared difference that a lamp in the wrong position causes in colour, confidence and
-/// distances. `ANYWHERE`, for patterns without a lattice, must stay below a third. A larger weight would select
-/// patches that bring the right amount of light but wrong distances between lamps.
+/// distances. `ANYWHERE`, for patterns without a lattice, must stay below 1/3: a larger weight would select patches
+/// with the right amount of light but wrong distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 
@@ -22,7 +22,7 @@ pub struct Balance {
     below: Vec<f64>,
     /// The column of the current block.
     column: usize,
-    /// Mean area of a lamp, and the weight of one surplus or missing lamp.
+    /// Mean area of a lamp in pixels (`lamp`), and weight of one surplus or missing lamp (`weight`).
     lamp: f64,
     weight: f64,
 }
@@ -45,7 +45,8 @@ impl Balance {
         self.row[self.column] += excess;
     }
 
-    /// The penalty if the current block gets `excess` more light, in squared differences of pixels.
+    /// The penalty if the current block gets `excess` pixels more light than its share, as a sum of squared differences
+    /// over pixels.
     pub fn penalty(&self, excess: f64) -> f64 {
         self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
     }

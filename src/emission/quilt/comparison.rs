@@ -11,8 +11,9 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches count as equally good if their error is at most the first value times the lowest error (the original paper
-/// allows 10 %), plus a constant: the second value or, on a lattice, `Comparison::slack` if that is larger.
+/// A patch counts as equally good as the best one if its error is at most a · e + b. Here e is the lowest error, a is
+/// the first value (Efros and Freeman 2001 allow 10 %), and b is the second value or, on a lattice,
+/// `Comparison::slack` if that is larger.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
@@ -130,9 +131,10 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// Scores how well shifts agree with the known pixels. A shift is scored only if it fills at least `least` empty
-    /// pixels; if `least` is `None`, only if it fills nearly as many as the shift that fills most. A shift whose error
-    /// is clearly above `limit`, or above the lowest error so far, gets an infinite error.
+    /// Scores how well shifts agree with the known pixels of a block. Leaves out shifts that fill too few empty
+    /// pixels: fewer than `least` or, if `least` is `None`, fewer than [`ENOUGH_COVERAGE`] times the largest number
+    /// that a shift fills. A shift gets an infinite error if its error is not equally good as `limit` or as the lowest
+    /// error so far.
     pub fn score(
         &self,
         block: &Block,

@@ -40,7 +40,8 @@ fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
 
 #[test]
 fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
-    // A triangle with the photo all around it on two sides, and cut at its base.
+    // A triangle with its tip at the top and a horizontal base. It lies left of the slanted line, so all of it is
+    // visible.
     let design = slanted(|x, y| (y - 10.0) * 1.2 > (x - 60.0).abs() && (10.0..45.0).contains(&y));
     let whole = design.light.data.iter().zip(&design.valid.data).filter(|(l, v)| **l >= 0.5 && **v > 0.5).count();
     for lamp in inner(&continued(&design).luminaires, 500, 400) {
@@ -79,8 +80,8 @@ fn windows_of_panes_keep_the_wide_bars_between_them() {
     assert!((share(&result.mask) / share(&design.light) - 1.0).abs() < 0.1);
 }
 
-/// Columns of windows at unequal distances: the pattern has a period along the columns only. Across them, it repeats
-/// with its dark margins, or beyond a bar if it fills the photo.
+/// Columns of windows at unequal distances have a period along y only. Along x, the texture repeats the whole exemplar
+/// with its dark margins. If the windows fill the exemplar from border to border, a bar separates the repetitions.
 #[test]
 fn columns_of_windows_at_unequal_distances_repeat_as_one() {
     let along = |n: f64| {
@@ -128,7 +129,7 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
 
 #[test]
 fn a_pattern_continues_where_the_photo_shows_its_end() {
-    // The left part of the ceiling, as wide as two and a half periods, has no lamps.
+    // The first three columns of lamps are missing, so the left part of the ceiling is dark.
     let lamp = grid(40.0, 36.0, 14.0, 10.0);
     let exemplar = Design::new(280, 180, |x, y| x > 110.0 && lamp(x, y));
     let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));

@@ -9,7 +9,8 @@ fn an_offset_shifts_the_lattice_and_the_copy() {
         let result = exemplar.run(&params).unwrap();
         inner(&result.luminaires, params.width, params.height).iter().map(|l| l.centre).collect()
     };
-    // The period of the lamps is (40, 36), so shifts by (11, 25) and by (11, -11) are equivalent.
+    // The periods are 40 along x and 36 along y. So the two offsets below are equivalent: they differ by one period
+    // along x and two along y.
     for (width, height) in [(400, 400), (120, 100)] {
         for offset in [DVec2::new(11.0, 25.0), DVec2::new(-29.0, -47.0)] {
             let params = Params { width, height, ..Params::default() };
