@@ -8,7 +8,7 @@ use glam::DVec2;
 /// that smooths the distances. Both are multiples of the mean distance between nearest neighbours.
 const MAX_DISTANCE: f64 = 2.5;
 const KERNEL_HALF_WIDTH: f64 = 0.15;
-/// Number of steps into which the range of distances is divided.
+/// Number of steps into which the distances from 0 to the longest one are divided.
 const STEPS: usize = 100;
 
 /// Points in a window that reaches from the origin to `size`. Any unit of length will do, if both patterns of a

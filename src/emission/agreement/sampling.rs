@@ -1,9 +1,9 @@
-//! Estimates the sampling error of an exemplar's statistics: the exemplar shows only a part of its ceiling, with few
-//! lamps.
+//! Estimates the sampling error of an exemplar's statistics. They have such an error because the exemplar shows only a
+//! part of its ceiling, with few lamps.
 //!
-//! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture are measured
-//! like the exemplar; they have the size and shape of the region that the photo shows. The difference between a part
-//! and the whole texture is an error that no synthesis could avoid.
+//! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture, of the size
+//! and shape of the region that the photo shows, stand in for the exemplar and are measured like it. The difference
+//! between a part and the whole texture is an error that no synthesis could avoid.
 
 use super::statistics::{Pattern, Statistics};
 use crate::emission::exemplar::{Exemplar, components, roles};
@@ -16,10 +16,11 @@ use glam::DVec2;
 /// Number of parts of the texture whose statistics are compared with those of the whole texture.
 const PARTS: usize = 6;
 
-/// Sampling error of the statistics, from parts of the texture as large as the exemplar. For each part, takes the
-/// largest relative difference between its statistics and those of the whole texture (`whole`). Returns the root mean
-/// square over the parts, or `None` if the texture is too small for several parts. `scale` is the number of unwarped
-/// pixels per texel; `periods` are in unwarped pixels.
+/// Returns the sampling error of the statistics as a relative difference. Each of several parts of the texture, as
+/// large as the exemplar, is compared with the whole texture (`whole`) by [`Statistics::difference`]. The result is
+/// the root mean square of these differences. `None` if the texture is too small for clearly different parts.
+///
+/// `scale` is the number of unwarped pixels per texel. `periods` are the periods along x and y in unwarped pixels.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),
@@ -43,7 +44,7 @@ pub fn error(
     }))?;
     let periods = periods.map(|p| p.map(|p| p / scale));
     let parts = exec::map(PARTS, job, |k| -> Result<f64> {
-        // Spread the parts evenly by the R2 low-discrepancy sequence (Roberts 2018).
+        // Spread the parts evenly over the texture by the R2 low-discrepancy sequence (Roberts 2018).
         let step = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
         let corner = (room * (step * (k as f64 + 0.5)).fract()).round();
         let at = |i: usize| (corner.y as usize + i / width) * mask.width + corner.x as usize + i % width;

@@ -1,11 +1,11 @@
 //! Statistics of a light pattern. They measure how well a texture agrees with its exemplar.
 //!
-//! The border of a window cuts the pattern at an arbitrary place, so plain means depend on the lamps that happen to
-//! lie on the border, and the more so the fewer lamps there are. Every mean is therefore weighted by position:
+//! The border of the image cuts the pattern at an arbitrary place. Plain means would therefore depend on the lamps that
+//! happen to lie at the border, above all if there are few lamps. So every mean is weighted by position:
 //!
-//! - Along an axis with a known period, imagine a shorter window of a whole number of periods that slides over the
-//!   window. The weight of a position is the share of placements that contain the position. Each part of the period
-//!   then has the same total weight, wherever the border cuts the pattern.
+//! - Along an axis with a known period, imagine a window of as many whole periods as fit into the image, which slides
+//!   from one border to the other. The weight of a position is the share of the window's placements that contain it.
+//!   Each part of the period then has the same total weight, wherever the border cuts the pattern.
 //! - Along other axes, the weights are a Hann window, which falls to 0 at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
@@ -18,11 +18,12 @@ use std::f64::consts::{PI, TAU};
 pub struct Statistics {
     /// Share of the pattern that is lit.
     pub lit: f64,
-    /// Mean luminance of the lit part.
+    /// Mean luminance of the lit part, in the units of the pattern's colours.
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other whole lamp; 0 if it is not known for any lamp.
+    /// Mean distance from a whole lamp to the nearest other whole lamp. Leaves out lamps that have a cut lamp nearer to
+    /// them; 0 if no lamp remains.
     pub spacing: f64,
     /// Number of whole lamps.
     pub whole: usize,
@@ -32,7 +33,7 @@ pub struct Statistics {
 pub struct Pattern<'a, C> {
     pub width: usize,
     pub height: usize,
-    /// The connected lights of the pattern, and for each whether it counts as a whole lamp.
+    /// `components`: the connected lights of the pattern. `whole`: for each of them, whether it counts as a whole lamp.
     pub components: &'a Components,
     pub whole: &'a [bool],
     /// Period along x and along y, in pixels; `None` without a period, infinite if the whole pattern is one period.
@@ -70,7 +71,8 @@ impl Statistics {
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
             ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        // The distance to the nearest lamp is unknown if a cut lamp is nearer than the nearest whole lamp.
+        // If a cut lamp is nearer than the nearest whole lamp, the distance to the nearest lamp is unknown, because
+        // the true centre of the cut lamp is unknown.
         let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
         let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
         let nearest = nearest_distances(&centres);
@@ -86,8 +88,8 @@ impl Statistics {
         }
     }
 
-    /// The statistics of a mixture of patterns with the given weights. The spacing of several patterns is 0, because
-    /// the distance between lamps of different patterns is unknown.
+    /// The statistics of a mixture of patterns. `parts` holds the statistics and the weight of each pattern. The
+    /// spacing of several patterns is 0, because the distance between lamps of different patterns is unknown.
     pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
         let parts: Vec<(Self, f64)> = parts.collect();
         if let [(only, _)] = parts[..] {
@@ -98,8 +100,8 @@ impl Statistics {
         Self {
             lit: ratio(lit, sum(&|_| 1.0)),
             luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
-            // The number of lamps per area is the lit share divided by the area of a lamp. Divide the sum of the lit
-            // shares by the sum of these numbers.
+            // A pattern with the lit share s and the mean lamp area a has s / a lamps per area. With the weight w of
+            // each pattern, the mean lamp area of the mixture is Σ w s / Σ (w s / a).
             area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
             spacing: 0.0,
             whole: parts.iter().map(|(part, _)| part.whole).sum(),
@@ -128,8 +130,8 @@ impl Statistics {
 /// Root mean square distance of points from the nearest positions of a lattice. Its basis is `a`, `b`; its origin is
 /// chosen to fit the points. Distances are in cell coordinates: a step of `a`, or of `b`, has length 1.
 pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
-    // Compute the points in cell coordinates; the circular mean of their fractional parts is the origin of the
-    // lattice.
+    // Convert the points to multiples of the periods. The circular mean of the fractional parts is the lattice's
+    // origin.
     let inverse = DMat2::from_cols(a, b).inverse();
     let cells: Vec<DVec2> = points.iter().map(|&p| inverse * p).collect();
     let angle =
@@ -142,11 +144,12 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
     (cells.iter().map(off).sum::<f64>() / cells.len().max(1) as f64).sqrt()
 }
 
-/// The weight of a position along an axis of length `side`: a Hann window, or for a known period a trapezoid.
+/// The weight of the position `at` along an axis of length `side`: a Hann window or, for a known period, a trapezoid
+/// (see the beginning of this file).
 fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
     let side = side as f64;
     let Some(period) = period else { return (PI * at / side).sin().powi(2) };
-    // If the window is no longer than one period, all positions have equal weights.
+    // If the axis is no longer than one period, all positions have equal weights.
     let spare = if period < side { side % period } else { 0.0 };
     if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
 }
@@ -155,8 +158,8 @@ fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// The distance from each point to the nearest other point; infinite for a single point. The search sweeps the points
-/// in the order of x.
+/// The distance from each point to the nearest other point; infinite for a single point. The search runs from each
+/// point to both sides in the order of x, until the difference in x alone exceeds the nearest distance so far.
 pub fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));

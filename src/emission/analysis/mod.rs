@@ -1,11 +1,11 @@
-//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a
-//! row, repetition of the whole exemplar, or patches without a lattice.
+//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond the exemplar. The law is
+//! a lattice, a row, repetition of the whole exemplar, or patches without a lattice.
 //!
-//! A single analysis is not reliable, because distant lamps are magnified with their blur and spoil the
-//! autocorrelation of the near ones. So several laws are proposed, from the whole exemplar and from its
-//! sharper parts, with strict and with loose thresholds. Each is scored by how well it predicts the lamps of the whole
-//! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless
-//! another one scores clearly higher.
+//! A single analysis is not reliable: unwarping magnifies the blur of distant lamps, which then spoil the
+//! autocorrelation of the near lamps. So several laws are proposed, from the whole exemplar and from its sharper parts,
+//! with strict and with loose thresholds. The score of a law tells how well the law predicts the lamps of the whole
+//! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless another
+//! law scores clearly higher.
 
 mod evidence;
 pub mod sites;
@@ -24,25 +24,25 @@ use sites::Sites;
 /// Lattices and rows are also proposed from parts of the exemplar in which the magnification is at most one of these
 /// values. Magnification is relative to the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Limits for shifts that are proposed as periods: `MIN_CORRELATION` is the minimum correlation,
-/// `MIN_RELATIVE_CORRELATION` the minimum correlation relative to the best shift, `MAX_SHIFTS` the maximum number of
-/// shifts. [judged on 20 photos]
+/// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
+/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of this value to its highest value over all shifts. `MAX_SHIFTS`:
+/// maximum number of shifts. [judged on 20 photos]
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of a law without a period, which predicts no lamp: repetition of the whole exemplar, or patches without a
 /// lattice. A lattice or row must score higher if it is to replace another law. [judged on 20 photos]
 const SCORE_WITHOUT_PERIOD: f64 = 0.35;
-/// If the lattice or row found in the whole exemplar with the threshold `min_regularity` scores below this value, it
-/// is dropped, and the pattern counts as having no period. [judged on 20 photos]
+/// If the lattice or row found in the whole exemplar scores below this value, and no other one replaces it, the
+/// pattern counts as having no period. [judged on 20 photos]
 const MIN_SCORE: f64 = 0.15;
 /// One score is clearly higher than another if it is higher by more than this. [judged on 20 photos]
 const CLEAR_MARGIN: f64 = 0.1;
 /// Laws are compared only if whole lamps have enough photo pixels, in comparison with the lights that run through the
 /// photo: at least this share of the photo pixels of both together. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
-/// Two lattices or rows count as equal if the relative difference between their periods is at most this.
-/// [judged on 20 photos]
+/// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this
+/// share of its length. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
@@ -62,8 +62,7 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice if there was nothing to compare: the score is NaN, and the runner-up is the law itself,
-    /// with score 0.
+    /// The choice if laws were not compared: the score is NaN, and the runner-up is the law itself, with score 0.
     pub fn only(law: Law) -> Self {
         Self { score: f64::NAN, runner_up: law, runner_up_score: 0.0 }
     }
@@ -187,7 +186,7 @@ impl Analysis {
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
-        // Turn lattices parallel to the axes of the room if they then predict the lamps nearly as well.
+        // Turn lattices parallel to the axes of the room if they predict the lamps nearly as well after the turn.
         let own = own.aligned(exemplar, score);
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 
@@ -197,7 +196,8 @@ impl Analysis {
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice, unless another law scores clearly higher.
+        // For the panes of a luminous ceiling, prefer the best lattice, provided that it scores clearly higher than a
+        // law without a period, and that no other law scores clearly higher than the lattice.
         let panes = lattice.filter(|p| {
             exemplar.is_luminous_ceiling()
                 && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN
@@ -261,8 +261,9 @@ impl Analysis {
         Ok(proposals)
     }
 
-    /// Chooses a row if `mode` is [`LawMode::Row`], else a lattice. Keeps the law found so far if it is one. Otherwise
-    /// takes the one with the highest score among all proposals. Errors: `Degenerate` if none was proposed.
+    /// Chooses a law of the type that `mode` asks for: a row for [`LawMode::Row`], else a lattice. Keeps the law found
+    /// so far if it has this type. Otherwise takes the proposal of this type with the highest score. Errors:
+    /// `Degenerate` if there is none.
     fn choose_by_mode(&mut self, mode: LawMode, whole: &Correlated, job: Job) -> Result<()> {
         let is_asked = |c: &Law| match mode {
             LawMode::Row => matches!(c, Law::Row(_)),
@@ -289,8 +290,9 @@ impl Analysis {
     }
 }
 
-/// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. NaN if the
-/// pattern does not change along one of its periods, because only the autocorrelation can judge such a period.
+/// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have
+/// a fixed score. NaN if the pattern does not change along one period of the law, as lines of light do not along their
+/// length: lamps are no evidence for such a period.
 fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
     match Sites::new(exemplar, &evidence.whole, law) {
         Some(sites) => sites.score(evidence),
@@ -301,7 +303,8 @@ fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
     }
 }
 
-/// Whether two laws are equal except for a small difference between their periods.
+/// Whether two laws are equal except for a small difference between their periods. `Whole` and `Free`, which have no
+/// measured period, count as equal.
 fn is_same(a: Law, b: Law) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| {

@@ -18,9 +18,9 @@ use glam::{DMat2, DVec2};
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
 /// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
 const MAX_OFF_SITE: f64 = 0.12;
-/// A position without a lamp in the light mask counts as shining if its contrast with the surroundings is at least the
-/// share `MIN_SHINING` of the highest contrast of the site's lamps, of which at most `MAX_COMPARED` are measured.
-/// [judged on 20 photos]
+/// Even where the light mask has no lamp, a position counts as shining if it is bright in the photo: its contrast with
+/// its surroundings is at least the share `MIN_SHINING` of the highest contrast among the site's lamps. Only the first
+/// `MAX_COMPARED` lamps of the site are measured. [judged on 20 photos]
 const MIN_SHINING: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]
@@ -31,7 +31,7 @@ const MAX_SITES: usize = 20_000;
 pub struct Site {
     /// Position of the site in the lattice cell that holds its first lamp, in unwarped pixels.
     pub at: DVec2,
-    /// The lamps at this site; lamps with most photo pixels come first.
+    /// The lamps at this site, sorted by their number of photo pixels, largest first.
     pub lamps: Vec<MeasuredLamp>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
@@ -39,12 +39,13 @@ pub struct Site {
     /// belongs to `unmarked` if the photo shines at the position, else to `missing`.
     pub unmarked: f64,
     pub missing: f64,
-    /// The part of `missing` that lies between lamps of the site, in photo pixels, and its number of positions.
+    /// `holes`: the part of `missing` that lies between lamps of the site, in photo pixels. `hole_count`: the number of
+    /// these positions.
     pub holes: f64,
     pub hole_count: usize,
-    /// First and last cell, along both periods, in which the pattern continues; cell 0 holds `at`. If no predicted lamp
-    /// is missing beyond the last lamp, the pattern has no known end on this side, and the value is infinite. If some
-    /// are missing, for example because a wall is near, the pattern ends with the last lamp. The first cell likewise.
+    /// First and last cell, along both periods, in which the pattern continues; cell 0 holds `at`. If predicted lamps
+    /// are missing beyond the outermost lamp on one side (a wall may be near), the pattern ends there with the
+    /// outermost lamp. If none is missing, the pattern has no known end on this side, and the value is infinite.
     pub cells: [DVec2; 2],
 }
 
@@ -74,8 +75,8 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Groups the lamps into sites of a lattice or a row. `None` if the law has no period, or if one of its
-    /// basis vectors is not a period because the pattern does not change along it.
+    /// Groups the lamps into sites of a lattice or a row. `None` if the law has no period, or if the pattern does not
+    /// change along one of the law's vectors, so that this vector is no true period.
     pub fn new(exemplar: &Exemplar, lamps: &[MeasuredLamp], law: Law) -> Option<Self> {
         let (basis, is_row) = match law {
             Law::Lattice(basis) => (basis, false),
@@ -140,7 +141,7 @@ impl Sites {
         self.list[k] = self.with_empty_positions(site, all, exemplar);
     }
 
-    /// The cell of a position, counted from the cell of the site at `at`. A row has only the first coordinate.
+    /// The cell of a position, counted from the cell of the site at `at`. For a row, the second coordinate is 0.
     fn cell(&self, at: DVec2, position: DVec2) -> DVec2 {
         let cell = (self.to_cells * (position - at)).round();
         if self.is_row { DVec2::new(cell.x, 0.0) } else { cell }
@@ -165,7 +166,7 @@ impl Sites {
             inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
         };
         let corners = [DVec2::ZERO, half, -half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y)];
-        // A lamp of equal size whose centre lies elsewhere contradicts the lattice, even if it covers the position.
+        // A lamp of similar size that is not at this site contradicts the lattice, even if it covers the position.
         let contradicts = |component: usize| {
             let is_displaced = |l: &MeasuredLamp| {
                 l.component == component

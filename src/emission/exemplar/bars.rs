@@ -15,8 +15,7 @@ use std::ops::Range;
 
 /// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const MAX_WIDTH: f64 = 0.05;
-/// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
-/// [bench photos:tune]
+/// Minimum depth of a bar ([`Bar`]). [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
 /// [bench photos:tune]
@@ -51,8 +50,9 @@ impl LitPlane<'_> {
     }
 }
 
-/// A bar: the first and last pixel position across it, and its depth. The depth is the share of the panes' luminance
-/// that the bar lacks.
+/// A bar: the first and last pixel position across it, and its depth. Each line of pixels along the bars lacks a share
+/// of the panes' luminance: the median along the line. The depth is this share for the bar's deepest line, minus its
+/// median over all lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     pub first: usize,

@@ -3,7 +3,8 @@
 //!
 //! A photo usually shows several lamps of a kind. A piece of light is a fragment if two conditions hold:
 //!
-//! - It covers far fewer photo pixels than a lamp of the smallest kind would cover in its place.
+//! - It covers far fewer photo pixels than a lamp of the smallest major kind would cover in its place. A kind is major
+//!   if it has a large share of the photo pixels of all lamps.
 //! - It lies close to another light, or only few pieces are similar to it.
 //!
 //! Fragments count as light in the pattern, but the texture does not show them.

@@ -18,8 +18,8 @@ pub struct Lights<'a> {
     /// For each texel, the number of its lamp, or 0.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number, the lamp's largest coverage. It counts as full coverage, because the confidence may stay
-    /// below 1.
+    /// For each lamp number, the largest coverage of the lamp's texels. It counts as full coverage, because the
+    /// confidence may be below 1 even in the middle of a lamp.
     full: Vec<f32>,
 }
 

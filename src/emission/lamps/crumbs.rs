@@ -30,9 +30,9 @@ pub fn remove(
     }
 }
 
-/// Removes the lamp texels for which `goes` returns true; its arguments are the index of the lamp and of the texel.
-/// Also removes texels at the rim of lamps, which light covers by less than half, if all lamp texels next to them are
-/// removed.
+/// Removes the light of the lamp texels for which `goes` returns true; its arguments are the index of the lamp and of
+/// the texel. The texels around a lamp may hold light, too, although light covers less than half of them. Their light
+/// is removed if all lamp texels next to them are removed.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

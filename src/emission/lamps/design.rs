@@ -33,9 +33,10 @@ const MIN_ELLIPSE_GAIN: f64 = 0.03;
 const MAX_SMEARED: f64 = 160.0;
 const MIN_SMEAR: f64 = 1.25;
 const MIN_COS_ALONG: f64 = 0.9;
-/// Lamps count as elongated in one common direction if the mean of unit vectors at twice the angles of their long axes
-/// is longer than this. Its length is 1 if all axes are parallel. If lamps are elongated along their own blur but not
-/// in a common direction, they are discs, whatever their size. [judged on 20 photos]
+/// Lamps count as elongated in one common direction if the mean of the unit vectors at angles 2α is longer than this,
+/// where α is the angle of a lamp's long axis. The mean has length 1 if all axes are parallel; α and α + π give the
+/// same vector. If lamps are elongated along their own blur but not in a common direction, they are discs, whatever
+/// their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
 /// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
 /// is the area of the intersection divided by the area of the union. [judged on 20 photos]

@@ -30,8 +30,8 @@ pub struct Rules {
     pub wraps: bool,
 }
 
-/// Finds the lamps of which a patch map copies enough. Lamps with the largest copied share are placed first. A lamp
-/// with few photo pixels is replaced by a similar lamp with many.
+/// Places the lamps of which a patch map copies at least the share [`MIN_SHARE`], those with the largest copied share
+/// first. Afterwards replaces each lamp with few photo pixels by a similar lamp with many.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = PatchLamps { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;

@@ -18,10 +18,10 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
 /// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine there in at least this share of
-/// the visible cells, weighted by photo pixels. [bench emission:perspective]
+/// the visible cells between its first and its last lamp, weighted by photo pixels. [bench emission:perspective]
 const MIN_OCCUPANCY: f64 = 0.93;
-/// If at most `MAX_FEW_DARK` visible cells have no shining lamp at a site, the share `MIN_OCCUPANCY_FEW_DARK` suffices
-/// instead of `MIN_OCCUPANCY`, because something may hide the missing lamps. [judged on 20 photos]
+/// If a site is dark in at most `MAX_FEW_DARK` of these cells, the share `MIN_OCCUPANCY_FEW_DARK` suffices instead of
+/// `MIN_OCCUPANCY`, because something may hide the missing lamps. [judged on 20 photos]
 const MIN_OCCUPANCY_FEW_DARK: f64 = 0.5;
 const MAX_FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
@@ -81,8 +81,9 @@ pub fn place(
     instances
 }
 
-/// The end of the pattern in the exemplar: a function that tells whether a position lies beyond the end of every site
-/// that gets a lamp in every cell. `None` if there is no such site, or if the pattern of one does not end.
+/// Finds where the pattern ends in the exemplar. Returns a function that is true for a position beyond the end. Only
+/// sites that get a lamp in every cell count, and the pattern ends where all of them have ended. `None` if there is no
+/// such site, or if one of them does not end in view.
 pub fn end<'a>(sites: &'a Sites, exemplar: &Exemplar) -> Option<impl Fn(DVec2) -> bool + use<'a>> {
     let filled: Vec<&Site> = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).collect();
     let all_end = !filled.is_empty() && filled.iter().all(|site| site.ends());

@@ -2,7 +2,7 @@
 //! light.
 //!
 //! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
-//! each lit texel and each adjacent unlit one; texels of a lamp that touch at a corner only stay connected.
+//! each lit texel and each adjacent unlit one. Lit texels that have only a corner in common belong to one lamp.
 //!
 //! The coverages of the two texels determine where the outline crosses the line between their centres. For a straight
 //! edge that crosses only these two texels, the sum of both coverages gives the exact position, whereas a level set of

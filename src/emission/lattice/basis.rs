@@ -13,9 +13,9 @@ const MAX_OFF_SITE: f64 = 0.12;
 /// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
-/// Makes a period whose slant, as a tangent, is below `max_slant` exactly parallel to its axis, and keeps its length.
-/// In a row of few lamps, a slant of a few percent may be mere disorder, and in a long row it would drift away from the
-/// axis.
+/// Returns a period, made exactly parallel to the x or y axis if its slant is below `max_slant`. The slant is the
+/// tangent of the angle between period and axis; the length stays. In a row of few lamps, a slant of a few percent may
+/// be mere disorder, but a long row that kept this slant would end far from the axis.
 pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     match () {
         _ if period.x.abs() < max_slant * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),

@@ -113,9 +113,11 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
 }
 
 /// The period with which a whole row of lamps repeats. It is the length of the exemplar along the row, including the
-/// free space at both ends, rounded to a multiple of `period`. `None` if the row may continue where it is not visible.
-/// It ends visibly if, at both ends, the exemplar extends beyond the place where the next lamp would begin, and the
-/// photo (if any) shows the place where that lamp's centre would lie.
+/// free space at both ends, rounded to a multiple of `period`. `None` unless the row ends visibly at both ends, because
+/// it may then continue where it is not visible. A visible end meets two conditions:
+///
+/// - The exemplar extends beyond the place where the next lamp would begin.
+/// - The photo, if there is one, shows the place where the centre of the next lamp would lie.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;

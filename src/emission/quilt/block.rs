@@ -12,7 +12,8 @@ pub struct Rect {
 }
 
 /// A run of adjacent pixels in a row of a block. `source` is the index of the exemplar pixel that the first pixel of
-/// the run shows; the further pixels show the exemplar pixels that follow. If the pixels are empty, it is [`NONE`].
+/// the run shows; the further pixels show the exemplar pixels that follow. `source` is [`NONE`] in a run of empty
+/// pixels.
 #[derive(Clone, Copy)]
 pub struct Run {
     pub x: usize,
