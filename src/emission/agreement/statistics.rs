@@ -130,8 +130,7 @@ impl Statistics {
 /// Root mean square distance of points from the nearest positions of a lattice. Its basis is `a`, `b`; its origin is
 /// chosen to fit the points. Distances are in cell coordinates: a step of `a`, or of `b`, has length 1.
 pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
-    // Convert the points to multiples of the periods. The circular mean of the fractional parts is the lattice's
-    // origin.
+    // Convert the points to cell coordinates. The circular mean of their fractional parts is the lattice's origin.
     let inverse = DMat2::from_cols(a, b).inverse();
     let cells: Vec<DVec2> = points.iter().map(|&p| inverse * p).collect();
     let angle =

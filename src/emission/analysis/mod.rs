@@ -186,7 +186,8 @@ impl Analysis {
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
-        // Turn lattices parallel to the axes of the room if they predict the lamps nearly as well after the turn.
+        // Turn lattices parallel to the axes of the unwarped image if they predict the lamps nearly as well after the
+        // turn.
         let own = own.aligned(exemplar, score);
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 
@@ -291,8 +292,8 @@ impl Analysis {
 }
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have
-/// a fixed score. NaN if the pattern does not change along one period of the law, as lines of light do not along their
-/// length: lamps are no evidence for such a period.
+/// a fixed score. NaN if the pattern does not change along one period of the law (lines of light do not change along
+/// their length), because only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
     match Sites::new(exemplar, &evidence.whole, law) {
         Some(sites) => sites.score(evidence),

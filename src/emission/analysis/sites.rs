@@ -29,14 +29,15 @@ const MAX_SITES: usize = 20_000;
 /// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Position of the site in the lattice cell that holds its first lamp, in unwarped pixels.
+    /// Position of the site in unwarped pixels: the mean position of its lamps, after each is moved by whole periods
+    /// next to the first lamp.
     pub at: DVec2,
     /// The lamps at this site, sorted by their number of photo pixels, largest first.
     pub lamps: Vec<MeasuredLamp>,
     /// Total area of the lamps in photo pixels.
     pub shown: f64,
-    /// Area, in photo pixels, of predicted lamps that the light mask lacks although their position is in full view. It
-    /// belongs to `unmarked` if the photo shines at the position, else to `missing`.
+    /// Area, in photo pixels, of lamps that the lattice predicts in full view but that the light mask lacks.
+    /// `unmarked`: at positions that shine in the photo. `missing`: at positions that do not.
     pub unmarked: f64,
     pub missing: f64,
     /// `holes`: the part of `missing` that lies between lamps of the site, in photo pixels. `hole_count`: the number of
@@ -147,7 +148,7 @@ impl Sites {
         if self.is_row { DVec2::new(cell.x, 0.0) } else { cell }
     }
 
-    /// Whether the pattern of a site continues at a position, and has not ended before it.
+    /// Whether the pattern of a site reaches a position, that is, has not ended before it.
     pub fn continues(&self, site: &Site, position: DVec2) -> bool {
         let cell = self.cell(site.at, position);
         cell.cmpge(site.cells[0]).all() && cell.cmple(site.cells[1]).all()
