@@ -70,7 +70,7 @@ pub struct Sites {
     /// Maps unwarped pixels to lattice cells. A row uses only the first coordinate, along its period.
     pub to_cells: DMat2,
     pub basis: [DVec2; 2],
-    /// Length of the shorter period.
+    /// Length of the shorter period, or of the only period of a row, in unwarped pixels.
     shortest: f64,
     is_row: bool,
 }

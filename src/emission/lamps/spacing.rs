@@ -49,7 +49,8 @@ pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instanc
         return instances;
     }
 
-    // Look up earlier copies in a grid whose cells are no smaller than the distance at which two copies may meet.
+    // Look up earlier copies in a grid. Its cells are as large as the longest lamp plus the minimum gap, so a copy that
+    // is too close lies in the same cell or in an adjacent one.
     let cell = frames.iter().map(|f| f.size.max_element()).fold(0.0, f64::max) + least;
     let mut grid: BTreeMap<[i64; 2], Vec<Frame>> = BTreeMap::new();
     let mut kept = Vec::new();

@@ -79,7 +79,8 @@ impl Autocorrelation {
             overlap[i] = n as f32;
             let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
             let least = 1e-9 * n;
-            // If neither image varies in the overlap, the correlation is 1 if their means are equal, else 0.
+            // The correlation is undefined if the image, or its shifted copy, does not vary in the overlap. Take 1 if
+            // neither varies and their means are equal, else 0.
             value[i] = if var1 > least && var2 > least {
                 ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
             } else {

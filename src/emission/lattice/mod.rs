@@ -125,9 +125,10 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < MAX_PARALLEL_SINE
 }
 
-/// The shortest shifts that map the lights onto themselves, with their correlations. A shift must move lamps onto
-/// lamps of the same kind, and its correlation must be at least `least`, and at least `relative` times the highest. If
-/// the lights do not change along an axis, a shift of one pixel along that axis comes first.
+/// The shortest shifts that map the lights onto themselves, with their correlations; at most `max_count`. A shift must
+/// move lamps onto lamps of the same kind. Its correlation must be at least `least`, and at least `relative` times the
+/// highest [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of all shifts. If the lights do not change along an
+/// axis, a shift of one pixel along that axis comes first.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

@@ -8,10 +8,11 @@ use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
 
-/// Adapts the patch map to the lattice `stretched` in place of the exemplar's lattice `own`. Each cell of the
-/// stretched lattice shows the patch at its centre. Pixels for which that patch has nothing usable keep their own
-/// patch. The texture, of `size` unwarped pixels, holds a whole number of cells, so opposite sides match without a
-/// seam. An axis along which the lights do not change is not divided into cells.
+/// Adapts the patch map to the lattice `stretched` in place of the exemplar's lattice `own`; both begin at `offset` in
+/// the texture. Each cell of the stretched lattice shows the patch at its centre. Where the exemplar has no usable
+/// pixel for this, a pixel of the texture keeps its own patch. The texture, of `size` unwarped pixels, holds a whole
+/// number of cells, so opposite sides match without a seam. An axis along which the lights do not change is not
+/// divided into cells.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,

@@ -90,7 +90,8 @@ fn columns_of_windows_at_unequal_distances_repeat_as_one() {
     };
     let cases: [(&[f64], usize, f64); 2] = [
         (&[40.0, 94.0, 128.0], 200, 200.0),
-        // One column of 30 pixels, and the wide bar of 20 pixels that the other direction shows.
+        // A single column shows no bar along x. It repeats at its width of 30 pixels, plus the 20 pixels of the wide
+        // bars along y.
         (&[5.0], 40, 50.0),
     ];
     for (columns, width, expected) in cases {
