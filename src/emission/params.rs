@@ -48,7 +48,7 @@ pub struct Params {
     /// Size of the texture in texels, each in `[1, 65536]`.
     pub width: usize,
     pub height: usize,
-    /// Unwarped pixels per texel, > 0.
+    /// Unwarped pixels per texel, in [`SCALES`].
     pub scale: f64,
     /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
     /// lights.
@@ -145,7 +145,8 @@ impl Params {
 }
 
 impl Input<'_> {
-    /// Checks the numbers of channels, and that all images have the same size.
+    /// Checks that the three unwarped images have one size, that `light` and `valid` have one channel, and that the
+    /// homography is finite.
     pub fn check(&self) -> Result<()> {
         self.unwarped.check_same_size("unwarped", self.light, "light")?;
         self.unwarped.check_same_size("unwarped", self.valid, "valid")?;
