@@ -78,7 +78,7 @@ pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     let size = size_at(place)?;
     let known = size.min(size_of::<P>());
     let mut params = P::defaults();
-    // SAFETY: the caller's struct has `size` bytes; the bytes that this version has too are copied, and any bits are
+    // SAFETY: the caller's struct has `size` bytes. At most the size of `P` is copied, and every bit pattern of `P` is
     // valid.
     let tail = unsafe {
         std::ptr::copy_nonoverlapping(place.cast::<u8>(), (&raw mut params).cast::<u8>(), known);
@@ -101,7 +101,7 @@ pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
     }
 }
 
-/// The caller's place for a report, with the size that the caller's compiler gave the report.
+/// The caller's memory for a report, and the size that the report has in the caller's version of the header.
 pub(super) struct Report<P> {
     place: *mut P,
     size: usize,

@@ -1,6 +1,7 @@
 //! Pattern
 //!
-//! Places the light pattern of a transfer on the surface: its size, rotation and offset, and the areas without lamps.
+//! Settings for the layout of a transfer's light pattern on the surface: its size, rotation and offset, and the areas
+//! without lamps.
 
 use super::params::versioned;
 use crate::error::{Error, Result};
@@ -12,10 +13,12 @@ pub type luxfer_pattern_scale = i32;
 /// The distance of the photo's camera from the plane with the lights. It is plane_distance of luxfer_transfer_params,
 /// or if that is 0, an estimate from the size of the lamps.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
-/// The length of the lamps: on the surface, luxfer_pattern_params.length is the median of their longer sides.
+/// The length of the lamps: the pattern is scaled until the median of their longer sides is
+/// luxfer_pattern_params.length.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
-/// The spacing of the lamps: on the surface, luxfer_pattern_params.length is the shorter period of their lattice or,
-/// without a lattice, the median distance from a lamp to its nearest neighbour.
+/// The spacing of the lamps: the pattern is scaled until this spacing is luxfer_pattern_params.length. The spacing is
+/// the shorter period of the lamps' lattice or, without a lattice, the median distance from a lamp to its nearest
+/// neighbour.
 pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
 /// The width of the surface: as many lamps lie side by side on it as on the plane in the photo.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
@@ -32,17 +35,18 @@ pub struct luxfer_pattern_params {
     /// Length of a lamp for LUXFER_PATTERN_LAMP, or spacing of the lamps for LUXFER_PATTERN_SPACING, in metres, in
     /// [1e-6, 1e6]; default 1. Other values of scale do not use it.
     pub length: f64,
-    /// Side of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, but not so fine that the
-    /// texture exceeds max_texels of luxfer_transfer_params.
+    /// Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or a
+    /// larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. A size with which the
+    /// texture exceeds max_texels is an error.
     pub texel_size: f64,
     /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only:
-    /// lamps without a lattice have no fixed places and are not shifted.
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice have
+    /// no fixed places: for them, a shift other than 0 is an error unless the texture is tileable.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
     /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the
-    /// default -1, lamps at the edge of the surface are kept, and the edge cuts them.
+    /// default -1, only lamps that touch a zone are left out, and the edge of the surface cuts lamps.
     pub margin: f64,
 }
 

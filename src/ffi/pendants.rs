@@ -1,9 +1,10 @@
 //! Pendants
 //!
 //! Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
-//! axis: a globe, a drum, a cone, or any other profile. The body follows from the outline of the lamp in a mask and
-//! from the camera. Its size follows only if a length is known besides the distance of the ceiling, because a lamp of
-//! twice the size at twice the distance looks alike.
+//! axis: a globe, a drum, a cone, or any other profile. The shape of the body is computed from the camera and the
+//! outline of the lamp in a mask. The size is not: a lamp of twice the size at twice the distance has the same outline.
+//! The size requires the height of the ceiling and one more length, or the point of the photo where the suspension (the
+//! cable or rod on which the lamp hangs) meets the ceiling.
 
 use super::context::luxfer_context;
 use super::geometry::list;
@@ -44,7 +45,7 @@ pub const LUXFER_BODY_OTHER: luxfer_body = 7;
 
 /// The length that determines the size of lamps: a LUXFER_KNOWN_ value.
 pub type luxfer_known = i32;
-/// Only suspensions, if any are given.
+/// No length is known; suspensions determine the size if any are given.
 pub const LUXFER_KNOWN_NOTHING: luxfer_known = 0;
 /// The distance of the first lamp's top below the ceiling.
 pub const LUXFER_KNOWN_DROP: luxfer_known = 1;
@@ -57,14 +58,16 @@ pub const LUXFER_KNOWN_SPACING: luxfer_known = 3;
 pub const LUXFER_DOUBT_SIZE: u32 = 1;
 /// The probability of the kind is below 0.9.
 pub const LUXFER_DOUBT_KIND: u32 = 2;
-/// The photo clips more than a tenth of the lamp's pixels: it may be brighter, and its glare may enlarge the outline.
+/// The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its glare may
+/// enlarge the outline.
 pub const LUXFER_DOUBT_CLIPPED: u32 = 4;
 /// The border of the photo cuts off a part of the outline.
 pub const LUXFER_DOUBT_CUT: u32 = 8;
-/// The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the diameter.
+/// The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of the largest
+/// diameter.
 pub const LUXFER_DOUBT_HIDDEN: u32 = 16;
 
-/// Largest number of lamps that luxfer_pendants_find finds, and of suspensions.
+/// Largest number of lamps, and of suspensions, that luxfer_pendants_find accepts.
 pub const LUXFER_MAX_PENDANTS: u32 = 16;
 
 /// Settings of the fit of bodies. Fill them with luxfer_pendants_params_init.
@@ -75,35 +78,36 @@ pub struct luxfer_pendants_params {
     pub struct_size: u32,
     /// 1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own.
     pub alike: u32,
-    /// 1: all lamps hang equally high, which needs alike = 1; 0, the default: each hangs at its own height.
+    /// 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height.
     pub level: u32,
-    /// 1, the default: the outline is moved to the place where the photo's luminance is half of the way from the lamp
-    /// to its surroundings; 0: the outline is that of the mask.
+    /// 1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the luminances
+    /// inside and outside the lamp; 0: the outline is that of the mask.
     pub refine: u32,
     /// Meaning of known_length: a LUXFER_KNOWN_ value; default LUXFER_KNOWN_NOTHING.
     pub known: luxfer_known,
     /// Must be 0.
     pub reserved: u32,
-    /// The known length in metres, in [1e-4, 1e4], a drop in [0, 1e4]; not used with LUXFER_KNOWN_NOTHING, and then 0,
-    /// the default.
+    /// The known length in metres: in [0, 1e4] for LUXFER_KNOWN_DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
+    /// be 0, the default, with LUXFER_KNOWN_NOTHING.
     pub known_length: f64,
-    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: lengths are then multiples of
-    /// this height.
+    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in multiples
+    /// of the true height.
     pub ceiling: f64,
     /// Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1.
     pub suspension_error: f64,
-    /// The camera, if no rectification is given: its focal length in pixels, > 0; default 0.
+    /// Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
+    /// a rectification.
     pub focal: f64,
-    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of
-    /// a focal length that was assumed or read from metadata is used if this is 0.
+    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a rectification
+    /// is given, the rectification's own error is used if its focal length was assumed or read from metadata.
     pub focal_error: f64,
-    /// Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0.
-    /// Not used with a rectification, which has its own.
+    /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
+    /// 0. Not used with a rectification, which has its own value.
     pub axes_error: f64,
-    /// Principal point in pixels; NaN, the default: the photo's centre.
+    /// Principal point in pixels; NaN, the default: the photo's centre. Not used with a rectification.
     pub principal: [f64; 2],
     /// Room axes as unit vectors in camera space, as in luxfer_rectify_report.axes: axis 1 points down. Default: a
-    /// camera that looks along a level axis, without roll.
+    /// camera that looks horizontally, without roll. Not used with a rectification.
     pub axes: [[f64; 3]; 3],
 }
 
@@ -154,8 +158,9 @@ impl luxfer_pendants_params {
         }
     }
 
-    /// Returns the camera of the rectification, or of these settings if there is none, and the cameras that differ from
-    /// it by one standard deviation.
+    /// Returns the camera of the rectification, or of these settings if `view` is NULL. Also returns cameras of which
+    /// each differs from this camera by one standard deviation of one quantity: the direction of the vertical axis, or
+    /// the focal length.
     fn cameras(
         &self,
         context: &Arc<Context>,
@@ -202,9 +207,9 @@ impl luxfer_pendants_params {
     }
 }
 
-/// A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value, the lower
-/// end and the upper end of the 95 % interval. If the photo does not determine a value, the value is NaN and the
-/// interval holds what is known; its ends may be infinite.
+/// A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value, and the
+/// lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are the known
+/// bounds, which may be 0 and infinity. A value without an estimate is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_pendant {
@@ -226,22 +231,24 @@ pub struct luxfer_pendant {
     pub height: [f64; 3],
     /// Interval of the distance in metres of the body's top below the ceiling.
     pub drop: [f64; 3],
-    /// Intervals of the place of the body's middle relative to the camera: along room axes 0 and 2, which are
-    /// horizontal, and upwards. In metres; with LUXFER_DOUBT_SIZE in multiples of the distance of the first lamp's
-    /// middle.
+    /// Intervals of the position of the body's middle relative to the camera: along the horizontal room axes 0 and 2,
+    /// and upwards. The unit is the metre; with LUXFER_DOUBT_SIZE it is the distance of the first lamp's middle from
+    /// the camera.
     pub centre: [[f64; 3]; 3],
-    /// Median distance in pixels between the outline and the fitted body.
+    /// Median distance in pixels between the outline of the lamp and that of the fitted body.
     pub residual: f64,
     /// Share of the outline that the photo's border cuts off, in [0, 0.3].
     pub cut: f64,
     /// Share of the lamp's pixels that the photo clips, in [0, 1].
     pub clipped: f64,
     /// Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the largest
-    /// diameter. The rest is 0.
+    /// diameter. Elements from profile_count on are 0.
     pub profile: [[f32; 2]; 65],
-    /// Half of the 95 % interval of each radius of the profile. It is large where the body hides its own profile.
+    /// Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is large where
+    /// the body hides its own profile.
     pub profile_error: [f32; 65],
-    /// Mean radiance of the lamp in 16 bands of equal height, from bottom to top, in the units of the photo.
+    /// Mean radiance of the lamp in 16 bands of equal height, from bottom to top: linear RGB in the units of the photo.
+    /// Where the photo is clipped, it is only a lower bound.
     pub radiance: [[f32; 3]; 16],
     /// Outline of the fitted body in the photo, a closed polygon: x and y in pixels.
     pub contour: [[f32; 2]; 180],
@@ -275,13 +282,14 @@ versioned!(luxfer_pendant, [REPORT_SIZE], {
 });
 
 const _: () = assert!(LUXFER_MAX_PENDANTS as usize == fixture::MAX_LAMPS);
-/// Largest number of places.
+/// Largest number of lamps that one call adds to a scene.
 const MAX_PLACES: u32 = 1024;
-/// Below this probability a kind is in doubt. [convention]
+/// A kind with a lower probability gets LUXFER_DOUBT_KIND. [convention]
 const SURE: f64 = 0.9;
-/// A larger share of clipped pixels is a doubt. [convention]
+/// A lamp with a larger share of clipped pixels gets LUXFER_DOUBT_CLIPPED. [convention]
 const CLIPPED: f64 = 0.1;
-/// A larger half-interval of a radius, in diameters, is a doubt. [convention]
+/// If half of the 95 % interval of a radius exceeds this multiple of the largest diameter, the lamp gets
+/// LUXFER_DOUBT_HIDDEN. [convention]
 const HIDDEN: f64 = 0.05;
 
 impl luxfer_pendant {
@@ -312,7 +320,8 @@ impl luxfer_pendant {
         report
     }
 
-    /// Returns the body that the report describes; the caller may have changed it.
+    /// Returns the body that the struct describes. The caller may have changed the struct, so its profile_count is
+    /// checked.
     fn body(&self) -> Result<Body> {
         let count = check_range("profile_count", self.profile_count, 2, 65)? as usize;
         let vertex = |&[radius, height]: &[f32; 2]| DVec2::new(f64::from(radius), f64::from(height));
@@ -347,16 +356,18 @@ fn doubts(found: &Fixture, lamp: &Lamp) -> u32 {
 }
 
 /// Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
-/// 1 to 16 lamps, without their suspensions; each connected region is a lamp, numbered from the top. view is a
-/// rectification of the photo whose job has succeeded; NULL: the camera is that of params. suspensions has the
-/// coordinates x and y in pixels of suspension_count places where suspensions meet the ceiling, each for the lamp
-/// whose axis passes nearest; NULL if there are none. params may be NULL for the defaults. pendants is an array of
-/// capacity structs; size is sizeof one of them. *count receives the number of lamps; those beyond the capacity are
-/// left out. The call takes about 0.2 seconds for a lamp, and more for many lamps that are alike; luxfer_job_start runs
-/// it as a job. Any thread.
-/// LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not
-/// that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has
-/// succeeded; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp; lamps are numbered in the
+/// order of their topmost pixels. view is a rectification of the photo whose job has succeeded; NULL: the camera is
+/// that of params. params may be NULL for the defaults.
+///
+/// suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
+/// there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp may have one point.
+/// pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps, even if
+/// it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp, and
+/// more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+/// LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
+/// of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
+/// LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_pendants_find(
     context: *mut luxfer_context,
@@ -399,9 +410,9 @@ pub unsafe extern "C" fn luxfer_pendants_find(
 /// Adds count meshes, 1 to 1024, to a scene, each with the body of a lamp that luxfer_pendants_find has found. places
 /// has the coordinates x, y and z in metres of the middle of each body's upper end. diameter is the largest diameter in
 /// metres, in [0.001, 1e4]; 0: the diameter found. The meshes share a new material, which emits light with the photo's
-/// colours along the height of the body; where the photo is clipped, they are too dark. luminance is the luminance in
-/// cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of
-/// the first new mesh and that of the material; each pointer may be NULL. Any thread.
+/// colours along the height of the body. Where the photo clips the lamp, this emission is too dark. luminance is the
+/// luminance in cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive
+/// the index of the first new mesh and that of the material; each pointer may be NULL. Any thread.
 /// LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]
@@ -437,7 +448,8 @@ pub unsafe extern "C" fn luxfer_scene_add_pendants(
     })
 }
 
-/// Reads `count` points of `N` coordinates from the caller's memory; no points if `count` is 0.
+/// Reads `count` points of `N` coordinates from the caller's memory; an error unless `count` is in `[least, most]`.
+/// `place` may be NULL if `count` is 0.
 fn points<const N: usize>(place: *const f64, count: u32, least: u32, most: u32, name: &str) -> Result<Vec<[f64; N]>> {
     check_range(&format!("number of {name}s"), count, least, most)?;
     if count == 0 {
