@@ -71,7 +71,7 @@ fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) ->
     Some(MeasuredLamp { centre, size, ..*part })
 }
 
-/// Whether the border cuts the component's [left, top] sides, and whether it cuts its [right, bottom] sides.
+/// Whether the border cuts the left and the top side of a component, and whether it cuts the right and the bottom side.
 fn cut_sides(exemplar: &Exemplar, component: usize, lamp: &Component) -> [BVec2; 2] {
     let Exemplar { width, height, ref shown, ref components, .. } = *exemplar;
     let [mut left, mut right, mut top, mut bottom] = [0usize; 4];

@@ -31,11 +31,12 @@ const MIN_SECTION_DEPTH: f32 = 0.25;
 /// Bars have a period if the distances between them deviate from their mean by at most this share. [bench photos:tune]
 const MAX_SPACING_DEVIATION: f64 = 0.12;
 
-/// A plane with lights in the unwarped image, and the map into the photo.
+/// A plane with lights in the unwarped image, and the map from unwarped pixels into the photo.
 pub struct LitPlane<'a> {
     pub unwarped: &'a Image,
-    /// Confidence of each pixel that it is light.
+    /// Confidence of each pixel that it is light, in `[0, 1]`.
     pub light: &'a Image,
+    /// 1 for pixels on the plane, else 0.
     pub valid: &'a Image,
     pub to_photo: Option<Homography>,
 }
@@ -50,9 +51,10 @@ impl LitPlane<'_> {
     }
 }
 
-/// A bar: the first and last pixel position across it, and its depth. Each line of pixels along the bars lacks a share
-/// of the panes' luminance: the median along the line. The depth is this share for the bar's deepest line, minus its
-/// median over all lines.
+/// A bar along the columns or the rows of the image: the range of columns or rows that it covers, and its depth.
+///
+/// The depth of a single column (or row) is the median, along it, of the share of the panes' luminance that its pixels
+/// lack. The depth of a bar is the depth of its deepest column, minus the median depth of all columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     pub first: usize,
@@ -66,16 +68,18 @@ impl Bar {
     }
 }
 
-/// View of the plane for detecting the bars of one direction. `across` and `along` are the numbers of pixel positions
-/// across and along the bars.
+/// View of the plane for detecting the bars of one direction: columns if `is_column`, else rows. A pixel has the
+/// position u across the bars and v along them. `across` and `along` are the numbers of these positions. `widest` is
+/// the maximum width of a bar in pixels.
 pub struct Lines<'a> {
     plane: &'a LitPlane<'a>,
     is_column: bool,
     across: usize,
     along: usize,
     widest: usize,
-    /// Share by which each pixel is darker than the light beside it, at least 0; NaN if there is no light on one side.
-    /// The light of a side is the brightest lit pixel within `widest` positions; the darker side counts.
+    /// For each pixel, the share by which it is darker than the light beside it: max(0, 1 - L / min(a, b)). L is its
+    /// luminance. a and b are the luminances of the brightest lit pixels within `widest` positions before and after it,
+    /// across the bars. NaN if there is no light on one side, or if the pixel is not on the plane.
     depth: Vec<f32>,
 }
 
@@ -118,8 +122,8 @@ impl<'a> Lines<'a> {
     }
 
     /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness. `None`
-    /// if fewer than `least` pixels have light on both sides. The median ignores bars that cross, because they are
-    /// dark at a few of these pixels only.
+    /// if fewer than `least` pixels have light on both sides. Bars that cross do not change the median, because they
+    /// cover only a few of these pixels.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.section_length()) {
@@ -145,8 +149,8 @@ impl<'a> Lines<'a> {
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
-        // Take the deepest position first. A bar extends as far as the depth is at least half of the depth at this
-        // position.
+        // Find the bars, the deepest one first. `excess` is the depth of each position across the bars minus the median
+        // depth. A bar extends from its deepest position to both sides as far as the excess is at least half as large.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
@@ -154,7 +158,7 @@ impl<'a> Lines<'a> {
             let first = (0..=peak).rev().take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             let last = (peak..self.across).take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             bars.push(Bar { first, last, depth });
-            // The flanks, where the depth falls off, belong to the bar as well: clear them.
+            // Clear the bar and its flanks, where the excess falls off, so that they are not found as further bars.
             let falls = |a: usize, b: usize| excess[b] <= excess[a] && excess[b] > 0.0;
             let start = (1..=first).rev().take_while(|&u| falls(u, u - 1)).last().map_or(first, |u| u - 1);
             let end = (last..self.across - 1).take_while(|&u| falls(u, u + 1)).last().map_or(last, |u| u + 1);
@@ -165,8 +169,8 @@ impl<'a> Lines<'a> {
         bars
     }
 
-    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns no bars if the found
-    /// bars have no period.
+    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns no bars if there are
+    /// fewer than three found bars, or if they have no period.
     pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
         let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
@@ -201,13 +205,13 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Removes a bar from the light. Sections that show no bar stay light if the photo is sharp enough there: if its
-    /// sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
+    /// Removes a bar from the light mask. Sections that show no bar stay lit if the photo is sharp enough there, that
+    /// is, if its sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, sections: &[Section], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Section| s.sharpness >= bluntest && s.depth < MIN_SECTION_DEPTH * bar.depth;
         let absent: Vec<bool> = sections.iter().map(is_absent).collect();
         // Where another bar crosses, this bar seems absent, because the pixels on both sides of it belong to the other
-        // bar and are as dark. Such a section is removed nevertheless.
+        // bar and are as dark. So a section without a bar is removed as well if the bar shows close by on both sides.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| {
             is_shown(n.saturating_sub(MAX_HIDDEN_SECTIONS), n) && is_shown(n + 1, n + 1 + MAX_HIDDEN_SECTIONS)
@@ -229,22 +233,23 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// A section of a bar: its positions along the bar, the depth there, and the photo's sharpness in photo pixels per
-/// unwarped pixel.
+/// A section of a bar: its positions along the bar, the depth there, and the photo's sharpness across the bar, in photo
+/// pixels per unwarped pixel.
 pub struct Section {
     along: Range<usize>,
     depth: f32,
     sharpness: f64,
 }
 
-/// The lowest sharpness of the sections in which a bar is visible.
+/// The lowest sharpness of the sections in which a bar is clearly visible: at least half as deep as the whole bar.
+/// Infinite if there are none.
 pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 
-/// For each position of a line, computes the brightest light among the `count` positions before it; 0 if there is
-/// none.
+/// For each position of a line of pixels, writes the maximum of `light` over the `count` positions before it into
+/// `brightest`; 0 for the first position.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
     // Keep the positions that may still become the maximum of a window, the brightest first (monotonic queue).
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();

@@ -11,7 +11,7 @@ pub struct Component {
     pub area: usize,
     /// Mean of the pixel centres.
     pub centre: DVec2,
-    /// First column and row, last column and row, inclusive.
+    /// `min`: first column and first row. `max`: last column and last row, inclusive.
     pub min: [usize; 2],
     pub max: [usize; 2],
 }
@@ -55,13 +55,14 @@ impl Components {
     }
 }
 
-/// Labels the 8-connected components in two passes with union-find (Rosenfeld and Pfaltz 1966).
+/// Finds the 8-connected components of the pixels for which `lit` is true, in two passes with union-find (Rosenfeld and
+/// Pfaltz 1966).
 pub fn find(width: usize, height: usize, lit: impl Fn(usize) -> bool) -> Result<Components> {
     let mut labels = try_vec(width * height, 0u32)?;
     let mut parent: Vec<u32> = vec![0];
 
-    // First pass: give each pixel the smallest label among its four neighbours already visited; record which labels
-    // meet.
+    // First pass: give each lit pixel the smallest label among its four neighbours already visited (left, and three
+    // above), or else a new label. Record in `parent` which labels belong to one component.
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;

@@ -3,7 +3,7 @@
 use crate::geometry::Homography;
 use glam::{DMat2, DVec2};
 
-/// The map from the unwarped image into the photo near a point: its first-order approximation.
+/// First-order approximation of the map from the unwarped image into the photo, near a point.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalMap {
     /// Derivative of the map, in photo pixels per unwarped pixel.
@@ -11,7 +11,8 @@ pub struct LocalMap {
 }
 
 impl LocalMap {
-    /// The map near a point. Without a homography, the unwarped image stands for the photo.
+    /// The map near a point of the unwarped image. Without a homography, the unwarped image stands for the photo: the
+    /// map is the identity.
     pub fn new(to_photo: Option<Homography>, at: DVec2) -> Self {
         let jacobian = to_photo.map_or(DMat2::IDENTITY, |h| {
             let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
@@ -30,8 +31,8 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// Length of a photo pixel in unwarped pixels, along each axis: if an edge perpendicular to the axis moves by one
-    /// pixel in the photo, it moves by this length in the unwarped image.
+    /// Length of a photo pixel in unwarped pixels, along x and along y. If an edge of a lamp perpendicular to the axis
+    /// moves by one pixel in the photo, it moves by this length in the unwarped image.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());

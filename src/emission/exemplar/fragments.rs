@@ -7,7 +7,7 @@
 //!   if it has a large share of the photo pixels of all lamps.
 //! - It lies close to another light, or only few pieces are similar to it.
 //!
-//! Fragments count as light in the pattern, but the texture does not show them.
+//! A fragment gets the role [`Role::Cut`]: it counts as light in the statistics, but the texture does not show it.
 
 use super::components::Components;
 use super::foreshortening::LocalMap;
@@ -38,8 +38,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Find the major kinds, which have a large share of the lamps' photo pixels, and the major kind with the smallest
-    // lamps.
+    // Of the major kinds (those with a large share of the lamps' photo pixels), find the one with the smallest lamps.
     let kinds = MeasuredLamp::kinds(&lamps);
     let is_major = |kind: &&Vec<MeasuredLamp>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND_SHARE * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {

@@ -9,19 +9,21 @@ use glam::DVec2;
 /// Two lamps are of one kind if each side differs by at most this share, plus an allowance for measurement error and
 /// bloom. [judged on 20 photos]
 const MAX_SIDE_DIFFERENCE: f64 = 0.2;
-/// Allowances when sides are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`: lengthening of
-/// a side by bloom, which differs between lamps if unwarping magnifies them differently. [judged on 20 photos]
+/// Allowances when sides of two lamps are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`:
+/// lengthening of a side by bloom. In unwarped pixels, bloom differs between the lamps if unwarping magnifies them
+/// differently. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
 /// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
-/// `MAX_SITE_DIFFERENCE`: maximum difference of a side as a share. `SITE_NOISE`: measurement error of each lamp, in
-/// photo pixels. [judged on 20 photos]
+/// `MAX_SITE_DIFFERENCE`: maximum difference of a side, as a share of the longer one. `SITE_NOISE`: measurement error
+/// of each side, in photo pixels. [judged on 20 photos]
 const MAX_SITE_DIFFERENCE: f64 = 0.33;
 const SITE_NOISE: f64 = 2.5;
 
 /// A lamp of the exemplar, as evidence for kinds of lamps and for a lattice. Position and size are in unwarped pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredLamp {
+    /// Index of the lamp's component in the exemplar.
     pub component: usize,
     pub centre: DVec2,
     pub size: DVec2,

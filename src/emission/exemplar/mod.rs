@@ -88,8 +88,8 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern where `is_left_out` is false, with lengths in unwarped pixels. `periods` has the
-    /// meaning of [`Pattern::periods`].
+    /// The statistics of the pattern, with lengths in unwarped pixels. Points of the unwarped image for which
+    /// `is_left_out` is true are left out. `periods` has the meaning of [`Pattern::periods`].
     pub fn statistics(
         &self,
         unwarped: &Image,
@@ -127,7 +127,7 @@ impl Exemplar {
         self.lit_share >= MIN_LUMINOUS_SHARE
     }
 
-    /// The bounding box of the lights: first column and row, last column and row, inclusive.
+    /// The bounding box of the lights: `[[first column, first row], [last column, last row]]`, inclusive.
     fn box_of_lights(&self) -> [[usize; 2]; 2] {
         let corners =
             |a: [usize; 2], b: [usize; 2], pick: fn(usize, usize) -> usize| [pick(a[0], b[0]), pick(a[1], b[1])];
@@ -141,8 +141,8 @@ impl Exemplar {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }
 
-    /// The components whose role fulfils `has_role`, as evidence for a lattice, in descending order of their photo
-    /// pixels.
+    /// The components for whose role `has_role` returns true, as evidence for a lattice, in descending order of their
+    /// number of photo pixels.
     pub fn measured_lamps(&self, has_role: impl Fn(Role) -> bool) -> Vec<MeasuredLamp> {
         let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
         let mut all: Vec<MeasuredLamp> =
@@ -186,7 +186,7 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     let mut components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
     let mut photo_area = photo_areas(&components, photo.map(|p| p.1));
     if photo.is_some() {
-        // Drop lights with fewer photo pixels than a lamp has: remnants of other lights' edges, or noise.
+        // Drop lights that cover too few photo pixels to be lamps: remnants of other lights' edges, or noise.
         let least = photo_area.iter().copied().fold(0.0, f64::max).min(MIN_LAMP);
         components = components::find(width, height, |i| {
             components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= least)
@@ -201,7 +201,8 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     Ok((components, photo_area))
 }
 
-/// Area of each component in the photo, to first order; without a photo, its area in the unwarped image.
+/// Area of each component in photo pixels, by the magnification at its centre; without a photo, its area in unwarped
+/// pixels.
 fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
     components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
 }

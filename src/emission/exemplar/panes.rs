@@ -49,8 +49,8 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     Ok(Some(light))
 }
 
-/// Removes the bars of one direction from the light. Returns the bars, in order, and whether any lit pixel was
-/// removed.
+/// Removes the bars of one direction from the light mask. Returns the bars in the order of their position, and whether
+/// any lit pixel was removed.
 fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut bars = lines.bars();
     let mut is_changed = false;
@@ -72,7 +72,7 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     (bars, is_changed)
 }
 
-/// The ranges of positions between bars.
+/// The ranges of positions (columns or rows) between bars, and between the image border and the outermost bars.
 fn between(bars: &[Bar], size: usize) -> Vec<Range<usize>> {
     let starts = std::iter::once(0).chain(bars.iter().map(|bar| bar.last + 1));
     let ends = bars.iter().map(|bar| bar.first).chain(std::iter::once(size));
@@ -123,8 +123,8 @@ fn fill(cell: &Cell, light: &mut Image) {
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Fills narrow gaps between lit pixels of a row or column. The line is given by its first pixel, the step to the next
-/// pixel, and the number of pixels.
+/// Fills narrow gaps between lit pixels of a row or column, which is given by the index of its first pixel, the step to
+/// the next pixel, and the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * MAX_LEADING_SHARE) as usize;
     let mut last = None;
@@ -149,8 +149,9 @@ mod tests {
         n % 40 < 5 || n % 40 >= 35
     }
 
-    /// A ceiling of panes of 30 pixels, separated by bars of 10 pixels with the given luminance. The mask covers all
-    /// of it except a margin.
+    /// Unwarped image, light mask and validity of a ceiling: panes with sides of 30 pixels and the luminance 1,
+    /// separated by bars of 10 pixels whose luminance is `bar(x, y)`. The mask covers panes and bars, except for a
+    /// margin.
     fn ceiling(bar: impl Fn(usize, usize) -> f32) -> [Image; 3] {
         let is_inside = |n: usize| (5..SIDE - 5).contains(&n);
         let colour = |x: usize, y: usize| match is_inside(x) && is_inside(y) {

@@ -22,7 +22,7 @@ pub enum Role {
     /// A lamp that counts as whole although a few of its pixels touch the border.
     WholeAtBorder,
     /// The visible part of a lamp that the border cuts and that resembles a whole lamp. The texture does not show it:
-    /// whole lamps take its place.
+    /// whole lamps take its place. Fragments ([`super::fragments`]) get this role as well.
     Cut,
     /// A light that the border cuts and that resembles no whole lamp. The visible part is copied as one piece.
     Partial,
@@ -42,7 +42,7 @@ impl Role {
     }
 }
 
-/// Finds the role of each component of a `width` × `height` image.
+/// Finds the role of each component of a `width` × `height` image. `shown` tells which pixels the photo shows.
 pub fn classify(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<Role> {
     let contacts = contacts(components, shown, width, height);
     let is_whole = |(c, &n): (&Component, &usize)| {

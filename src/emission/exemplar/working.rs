@@ -7,9 +7,9 @@ use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Limits for the contrast of a box with its surroundings. The inside is the box scaled by `INNER`. The surroundings
-/// are the box scaled by `OUTER`, without the box itself; only pixels of which lights cover less than the share
-/// `UNLIT` count. [judged on 20 photos]
+/// The regions that [`Working::contrast`] compares for a given box. The inside is the box scaled by `INNER`. The
+/// surroundings are the box scaled by `OUTER`, without the box itself. Of the surroundings, only dark pixels count:
+/// lights cover less than the share `UNLIT` of them. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;
@@ -26,14 +26,14 @@ pub struct Working {
     pub confidence: Vec<f32>,
     /// Share of each pixel that lights cover; cut lamps are left out.
     pub coverage: Vec<f32>,
-    /// Whether patches may copy a pixel: the photo shows it, and it is not part of a cut lamp
+    /// Whether patches may copy a pixel: the photo shows all of it, and no part of it belongs to a cut lamp
     /// ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// `shown`: whether the photo shows a pixel. `shown_coverage`: the share of the pixel that lights cover, including
-    /// cut lamps. The lattice is found from both.
+    /// `shown`: whether the photo shows all of a pixel. `shown_coverage`: the share of the pixel that lights cover,
+    /// including cut lamps. The lattice is found from both.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    /// Mean luminance of the part of each pixel that the photo shows, lights included.
+    /// Mean luminance of each pixel, lights included. Parts that the photo does not show count as 0.
     pub luminance: Vec<f32>,
 }
 
@@ -101,9 +101,9 @@ impl Working {
         self.coverage[pixel] >= 0.5
     }
 
-    /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
-    /// half-extents in unwarped pixels. `None` if the photo shows no pixel of the box, or no pixel of the
-    /// surroundings.
+    /// Mean luminance of the inner part of a box minus the mean luminance of its unlit surroundings. The box is given
+    /// by its centre and half its sides, in unwarped pixels. `None` if the photo shows no pixel of the inner part, or
+    /// no unlit pixel of the surroundings.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];
