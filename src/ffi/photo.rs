@@ -23,9 +23,9 @@ pub const LUXFER_FILE_COLOUR_ASSUMED: luxfer_file_colour = 1;
 pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
 /// The file states another colour space. The colours were converted to linear Rec.709.
 pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
-/// The file states a colour space that the library cannot convert, such as a damaged profile, or has the inks of CMYK
-/// without a profile. The colours were read as if the file stated none, so saturated colours may be wrong. Warn the
-/// user, and ask for an export of the photo as sRGB.
+/// The library cannot convert the colours of the file, for example because its profile is damaged, or because it is in
+/// CMYK without a profile. The colours were read as if the file stated no colour space, so saturated colours may be
+/// wrong. Warn the user, and ask for an export of the photo as sRGB.
 pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
 pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;
@@ -55,11 +55,11 @@ pub struct luxfer_photo_metadata {
     /// speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
     /// brightness keep these tags.
     pub white_luminance: f64,
-    /// Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-    /// standard output sensitivity and not a saturation-based speed.
+    /// Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO speed is a
+    /// standard output sensitivity (ISO 12232) instead of a saturation-based speed.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
-    /// recommended exposure index.
+    /// Upper bound of white_luminance: twice white_luminance. If the ISO speed is a recommended exposure index (ISO
+    /// 12232), the camera may have up to about one stop of headroom below white.
     pub white_luminance_high: f64,
     /// How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value.
     pub colour: luxfer_file_colour,

@@ -22,10 +22,11 @@ pub struct luxfer_glare_report {
     pub struct_size: u32,
     /// Number of glare sources.
     pub sources: u32,
-    /// Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity without
-    /// sources.
+    /// Unified glare rating (CIE 117): below 10 the glare causes no discomfort; 19 is the limit for offices; -infinity
+    /// without sources.
     pub ugr: f64,
-    /// Luminance of the background in cd/m².
+    /// Background luminance of the rating in cd/m²: the mean over the pixels that are not glare sources, weighted by
+    /// their contribution to the illuminance at the eye.
     pub background: f64,
     /// The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources.
     pub threshold: f64,
@@ -99,9 +100,10 @@ pub unsafe extern "C" fn luxfer_temperature_to_colour(
 }
 
 /// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
-/// level camera whose vertical angle of view is fov_y in radians. Glare sources are the connected patches with a
-/// luminance of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better
-/// estimate of the background luminance. size is sizeof *report. Any thread.
+/// level camera whose vertical angle of view is fov_y in radians, in [0.001, pi - 0.001]. Glare sources are the
+/// connected regions of pixels with a luminance of at least threshold, in cd/m², in [0, 1e12]. If threshold is 0, five
+/// times the mean luminance of the image is used. A wider angle of view gives a better estimate of the background
+/// luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_glare(

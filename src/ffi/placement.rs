@@ -1,7 +1,8 @@
 //! Placement
 //!
 //! Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
-//! a given radiance. The search is a gradient descent on the map of luxfer_importance and traces no more paths.
+//! a given radiance. The search is a gradient descent on the map that a luxfer_importance has traced; it traces no
+//! paths itself.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -20,7 +21,8 @@ pub type luxfer_aim = i32;
 pub const LUXFER_AIM_MAX_LUMINANCE: luxfer_aim = 0;
 /// Make the luminance of the target as small as possible.
 pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
-/// Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance.
+/// Bring the mean radiance of the target, under the texture and all other light, nearest to
+/// luxfer_placement_params.radiance.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
 /// Objective and bounds of a placement. A placement scales the texture coordinates of the surface about their centre
@@ -35,18 +37,19 @@ pub struct luxfer_placement_params {
     /// Wanted mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default
     /// 0.
     pub radiance: [f32; 3],
-    /// Number of placements at which the search starts, in [1, 4096]; default 64.
+    /// Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the best of
+    /// them.
     pub starts: u32,
     /// Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5.
     pub min_offset: [f64; 2],
-    /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and max_offset
-    /// fix the offset; likewise for the fields below.
+    /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
+    /// allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the fields below.
     pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub min_scale: [f64; 2],
     /// Largest number of repetitions along u and v, in [1/64, 64]; default 1.
     pub max_scale: [f64; 2],
-    /// Smallest rotation in radians, in [-2 pi, 2 pi]; default 0.
+    /// Smallest rotation of the texture coordinates from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub min_rotation: f64,
     /// Largest rotation in radians, in [-2 pi, 2 pi]; default 0.
     pub max_rotation: f64,
@@ -113,8 +116,9 @@ pub struct luxfer_placement {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// Change of the field response, noise included, if the map's cells had twice the width and height. The error that
-    /// comes from the size of the cells is about a third of this change.
+    /// The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The error
+    /// of response that comes from the size of the cells is about a third of this difference, which also contains
+    /// noise.
     pub band_error: [f64; 3],
 }
 

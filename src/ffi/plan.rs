@@ -174,8 +174,8 @@ pub unsafe extern "C" fn luxfer_plan_create(
 /// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
 /// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
-/// such camera.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+/// and the scene has none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,
@@ -252,9 +252,10 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
 /// Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
 /// has chosen. size is sizeof *params. Any thread.
 ///
-/// If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan sets the number
-/// of paths, so every run gives an equal picture; it also sets time_budget_ms to a quarter more than these paths
-/// should take, which ends the rendering early only if the machine becomes slower.
+/// If the goal is an error, rendering stops when it reaches the error; if few paths suffice, the plan sets a fixed
+/// number of paths instead. If the goal is a time, the plan sets the number of paths, so that repeated renderings give
+/// equal pictures. It also sets time_budget_ms to 1.25 times the predicted time. This limit ends a rendering early only
+/// if the machine becomes slower.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(

@@ -1,8 +1,8 @@
 //! Planning of stylisations
 //!
 //! Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
-//! actual input at reduced resolution. This takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
-//! target, the smaller the part.
+//! actual input at reduced resolution. These trials take a small share of the time of a stylisation with
+//! LUXFER_STYLIZE_FULL; the share falls with the size of the target.
 
 use super::guard::enter;
 use super::handle::{self, Owned};

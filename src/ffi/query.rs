@@ -89,7 +89,8 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
 /// Traces a ray and returns the fields of its nearest hit as 32-bit words, in the order of `luxfer_hit`.
 fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     let [ox, oy, oz, dx, dy, dz, t_max] = floats(ray);
-    // Scale the direction by a power of two near its length, so that any length works.
+    // Divide the direction by a power of two near its length. Otherwise the squares of very long or very short
+    // directions would overflow or underflow.
     let direction = Vec3::new(dx, dy, dz);
     let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());
     let ray = world.ray(Vec3::new(ox, oy, oz), (direction.as_dvec3() / unit).as_vec3());

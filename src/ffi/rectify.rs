@@ -2,8 +2,9 @@
 //!
 //! Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
 //! that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
-//! is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1
-//! is vertical. Camera space is x to the right, y down, z forward.
+//! is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1 is
+//! vertical. Camera space is x to the right, y down, z forward. "The paper" is "Single-Exemplar Lighting Style Transfer
+//! via Emissive Texture Synthesis and Optimization".
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -28,17 +29,19 @@ pub struct luxfer_rectify {
 
 /// The detector of lines: a LUXFER_LINES_ value.
 pub type luxfer_lines = i32;
-/// Fits segments with sub-pixel end points to regions of similar gradient direction.
+/// Fits segments with sub-pixel end points to regions of similar gradient direction (LSD, Grompone von Gioi et al.
+/// 2010).
 pub const LUXFER_LINES_REGIONS: luxfer_lines = 0;
-/// The paper's method: gradient-restricted Hough transform of Canny edges.
+/// The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for lines
+/// nearly perpendicular to its gradient.
 pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 
 /// The search for vanishing points: a LUXFER_SEARCH_ value.
 pub type luxfer_search = i32;
-/// Finds three orthogonal directions and the focal length together, then refines each direction by itself.
+/// Finds three orthogonal directions and the focal length together, then refines each direction with its own lines.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
 /// The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
-/// earlier one.
+/// earlier vanishing point.
 pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
 
 /// The distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
@@ -46,20 +49,21 @@ pub type luxfer_metric = i32;
 /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
 /// finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected segment.
+/// The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected segment.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// The source of a focal length: a LUXFER_FOCAL_ value.
 pub type luxfer_focal_source = i32;
 /// Set by the caller.
 pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
-/// Estimated from vanishing points of orthogonal directions.
+/// Estimated, mainly from the vanishing points of orthogonal directions.
 pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
-/// Assumed: 0.85 times the width of the photo.
+/// Mainly assumed: a usual value, 0.85 times the width of the photo, has a greater weight than the estimate from
+/// vanishing points.
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
 /// Mainly from the metadata of the photo's file; see luxfer_image_get_metadata.
 pub const LUXFER_FOCAL_FROM_METADATA: luxfer_focal_source = 3;
-/// Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer only).
+/// Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting transfer only).
 pub const LUXFER_FOCAL_FROM_LAMPS: luxfer_focal_source = 4;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.
@@ -96,8 +100,9 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane with a
-    /// larger magnification, which lie far from the camera, are cut off.
+    /// Largest magnification in the unwarped image, relative to the part of the plane that the photo shows largest, in
+    /// (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the camera, are cut
+    /// off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -176,7 +181,8 @@ pub struct luxfer_rectify_report {
     pub vanishing_points: [[f64; 3]; 3],
     /// Standard deviations of the directions of the vanishing points in camera space, in radians.
     pub vanishing_errors: [f64; 3],
-    /// Number of segments that agree with each vanishing point; 0: the point is derived from the other two.
+    /// Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
+    /// others, or from the assumption that the camera is upright.
     pub vanishing_support: [u32; 3],
     /// Source of the focal length: a LUXFER_FOCAL_ value.
     pub focal_source: luxfer_focal_source,
@@ -198,7 +204,8 @@ pub struct luxfer_rectify_report {
     pub corner_errors: [f64; 4],
     /// Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane.
     pub pixel_size: f64,
-    /// Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed.
+    /// Confidence of the aspect ratio, 1 / (1 + (s / 0.1)²), where s is its relative standard deviation; in [0, 1]. It
+    /// is low if the focal length was assumed.
     pub aspect_confidence: f64,
     /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
     /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
@@ -206,8 +213,8 @@ pub struct luxfer_rectify_report {
     pub distortion: f64,
     /// Standard deviation of the field distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
-    /// For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these axes is
-    /// estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or the
+    /// For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two axes is
+    /// estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not square or the
     /// principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
     /// orthogonal.
     pub squareness: [f64; 3],
@@ -289,7 +296,8 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// The photo in which the view was found, and the settings. A later job uses the view again if both are unchanged.
+    /// The photo in which the view was found, and the settings with which it was found. A later job uses the view again
+    /// if both are unchanged.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }
@@ -352,8 +360,8 @@ pub unsafe extern "C" fn luxfer_rectify_set_mask(
 /// Starts a job that finds lines, vanishing points and the camera, and unwarps the plane if its mask is set. If an
 /// earlier job with equal settings has found the camera of this photo, the job uses that camera. params may be NULL
 /// for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
-/// LUXFER_DEGENERATE if there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with LUXFER_DEGENERATE
+/// if there are no lines, the mask is empty or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
 /// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_start(

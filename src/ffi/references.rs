@@ -18,9 +18,9 @@ pub unsafe extern "C" fn luxfer_retain(handle: *mut c_void) -> luxfer_status {
 /// Removes a reference to an object of any kind; NULL does nothing. Any thread.
 ///
 /// An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
-/// long as its job, which continues. Two releases take time. Releasing the last reference to a job cancels the job and
-/// waits until it has ended. Releasing the last reference to a context and all objects created in it waits until the
-/// worker threads have ended.
+/// long as its job, which continues. Two kinds of release take time. Releasing the last reference to a job cancels the
+/// job and waits until it has ended. Releasing the last reference to a context and all objects created in it waits
+/// until the worker threads have ended.
 /// LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_release(handle: *mut c_void) -> luxfer_status {

@@ -26,18 +26,20 @@ pub struct luxfer_relight {
 
 /// The quantity of the target surface that should match the photo: a LUXFER_QUANTITY_ value.
 pub type luxfer_quantity = i32;
-/// Light that the target surface reflects, its albedo included: the radiance that a photo shows.
+/// Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of a matt
+/// surface.
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
 /// Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
 
 /// How the light of the target surface is compared with its target value: a LUXFER_FIT_ value.
 pub type luxfer_fit = i32;
-/// By the mean over the target surface.
+/// The mean of the light over the target surface should equal the target value.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
-/// At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
-/// more, so the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor
-/// 1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives.
+/// The sum, over all points of the target surface, of the squared difference between light and target value should be
+/// smallest. A gradient descent on the texels of the emission has this aim too. Bright points count more, so the
+/// emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
+/// the coefficient of variation of the light over the target surface.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
@@ -54,11 +56,12 @@ pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 pub type luxfer_outcome = i32;
 /// The target is met.
 pub const LUXFER_OUTCOME_MET: luxfer_outcome = 0;
-/// The other lights alone exceed the target: the emission is 0 in this channel.
+/// The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals
+/// contradict each other.
 pub const LUXFER_OUTCOME_TOO_BRIGHT: luxfer_outcome = 1;
-/// No light of this channel reaches the target: the emission uses the mean scale of the other channels.
+/// No light of this channel reaches the target: the channel gets the mean scale of the channels that meet the target.
 pub const LUXFER_OUTCOME_DARK: luxfer_outcome = 2;
-/// All lamps at their largest power are too weak, or two goals contradict each other.
+/// All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps.
 pub const LUXFER_OUTCOME_TOO_DIM: luxfer_outcome = 3;
 
 /// Settings of a relighting. Fill them with luxfer_relight_params_init.
@@ -238,9 +241,10 @@ pub unsafe extern "C" fn luxfer_relight_create(
     })
 }
 
-/// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. The
-/// solution is a factor for the emission that the material has in the scene. luxfer_scene_place_emission returns the
-/// index of such a material, and the index of a mesh that can serve as the target. Any thread.
+/// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. Points of
+/// the mesh that emit light are left out. The solution is a factor for the emission that the material has in the scene.
+/// luxfer_scene_place_emission returns the index of such a material, and the index of a mesh that can serve as the
+/// target. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
@@ -319,8 +323,8 @@ impl Emitter {
 /// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
 /// caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
-/// LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
-/// setting is out of range.
+/// LUXFER_UNREACHABLE if no emitted light reaches the target or the other lights alone exceed it, LUXFER_DEGENERATE if
+/// the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,
