@@ -7,8 +7,8 @@ use glam::DVec2;
 /// Number of rows of texels that share one list of lamps. [bench emission:seconds]
 const BAND: usize = 16;
 
-/// For each band of rows, the lamps that may touch it. An entry holds the index of a lamp, and the texels
-/// `[x0, y0, x1, y1)` that the lamp may touch.
+/// For each band of rows, the lamps that may touch it. An entry holds the index of a lamp in `Layer::instances`, and
+/// the rectangle of texels `[x0, y0, x1, y1)` that the lamp may touch.
 #[derive(Default)]
 pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
 
@@ -30,7 +30,7 @@ impl Bands {
     }
 }
 
-/// The texels `[x0, y0, x1, y1)` that a lamp may touch; `None` if it lies outside the texture.
+/// The rectangle of texels `[x0, y0, x1, y1)` that a lamp may touch; `None` if the lamp lies outside the texture.
 fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
     let shift = layer.rounded(instance.shift);
     let (first, last) = match layer.designs.of(instance.component) {

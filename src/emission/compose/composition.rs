@@ -27,7 +27,7 @@ pub struct Composition {
     pub height: usize,
     /// One layer for each exemplar.
     pub(in crate::emission) layers: Vec<Layer>,
-    /// For each layer, the lamps that may touch each band of rows.
+    /// For each layer, the lamps that may touch each band of rows of texels.
     pub(in crate::emission) bands: Vec<Bands>,
     pub(in crate::emission) weights: Weights,
     /// Area in texels below which a piece of light is a crumb: a fragment broken off a lamp by resampling, which is
@@ -106,8 +106,8 @@ impl Composition {
     /// exemplars have changed.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
-        // Render a margin around the tile as well. It is wide enough for every crumb that touches the tile, and for
-        // every light that would connect the crumb to a larger piece.
+        // To tell crumbs from larger pieces of light, render a margin around the tile as well. It is so wide that any
+        // crumb that touches the tile ends within the margin. A piece that is longer than a crumb shows this there.
         let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
         let (mut texture, mut mask) = self.render(input, styles, around, job)?;
@@ -137,8 +137,8 @@ impl Composition {
         Ok((texture, coverage, found))
     }
 
-    /// Removes crumbs from a tile. A small piece at the border of the texture is kept, because it may be the rest of a
-    /// lamp that the border cuts.
+    /// Removes crumbs from a tile. `found` are the connected lights of `mask`. A small piece at the border of the
+    /// texture is kept, because it may be the visible part of a lamp that the border cuts.
     fn remove_crumbs(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
         let is_cut = |min: [usize; 2], max: [usize; 2]| {
             let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);
@@ -157,7 +157,7 @@ impl Composition {
         self.render_lights(input, styles, tile, Lights::All, job)
     }
 
-    /// Renders either all lights of a tile or only the lights that are copied patch by patch, and their coverage.
+    /// Renders a tile and its coverage: either all lights, or only the lights that are copied patch by patch.
     pub(in crate::emission) fn render_lights(
         &self,
         input: &Input,

@@ -4,7 +4,7 @@ use crate::image::Image;
 use glam::{DVec2, Vec3, Vec4};
 
 /// Colour at a point of an image by cubic interpolation; `None` outside the image. Border pixels are repeated
-/// outwards. The result is limited to the range of the four pixels around the point, because the cubic would fall
+/// outwards. Each channel is limited to the range of the four pixels around the point, because the cubic would fall
 /// below 0 next to a bright lamp.
 pub fn colour(image: &Image, p: DVec2) -> Option<Vec3> {
     let size = DVec2::new(image.width as f64, image.height as f64);
@@ -47,7 +47,8 @@ fn pixels_of_row(row: &[f32]) -> [Vec4; 4] {
     [pixel(0), pixel(3), pixel(6), pixel(9)]
 }
 
-/// The largest integer that is at most `value`. Baseline x86-64 has no instruction for `f64::floor`.
+/// The largest integer that is at most `value`. This is faster than `f64::floor`, for which baseline x86-64 has no
+/// instruction.
 fn floor(value: f64) -> isize {
     let towards_zero = value as isize;
     towards_zero - isize::from(towards_zero as f64 > value)

@@ -9,12 +9,13 @@
 //!    lies in the interval of its own exemplar. The intervals are disjoint, so of two overlapping lamps at most one is
 //!    kept if the weights are equal at both centres. The mean light per area follows the weights.
 //!
-//! If many lamps overlap several others, all lamps in a square of the texture share one number, and the style changes
-//! from square to square. If two kept lamps overlap all the same, the lamp of the exemplar that comes first in the
-//! list stays. Lights that run through their exemplar are not chosen at random: the weight dims them instead.
+//! If many lamps overlap several lamps of earlier exemplars, all lamps in a square of the texture share one number, and
+//! the style changes from square to square. If two kept lamps overlap all the same, only the lamp of the exemplar that
+//! comes first in the list stays. Lights that run through their exemplar are not chosen at random: the weight dims them
+//! instead.
 //!
-//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], each
-//! lattice has a site, or a midpoint between sites, at the texture's centre.
+//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], a lamp
+//! of each lattice, or the middle between two lamps, lies at the texture's centre.
 
 use super::layer::Layer;
 use super::weights::Weights;
@@ -35,8 +36,8 @@ const MIN_DENSE_SHARE: f64 = 0.1;
 struct Lamp {
     low: DVec2,
     high: DVec2,
-    /// A random number in [0, 1). The weights divide that interval into one subinterval per exemplar. The lamp is kept
-    /// if the number falls into the subinterval of its own exemplar.
+    /// A random number in [0, 1). The weights divide this interval into one subinterval per exemplar. The lamp is kept
+    /// if its number lies in the subinterval of its own exemplar.
     draw: f64,
 }
 
@@ -45,7 +46,7 @@ impl Lamp {
         (self.low + self.high) / 2.0
     }
 
-    /// Area of the intersection of both boxes after moving `other` by `shift`.
+    /// Area, in texels, of the intersection of both boxes after `other` is moved by `shift`.
     fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
         let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
         sides.max(DVec2::ZERO).element_product()
@@ -62,7 +63,8 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         layers.iter().map(|layer| layer.instances.iter().map(|i| boxed(layer, i)).collect()).collect();
     let longest = lamps.iter().flatten().map(|l| (l.high - l.low).max_element()).fold(1.0, f64::max);
 
-    // For each lamp, find the lamps of earlier layers that it overlaps, largest overlap first.
+    // For each lamp, find the lamps of earlier layers that it overlaps, sorted by overlap, largest first. `below[k][i]`
+    // lists them for lamp i of layer k, as pairs of layer and lamp.
     let mut seen = LampGrid { cells: HashMap::new(), side: longest, size: params.repeats() };
     let mut below: Vec<Vec<Vec<(usize, usize)>>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
@@ -88,7 +90,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         }
     }
 
-    // Decide which lamps to keep. If chosen lamps overlap, keep the lamp of the earliest layer.
+    // Decide which lamps to keep. If a chosen lamp overlaps a kept lamp of an earlier layer, drop it.
     let size = DVec2::new(params.width as f64, params.height as f64);
     let mut stays: Vec<Vec<bool>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
@@ -120,6 +122,9 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
 
 /// A hash grid that finds lamps by the square that holds their centre. The squares are as long as the longest lamp, so
 /// that overlapping lamps lie in the same square or in adjacent ones.
+///
+/// A square holds triples of layer, lamp and shift. The shift moves the lamp into one of the neighbouring copies of a
+/// tileable texture; otherwise it is 0.
 struct LampGrid {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,

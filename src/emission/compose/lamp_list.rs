@@ -27,7 +27,7 @@ const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.
 pub struct LampList {
-    /// Shapes of all components of each exemplar, in unwarped pixels.
+    /// For each exemplar, the shapes of all its components, in unwarped pixels.
     shapes: Vec<Vec<Luminaire>>,
     /// Each lamp in the texture, with the index of its exemplar.
     shown: Vec<(u32, Instance)>,
@@ -78,8 +78,8 @@ impl LampList {
         Ok(list)
     }
 
-    /// Groups lamps of equal shape into kinds, and gives each kind a number. The kinds comprise the lamps of all
-    /// exemplars and the lights that are copied patch by patch.
+    /// Groups lamps of equal shape into kinds, and stores the number of its kind in each lamp. A kind may hold lamps of
+    /// several exemplars, and lights that are copied patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {
@@ -139,7 +139,7 @@ fn flux(lamp: &Luminaire) -> f64 {
     f64::from(luminance(lamp.colour)) * lamp.area
 }
 
-/// Clips a lamp to a texture of the given size.
+/// Clips a lamp to a texture of the given size in texels, and measures the remaining part.
 fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
     let outline =
@@ -152,7 +152,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     }
     let axis = DVec2::from_angle(lamp.orientation);
     let extent = |axis: DVec2| polygon::extent(&outline, axis);
-    // The remaining part may be longer across the lamp's axis than along it: then exchange the axes.
+    // If the remaining part is longer across the lamp's axis than along it, exchange the axes.
     let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
     let (size, orientation) = match lamp.orientation {
         angle if size.x >= size.y => (size, angle),

@@ -43,10 +43,11 @@ pub struct Layer {
     pub law: Law,
     pub regularity: f64,
     pub choice: Choice,
-    /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light.
+    /// Metadata of the exemplar at working size (the reduced size of the synthesis): confidence, and signed x and y
+    /// distance to the nearest light.
     pub metadata: Image,
     pub patch_map: PatchMap,
-    /// Lamps that are copied as a whole, with their shifts.
+    /// Lamps that are copied as a whole, each with its shift from the exemplar to the texture.
     pub instances: Vec<Instance>,
     /// Whether lamps are copied as a whole. If not, all lights are copied patch by patch.
     pub has_pieces: bool,
@@ -71,8 +72,8 @@ pub struct Layer {
 /// The settings by which an exemplar's pattern is placed on the texture.
 struct PatternPlacement<'a> {
     params: &'a Params,
-    /// The law found in the exemplar (`found`), and the law that the texture uses (`law`).
-    /// They differ if the texture is tileable, because its lattice is stretched.
+    /// `found`: the law found in the exemplar. `law`: the law that the texture uses. They differ only if the texture is
+    /// tileable, because its lattice is then stretched.
     found: Law,
     law: Law,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
@@ -91,8 +92,8 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let placement = PatternPlacement::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata of the exemplar, by which patches are compared: the confidence, and the signed x and y
-        // distance to the nearest light. Then place patches and lamps.
+        // Compute the metadata of the exemplar: the confidence, and the signed x and y distance to the nearest light.
+        // Patches are compared by colour and metadata. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
@@ -148,8 +149,9 @@ impl Layer {
         })
     }
 
-    /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the part of
-    /// the exemplar where the pattern has not ended, and corrected to the lamp areas of the designs.
+    /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the exemplar,
+    /// but only where its pattern has not ended. If lamps are drawn from designs, the areas are corrected to those of
+    /// the designs.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
         // If the exemplar repeats as a whole, the exemplar itself is one period.
         let periods = match self.law {
@@ -197,7 +199,7 @@ impl Layer {
     }
 }
 
-/// Number of points along each axis at which the size of a texel in the photo is measured.
+/// Number of points along each axis of the exemplar at which the size of a texel in the photo is measured.
 const MEASURED: usize = 16;
 
 /// Makes copies of the photo at 1/2, 1/4, … of its size, as many as the texels need. `scale` is the number of unwarped
@@ -232,7 +234,7 @@ const MIN_RAGGED_PIXEL: f64 = 2.0;
 /// without a period.
 struct LayerExemplar {
     exemplar: Exemplar,
-    /// The law found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
+    /// The law found in the exemplar, or `Copy` if the texture is a copied part of the exemplar.
     found: Law,
     regularity: f64,
     choice: Choice,
@@ -298,7 +300,7 @@ fn continue_lines(exemplar: &mut Exemplar, law: Law) {
 }
 
 /// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
-/// least [`MIN_RAGGED_PIXEL`] unwarped pixels.
+/// least [`MIN_RAGGED_PIXEL`] unwarped pixels. The median is weighted by the photo pixels of the lamps.
 fn is_ragged(exemplar: &Exemplar) -> bool {
     let lamps = exemplar.measured_lamps(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
@@ -322,8 +324,8 @@ impl<'a> PatternPlacement<'a> {
         Ok(Self { params, found, law, offset, canvas, block, cap })
     }
 
-    /// The two lattices of a tileable texture: as found in the exemplar, and stretched so that a whole number of
-    /// periods fits into the texture. `None` for other textures.
+    /// Two lattices of a tileable texture: the lattice found in the exemplar, and the same lattice stretched so that a
+    /// whole number of periods fits into the texture. `None` for other textures, and without a lattice.
     fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
         let lattices = self.found.lattice().zip(self.law.lattice());
         lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
@@ -339,8 +341,8 @@ impl<'a> PatternPlacement<'a> {
         let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
         let guide = Guide { working, metadata, metadata_weight, cap: self.cap, lamp, candidates };
 
-        // For a row of lamps, quilt one strip and repeat it side by side, because the exemplar shows nothing beyond
-        // the strip.
+        // For a row of lamps, quilt one strip along the row, as wide as the exemplar. Then repeat the strip side by
+        // side over the texture, because the exemplar does not show what lies beside the strip.
         let row = match law {
             Law::Row([_, across]) => {
                 let period = across.abs() / working.pitch;
@@ -350,8 +352,8 @@ impl<'a> PatternPlacement<'a> {
             _ => None,
         };
         let size = row.map_or(canvas, |r| r.1);
-        // If both ends of a row lie within the exemplar, the texture repeats the whole row, with its free ends, at a
-        // constant period.
+        // If the exemplar shows that the row ends on both sides, the texture repeats the row as a whole, including the
+        // free space at its ends.
         let laid = match law {
             Law::Row([along, across]) if !params.tileable => {
                 Law::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
@@ -423,9 +425,11 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Shifts the lamps of a pattern without a lattice by `params.offset`. An offset other than 0 is an error, because
-/// such a pattern has no origin. Only if the texture is tileable and no light is copied patch by patch is any offset
-/// allowed.
+/// Shifts the lamps of a pattern without a lattice by `params.offset`. `by_patches` tells whether some lights are
+/// copied patch by patch.
+///
+/// Errors: an offset other than 0, because such a pattern has no origin. The exception is a tileable texture in which
+/// no light is copied patch by patch: its lamps can all be shifted.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);
@@ -445,8 +449,9 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours: on a lattice, one
-/// and a half times the longer period; without a lattice, a quarter of the exemplar's shorter side.
+/// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours. On a lattice, it is
+/// one and a half times the longer period; otherwise a quarter of the exemplar's shorter side. It is at least
+/// [`MIN_BLOCK`], and at most half of the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, law: Law) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -17,7 +17,8 @@ pub enum LightSet {
     OfPatches = 2,
 }
 
-/// For each block of `BLOCK` x `BLOCK` unwarped pixels, the sets of lights ([`LightSet`], as bits) that reach into it.
+/// For each block of `BLOCK` × `BLOCK` unwarped pixels, the sets of lights that reach into it. Each [`LightSet`] is one
+/// bit of an entry of `sets`.
 pub struct LitBlocks {
     columns: usize,
     rows: usize,
@@ -25,8 +26,8 @@ pub struct LitBlocks {
 }
 
 impl LitBlocks {
-    /// `is_of_patches` tells whether a component is copied patch by patch. Pixels that light covers in part and that
-    /// belong to no component count for both sets.
+    /// Builds the map from the light mask `light`. `is_of_patches` tells whether a component is copied patch by patch.
+    /// Pixels beside lamps, which light covers by less than half and which belong to no component, count for both sets.
     pub fn new(exemplar: &Exemplar, light: &Image, is_of_patches: impl Fn(usize) -> bool) -> Result<Self> {
         let (columns, rows) = (exemplar.width.div_ceil(BLOCK), exemplar.height.div_ceil(BLOCK));
         let mut sets = try_vec(columns * rows, 0)?;

@@ -19,8 +19,8 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Number of rows of texels in a band (`BAND`), and number of further rows that are rendered above and below the band
-/// (`MARGIN_ROWS`). The further rows are needed to compute which part of each texel is light.
+/// `BAND`: number of rows of texels in a band. `MARGIN_ROWS`: number of further rows that are rendered above and below
+/// the band. The lit part of a texel depends on the texels around it.
 const BAND: usize = 64;
 const MARGIN_ROWS: usize = 2;
 /// Value of a texel without light, in place of the index of its light.
@@ -76,11 +76,11 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
         .collect())
 }
 
-/// The lights found so far. Lights that turn out to be connected are merged into one (union-find).
+/// The lights found so far. If a further band shows that two lights are connected, they are merged (union-find).
 #[derive(Default)]
 struct ConnectedLights {
     parts: Vec<Light>,
-    /// For each light, the index of the light that it was joined to, or its own index.
+    /// For each light, the index of the light into which it was merged, or its own index.
     into: Vec<u32>,
 }
 
@@ -120,7 +120,7 @@ struct Span {
     right: u32,
 }
 
-/// The moments of a light, and its extent in each row.
+/// The area, moments and colour of a light, and its extent in each row.
 #[derive(Default)]
 struct Light {
     /// Number of texels.
@@ -166,7 +166,7 @@ impl Light {
         }
     }
 
-    /// Merges the last row into the span above if both cover the same columns.
+    /// Merges the last span into the one before if it lies directly below it and covers the same columns.
     fn close(&mut self) {
         if let [.., before, last] = &mut self.spans[..]
             && (before.left, before.right, before.row + before.rows) == (last.left, last.right, last.row)
@@ -219,7 +219,7 @@ impl Light {
         let [xx, xy, yy] =
             (self.squares - DVec3::new(mean.x * mean.x, mean.x * mean.y, mean.y * mean.y) * self.area).to_array();
         let orientation = orientation([xx, xy, yy]);
-        // The outline runs down the left ends of the spans, then up their right ends.
+        // The outline runs from top to bottom along the left ends of the spans, then back along their right ends.
         let corner = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let down = self.spans.iter().flat_map(|s| [corner(s.left, s.row), corner(s.left, s.row + s.rows)]);
         let up = self.spans.iter().rev().flat_map(|s| [corner(s.right, s.row + s.rows), corner(s.right, s.row)]);

@@ -1,12 +1,12 @@
 //! Renders the texels at full resolution: copies every lamp and every patch from the photo or, without a photo, from
 //! the unwarped image ("Lighting Style Transfer", §6, Fig. 12h).
 //!
-//! The position of a texel minus its shift is a point of the unwarped image. The homography maps that point into the
-//! photo, where the colour is averaged over the area that the texel covers.
+//! The position of a texel in unwarped pixels, minus the shift of its lamp or patch, is a point of the unwarped image.
+//! The homography maps that point into the photo, where the colour is averaged over the area that the texel covers.
 //!
 //! The unwarped light mask decides whether a texel is light. If a texel is smaller than an unwarped pixel, the
-//! confidence is interpolated between pixels, so that outlines show no staircase. If a texel is larger, the lit share
-//! of its area decides.
+//! confidence is interpolated between pixels, so that outlines show no staircase. If a texel is larger, it is light if
+//! at least half of its area is lit.
 
 use super::bands::Bands;
 use super::lit_blocks::LightSet;
@@ -23,7 +23,7 @@ use rayon::prelude::*;
 /// A float slightly below one half. [rounding]
 const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
 
-/// Selects which lights of a composition are rendered.
+/// The lights of a composition that are rendered.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
     All,
@@ -31,7 +31,7 @@ pub enum Lights {
     OfPatches,
 }
 
-/// The texture that layers share: its size in texels, and the weight of each layer.
+/// The texture into which layers are rendered: its size in texels, and the weight of each layer.
 pub struct Blend<'a> {
     pub width: usize,
     pub height: usize,

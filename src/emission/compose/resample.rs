@@ -3,14 +3,14 @@
 //! The homography maps the square to a quadrangle in the photo. The sides of the quadrangle are divided into steps of
 //! about one photo pixel, and the colours at these points are averaged. Cubic interpolation gives the colour at a
 //! point (Catmull and Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
-//! Where the quadrangle is at least [`MIN_PIXELS`] pixels wide, the points are read from the photo at half its size, at
-//! a quarter, and so on, so that it is 4 to 8 pixels wide there.
+//! If the quadrangle is at least [`MIN_PIXELS`] photo pixels wide, the points are read from a copy of the photo at 1/2,
+//! 1/4, … of its size. In this copy, the quadrangle is 4 to 8 pixels wide.
 //!
-//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, but is
-//! less exact. At its published width, its Gaussian also weighs parts of the photo that belong to other texels; a
-//! Gaussian as narrow as a texel does not have the texel's shape. The usual method is better only at extreme
-//! magnification, where tens of texels along one side share a photo pixel. `cargo bench --bench emission -- recovery`
-//! compares both methods with the truth.
+//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time of this
+//! one, but is less exact. Its Gaussian, at the published width, also covers parts of the photo that belong to other
+//! texels; a narrower Gaussian still does not have the square shape of a texel. The usual method is better only at
+//! extreme magnification, where a row of tens of texels shows the same photo pixel.
+//! `cargo bench --bench emission -- recovery` compares both methods with the true image.
 
 use super::cubic;
 use crate::error::Result;
@@ -23,8 +23,8 @@ use glam::{DVec2, Vec3};
 /// [convention]
 const MAX_POINTS: f64 = 32.0;
 
-/// Minimum width of the quadrangle, in photo pixels along its shorter side, at which a smaller copy of the photo is
-/// read. [bench emission:recovery]
+/// A smaller copy of the photo is read if the shorter side of the quadrangle has at least this number of photo pixels.
+/// [bench emission:recovery]
 const MIN_PIXELS: f64 = 8.0;
 
 /// The photo and its smaller copies, each half as large as the one before.
@@ -79,7 +79,7 @@ impl Levels<'_> {
         let level = level(pixels.min_element(), self.smaller.len());
         let image = level.checked_sub(1).map_or(self.photo, |i| &self.smaller[i]);
         let factor = 1.0 / (1usize << level) as f64;
-        // The cast turns the NaN of the horizon into 0 points.
+        // At the horizon, the lengths are NaN; the cast turns them into 0 points.
         let [across, down] = (pixels * factor).to_array().map(|p| p.ceil().clamp(1.0, MAX_POINTS) as usize);
 
         // Step from point to point in homogeneous coordinates, in which the map into the photo is linear.
@@ -159,7 +159,8 @@ mod tests {
         let smaller = smaller(&photo, &wide, centres(), 1.0, Monitor::default().job()).unwrap();
         assert_eq!(smaller.iter().map(|copy| copy.width).collect::<Vec<_>>(), [120, 60]);
         let found = Levels { photo: &photo, smaller: &smaller }.mean(&wide, DVec2::new(3.0, 4.0), 1.0, |colour| colour);
-        // The mean of a ramp is its value at the centre, (120, 80) in the photo; pixels are sampled at their centres.
+        // The mean of a ramp is its value at the centre, (120, 80) in the photo. Pixel centres lie at half-integers, so
+        // the value there is 119.5 + 10 · 79.5.
         assert!((found.unwrap().x - (119.5 + 795.0)).abs() < 0.5, "{found:?}");
         // A square of 0.3 unwarped pixels covers 12 × 6 photo pixels, which needs no smaller copy.
         let none = super::smaller(&photo, &wide, centres(), 0.3, Monitor::default().job()).unwrap();

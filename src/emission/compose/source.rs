@@ -34,9 +34,9 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// Only the inner part of a lamp in the photo gives the colour of a lamp drawn from its design, because the rim is
-/// blurred. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum size of the inner part, as a share of the
-/// lamp's sides. [judged on 20 photos]
+/// A lamp that is drawn from a design gets its colours from the inner part of the lamp in the photo only, because the
+/// rim of the lamp is blurred there. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of the inner
+/// part, as a share of the lamp's side. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
@@ -59,7 +59,8 @@ pub struct TexelSource<'a> {
 }
 
 impl TexelSource<'_> {
-    /// The shift (texture minus exemplar) of the patch at a texel's centre; `None` if there is no patch.
+    /// The shift of the patch at a texel's centre: position in the texture minus position in the exemplar, in unwarped
+    /// pixels. `None` if there is no patch.
     pub fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
         let Layer { patch_map, exemplar, scale, .. } = self.layer;
         let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * *scale / exemplar.working.pitch;
@@ -77,8 +78,8 @@ impl TexelSource<'_> {
         DVec2::new(x as f64, y as f64) * self.layer.scale - self.layer.rounded(shift)
     }
 
-    /// The colour and coverage of a texel, averaged over samples. Only components for whose label `is_shown` returns
-    /// true count as light.
+    /// The colour and coverage that the exemplar, moved by `shift`, gives to the texel (x, y), averaged over samples.
+    /// Only components for whose label `is_shown` returns true count as light.
     pub fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
         let scale = self.layer.scale;
         let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
@@ -106,7 +107,8 @@ impl TexelSource<'_> {
         let count = (n * n) as f32;
         let (share, coverage) = (inside as f32 / count, coverage / count);
 
-        // Average the colour: over the whole texel if all of it is light, else over its lit samples.
+        // Average the colour over the texel. If all of the texel is light, read the colour of its whole square.
+        // Otherwise average over the samples, and count unlit samples as black.
         let colour = |p: DVec2, side: f64, taps: [(usize, f32); 4]| {
             let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
             match (&self.layer.even, lamp) {
@@ -135,7 +137,7 @@ impl TexelSource<'_> {
             return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
         }
         // Read the colour at the corresponding point of the lamp in the photo. The whole design is mapped onto the
-        // inner part of that lamp, because its rim is blurred and bloom enlarges it.
+        // inner part of the lamp in the photo, because bloom enlarges that lamp and blurs its rim.
         let axes = [design.axis, design.axis.perp()];
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
@@ -164,7 +166,8 @@ impl TexelSource<'_> {
         way.into_iter().find(is_lamp).unwrap_or(centre)
     }
 
-    /// The colour of the light at a point: from the photo or, outside the photo, from the unwarped image.
+    /// The mean colour of the light over a square with the centre `p`, from the photo. Outside the photo, the colour at
+    /// `p` by interpolation of the unwarped image. `lamp` is the label of the component at `p`.
     fn colour(
         &self,
         p: DVec2,
@@ -184,7 +187,8 @@ impl TexelSource<'_> {
         })
     }
 
-    /// Replaces clipped channels of a component's colour `value` by those of its rim.
+    /// Replaces the clipped channels of `value`, a colour of the component with the given label, by those of the
+    /// component's rim.
     fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
         match (&self.layer.rim_colours, label.checked_sub(1)) {
             (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),
@@ -203,14 +207,16 @@ impl TexelSource<'_> {
         label != 0 && is_shown(label)
     }
 
-    /// The share of an unwarped pixel that is covered by the selected components, for whose labels `is_shown` returns
-    /// true. An unlit pixel beside a lamp counts for every selection, because the confidence fades out there.
+    /// The share of an unwarped pixel that is covered by components for whose label `is_shown` returns true. Beside a
+    /// lamp, its confidence fades out over pixels that belong to no component. These pixels count whatever `is_shown`
+    /// selects.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
     }
 
-    /// Pixels and weights of a bilinear look-up. With `nearest`, only the pixel that contains the point.
+    /// Pixel indices and weights for bilinear interpolation at the point `p`. With `nearest`, only the pixel that
+    /// contains `p`. The index `usize::MAX` stands for no pixel.
     fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
         let (width, height) = (self.layer.exemplar.width, self.layer.exemplar.height);
         let at = |x: f64, y: f64| {

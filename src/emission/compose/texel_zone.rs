@@ -1,5 +1,5 @@
-//! Restricts a texture to the places where light is possible: surfaces are seldom whole rectangles, and ducts and
-//! sprinklers obstruct lamps.
+//! Restricts a texture to the places where lamps are possible. A texture is a rectangle, but the surface that it covers
+//! often is not, and ducts or sprinklers may take the place of lamps.
 
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{crumbs, luminaires};
@@ -24,7 +24,8 @@ impl Emission {
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, zones: &[TexelZone], job: Job) -> Result<()> {
-        // Mark the lamps to be removed as a whole before hidden light is removed, while every lamp is still connected.
+        // Mark the lamps that are to be removed as a whole. This must come before hidden light is removed, which may
+        // split a lamp into pieces.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(zones).filter(|(l, g)| **l != 0 && **g == TexelZone::KeepOut) {

@@ -13,6 +13,7 @@ pub struct Tile {
 }
 
 impl Tile {
+    /// The tile with a margin of `by` texels on each side, clipped to a texture of `width` × `height` texels.
     pub fn widened(self, by: usize, width: usize, height: usize) -> Self {
         let (x, y) = (self.x.saturating_sub(by), self.y.saturating_sub(by));
         let end = |start: usize, side: usize, whole: usize| start.saturating_add(side).saturating_add(by).min(whole);

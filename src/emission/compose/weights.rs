@@ -54,7 +54,8 @@ impl Weights {
         Ok(Self(maps))
     }
 
-    /// The interpolated weight of an exemplar at a point of the texture, whose coordinates run from 0 to 1.
+    /// The weight of an exemplar at a point of the texture, interpolated bilinearly. The point's coordinates run from 0
+    /// to 1 over the texture.
     pub fn at(&self, exemplar: usize, at: DVec2) -> f32 {
         let Some(map) = self.0.get(exemplar) else { return 1.0 };
         let last = DVec2::new(map.width as f64, map.height as f64) - 1.0;
@@ -67,7 +68,7 @@ impl Weights {
         mix(top, mix(value(low.x, high.y), value(high.x, high.y), t.x), t.y)
     }
 
-    /// The mean weight of an exemplar.
+    /// The mean weight of an exemplar over the texture.
     pub fn mean(&self, exemplar: usize) -> f64 {
         self.0
             .get(exemplar)
