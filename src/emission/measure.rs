@@ -43,8 +43,8 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measurements>
             nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
         }
     };
-    // A design is the size and the outline that all lamps of a kind get. A lamp that will be drawn from a design is
-    // measured by the design.
+    // A design is the size and the outline that all lamps of a kind get. If a lamp will be drawn from a design, take
+    // its size from the design.
     let designs = match params.whole_lamps && params.clean_lamps && input.photo.is_some() {
         true => Designs::find(exemplar, &outlines(exemplar, input, job)?),
         false => Designs::default(),

@@ -6,13 +6,13 @@
 //! ```
 //! 1. [`exemplar`] finds the usable part of the photo, its lights (connected components) and their roles, and reduces
 //!    the image to the working size of the synthesis.
-//! 2. [`lattice`] finds the lattice that the lamps lie on, from the autocorrelation of the light mask, and the lattice
-//!    sites that the border cuts.
+//! 2. [`lattice`] finds the lattice that the lamps lie on, from the autocorrelation of the light mask. [`analysis`]
+//!    compares it with other laws by which the pattern may continue, such as a single row, and chooses one.
 //! 3. [`quilt`] computes metadata (confidence, signed x and y distance to the nearest light), and quilts colour and
-//!    metadata with minimum-error seams. On a lattice, patches are shifted by whole periods only. The amount of light
-//!    is kept in balance.
+//!    metadata with minimum-error seams. On a lattice, patches are shifted by whole periods only. Patches are chosen so
+//!    that the lit share of the texture stays close to that of the exemplar.
 //! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it. It also
-//!    measures the lamp's outline, kind and colour.
+//!    measures the outline, kind and colour of each lamp.
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
 //!    lists the lamps.
 //! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
@@ -25,7 +25,7 @@
 //!
 //! - the lattice, and lamps copied as a whole, because image quilting alone lets regular patterns drift and cuts
 //!   lamps;
-//! - the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]);
+//! - the colour of lamps that are clipped in the photo, read from their rims ([`lamps::rim_colour`]);
 //! - zones that must stay free of lamps ([`compose::texel_zone`]);
 //! - textures of any size, rendered in tiles of a [`Composition`];
 //! - textures blended from several exemplars ([`compose::draw`]).
@@ -75,8 +75,10 @@ use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
 
-/// Makes an emission from a texture that the caller supplies. A texel counts as light if any of its channels is above
-/// 0.
+/// Makes the result of the stage from a texture that the caller supplies. A texel counts as light if any of its
+/// channels is above 0.
+///
+/// Errors: a value that is negative or not finite (`InvalidArgument`); a black texture (`Degenerate`).
 pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
     if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
@@ -124,7 +126,8 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
     make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
 }
 
-/// Like [`blend`], but uses the analysis of the first exemplar that [`measure`] has made, instead of repeating it.
+/// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis only
+/// if `measure` had other settings that affect it.
 pub fn blend_measured(
     measured: Measurements,
     input: &Input,
@@ -194,8 +197,9 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// Builds the metadata image of the texture (confidence, x and y distance to the nearest light): copies the exemplar's
-/// metadata by the shifts of `patch_map`. Pixels without a patch get confidence 0 and the largest distance.
+/// Builds the metadata image of the texture (confidence, x and y distance to the nearest light) at working size. Each
+/// pixel gets the metadata of the exemplar's pixel that `patch_map` shows there. Pixels without a patch get confidence
+/// 0 and the largest distance, 1.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

@@ -32,8 +32,8 @@ pub enum LawMode {
     Best,
     /// The law that the autocorrelation of the lights finds with the threshold `min_regularity`.
     Correlation,
-    /// The lattice (for `Row`, the row of lamps) found by the autocorrelation. If it finds none, other lattices (rows)
-    /// are proposed, and the best is chosen.
+    /// A lattice (for `Row`: a row of lamps). It is the one that the autocorrelation finds or, if it finds none, the
+    /// best of several proposals.
     Lattice,
     Row,
     /// The exemplar repeats as a whole.
@@ -50,8 +50,8 @@ pub struct Params {
     pub height: usize,
     /// Unwarped pixels per texel, in [`SCALES`].
     pub scale: f64,
-    /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
-    /// lights.
+    /// Side of a patch in pixels of the working size (see `working_side`), in `[0, 65536]`; 0 chooses it from the
+    /// period of the lights or, without a lattice, from the size of the exemplar.
     pub block: usize,
     /// Number of random patches that are compared for each block of the texture, besides the patches that continue
     /// neighbouring blocks; only for patterns without a lattice. In `[1, 65536]`.
@@ -65,8 +65,8 @@ pub struct Params {
     /// `[-1e6, 1e6]`. Without a lattice there is no origin: the offset then shifts the lamps of a tileable texture,
     /// and must be 0 in other textures.
     pub offset: DVec2,
-    /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
-    /// exactly; at 1, none is, and patches are placed without a lattice.
+    /// Minimum autocorrelation, in `[0, 1]`, of a shift that counts as a period of the lights. At 0, even a poor
+    /// repetition gives a lattice; at 1, patches are placed without a lattice whatever the repetition.
     pub min_regularity: f32,
     /// How the lights continue beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
     pub law: LawMode,
@@ -180,8 +180,9 @@ impl Params {
     }
 }
 
-/// Longest side, in pixels, of the exemplar at the reduced size of the synthesis. It is below `params.working_side` if
-/// the layout of the texture would otherwise have more than `MAX_WORKING_PIXELS` pixels.
+/// Longest side, in pixels, of the exemplar at the reduced size of the synthesis: `params.working_side`, but at most
+/// the longest side of the unwarped image. It is smaller still if the layout of the texture would otherwise have more
+/// than `MAX_WORKING_PIXELS` pixels.
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);

@@ -65,11 +65,11 @@ impl Design {
 /// The statistics of a texture, compared with its exemplar.
 #[derive(Debug)]
 struct Score {
-    /// Two ratios of texture to exemplar: number of lamps per area, and mean lamp area.
+    /// Two ratios of texture to exemplar. `density`: number of lamps per area. `area`: mean area of a lamp.
     density: f64,
     area: f64,
-    /// Number of lamps inside the texture that are smaller than 70 % of the exemplar's smallest lamp, and number of
-    /// those larger than 130 % of its largest lamp.
+    /// `cut`: number of lamps inside the texture that are smaller than 70 % of the exemplar's smallest lamp. `merged`:
+    /// number of lamps that are larger than 130 % of its largest lamp.
     cut: usize,
     merged: usize,
     /// Root mean square distance of the lamps from the best-fitting lattice, as a share of the period.
@@ -89,7 +89,8 @@ fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option
     let (width, height) = (result.mask.width, result.mask.height);
     let lamps = inner(&result.luminaires, width, height);
     let mean = lamps.iter().map(|l| l.area).sum::<f64>() / lamps.len() as f64;
-    // Count lamps by their light, so that lamps at the border count with their visible part.
+    // The number of lamps is the lit area divided by the mean lamp area, so that lamps at the border count with their
+    // visible part.
     let lit = result.mask.data.iter().sum::<f32>() as f64;
     let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
     let phase = basis.map_or(0.0, |basis| statistics::phase(&centres, basis));
@@ -228,9 +229,9 @@ fn scattered_lamps_stay_whole_and_as_many() {
     assert_eq!(result.law, Law::Free);
     let s = score(&result, per_area, (least, mean, most), None);
     // Patches repeat contiguous parts of the exemplar, so the texture's mean lamp area is no more precise than a mean
-    // over the n lamps of the exemplar. Allow three standard errors of such a mean: three standard deviations of the
-    // lamp areas, divided by √n. Allow as much for the number of lamps per area, which is the lit share divided by the
-    // mean lamp area, because the texture keeps the lit share more closely.
+    // over the n lamps of the exemplar. Allow three standard errors of such a mean, 3 σ / √n, with the standard
+    // deviation σ of the lamp areas. Allow as much for the number of lamps per area, which is the lit share divided by
+    // the mean lamp area: the texture keeps the lit share more closely.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");
@@ -436,7 +437,8 @@ fn even_lamps_have_one_colour_each_and_keep_their_light() {
     let params = Params { width: 300, height: 300, ..Params::default() };
     let (plain, even) = (exemplar.run(&params).unwrap(), exemplar.run(&Params { even_lamps: true, ..params }).unwrap());
     assert_eq!(plain.mask, even.mask);
-    // Compare complete lamps only: a part of a lamp at the border has the mean colour of the whole lamp.
+    // Compare complete lamps only. In `even`, a lamp that the border cuts has the mean colour of the whole lamp; in
+    // `plain`, it has the mean colour of its visible part.
     for (a, b) in inner(&plain.luminaires, 300, 300).into_iter().zip(inner(&even.luminaires, 300, 300)) {
         assert!((a.colour - b.colour).abs().max_element() < 1e-5 && (a.flux_share / b.flux_share - 1.0).abs() < 1e-3);
         let (x, y) = (b.centre.x as usize, b.centre.y as usize);
@@ -479,7 +481,7 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     assert_eq!(measured.lamp_fill, 1.0);
     assert!((measured.spacing - 36.0).abs() < 0.1, "{}", measured.spacing);
     // Without a lattice, the spacing is the median distance between nearest neighbours. `blobs` keeps all distances
-    // between centres above 26 pixels.
+    // between centres above 26 pixels; measured centres are less exact.
     let scattered = of(&blobs(256, 256, 26.0).0).spacing;
     assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));

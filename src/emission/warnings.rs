@@ -3,13 +3,13 @@
 use super::{Emission, Law};
 use crate::warning::{Code, Warning, percent};
 
-/// A warning is given if the statistics of texture and photo differ by more than this share. [judged on 38 photos]
+/// A warning is given if [`Emission::error`], the relative difference between the statistics of texture and photo,
+/// exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// A warning is given if the lamps lie on no lattice and the statistics differ by more than this share.
-/// [judged on 38 photos]
+/// The same limit for lamps that lie on no lattice, which get a further warning. [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
-/// Error of a texture without any light, whose lit share differs from the photo's by 100 %. If the error is larger,
-/// the warning says that there is no pattern. [convention]
+/// [`Emission::error`] of a texture without any light, whose lit share differs from the photo's by 100 %. If the error
+/// is larger, the warning says that there is no pattern. [convention]
 const UNLIT_ERROR: f64 = 1.0;
 /// If the exemplars show fewer whole lamps than this, a warning says that they are too few for measuring size and
 /// spacing. [convention]
