@@ -31,23 +31,25 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a block and
-/// share the results of their paths, so their errors are correlated: the variance of a sum over pixels is up to eight
-/// times the sum of their variances.
+/// Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Infinite where a pixel has fewer than two
+/// paths. Blocks of eight neighbouring pixels share parts of their paths, so the errors of these pixels are correlated:
+/// the variance of a sum over pixels is up to eight times the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is combined with
-/// neighbours whose difference its noise explains, or stays as it is where this is estimated to be more accurate. Details
-/// that come from the light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates
-/// the remaining error. The image exists only if luxfer_render_params.preview is not 0.
+/// The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined with those
+/// neighbours that differ from it by no more than the noise explains. It stays as it is where that is estimated to be
+/// more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+/// luxfer_render_report.preview_error estimates the remaining error. The image exists only if
+/// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 /// Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
 /// bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
-/// it may hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
+/// it may contain the true value of only 86 % of the pixels. The image exists only if luxfer_render_params.preview is
+/// not 0.
 pub const LUXFER_RENDER_PREVIEW_INTERVAL: luxfer_render_image = 5;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -138,16 +140,16 @@ pub struct luxfer_render_report {
     pub error: f64,
     /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x 8
-    /// pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview.
+    /// Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root mean
+    /// square over all blocks, divided by the image's mean. 0 without a preview.
     pub preview_bias: f64,
     /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
     /// paths. With few paths this estimate is too high: with 8 paths by about a quarter.
     pub relative_error: f64,
     /// Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
-    /// divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a pixel has
-    /// fewer than four paths; 0 without a preview.
+    /// divided by the image's mean. Compare it with the field error, which is that of the unfiltered image. Infinite
+    /// while a pixel has fewer than four paths; 0 without a preview.
     pub preview_error: f64,
 }
 
@@ -258,8 +260,9 @@ pub unsafe extern "C" fn luxfer_render_set_camera(
 }
 
 /// Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
-/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+/// and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
+/// of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start(
     render: *mut luxfer_render,
@@ -328,8 +331,8 @@ pub unsafe extern "C" fn luxfer_render_get_image(
 }
 
 /// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
-/// lamps of the scene cannot be reached from the surfaces that the image shows, directly or by reflection. The
-/// rendering learns this from its first paths; later paths hardly ever sample these lamps, which does not change the
+/// lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
+/// rendering learns this from its first paths. Later paths hardly ever sample these lamps, which does not change the
 /// expected image. Any thread.
 ///
 /// The text has one sentence per line and is zero-terminated UTF-8, truncated to capacity bytes including the zero.

@@ -3,25 +3,28 @@
 //! Additional images (layers) from the same paths as the main image: light that light path expressions select, and
 //! properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
 //! runs or afterwards. The layers of expressions come first, in the order in which they were added, then the AOVs in
-//! the order of their flags. The main image is equal to the bit with and without layers.
+//! the order of their flags. Layers do not change the main image by a single bit.
+//!
+//! AOVs describe the first surface that a path from the camera meets; clear panes and mirrors count as surfaces. Depth,
+//! distance, position and normals are means over the samples of the pixel that meet a surface.
 //!
 //! A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
 //! | ( ) have their usual meaning. It has one of two forms.
 //!
-//! From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". D is a diffuse event, S
-//! is every other event.
+//! From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is any light, D is a
+//! diffuse event, S is every other scattering event.
 //!
 //! From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
-//! has a type and a scattering mode. The types are R (reflection), T (transmission) and V (volume, never occurs here).
-//! The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see
-//! luxfer_emitter_as.
+//! has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such as G, matches any event with
+//! this type or mode. The types are R (reflection), T (transmission) and V (volume, never occurs here). The modes are D
+//! (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as.
 //!
-//! A label in quotes is a name: the name of a mesh or of its material; Name#0, Name#1, ... for the patches of its
-//! emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for the scene's punctual lights in
-//! their order; environment for the scene's environment.
+//! A label in quotes restricts an event to an object or a light. It is the name of a mesh or of its material; Name#0,
+//! Name#1, ... for the patches of its emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for
+//! the scene's punctual lights in their order; environment for the scene's environment.
 //!
-//! Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
-//! alone or with _direct or _indirect.
+//! Arnold's built-in names work too: beauty, direct, indirect, emission, background, and diffuse, specular,
+//! transmission, each alone or with _direct or _indirect.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -40,20 +43,23 @@ use std::path::Path;
 pub const LUXFER_AOV_DEPTH: u32 = 1;
 /// Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z.
 pub const LUXFER_AOV_DISTANCE: u32 = 2;
-/// Position in world space, in metres. Layer Position, channels X Y Z.
+/// Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z.
 pub const LUXFER_AOV_POSITION: u32 = 4;
 /// Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X Y Z.
 pub const LUXFER_AOV_NORMAL: u32 = 8;
 /// Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer GeometricNormal,
 /// channels X Y Z.
 pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
-/// Albedo at normal incidence. Layer Albedo, channels R G B.
+/// Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo, channels R
+/// G B.
 pub const LUXFER_AOV_ALBEDO: u32 = 32;
-/// Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer IndexOB, channel
-/// X.
+/// Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of any mesh
+/// that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights have
+/// the number of meshes plus i plus 1. Layer IndexOB, channel X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
-/// Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer IndexMA,
-/// channel X.
+/// Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority, of any
+/// material that was hit. 0 where there is no surface. The faces of luminaires have the number of materials plus 1.
+/// Layer IndexMA, channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
 /// Share of the pixel that surfaces cover. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;
@@ -72,7 +78,8 @@ pub const LUXFER_EMITTER_AS_LIGHT: luxfer_emitter_as = 1;
 pub const LUXFER_EMITTER_AS_OBJECT: luxfer_emitter_as = 2;
 
 /// Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
-/// without dots, quotes or control characters, and different from the names of the other layers. Any thread.
+/// without dots, quotes or control characters. It must differ from the names of the other layers and of all AOVs, and
+/// from Combined and Variance. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
 /// LUXFER_INVALID_OPERATION while a job runs. The rendering's job ends with LUXFER_NOT_FOUND if no object of the scene
 /// has a label that the expression names, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
@@ -237,7 +244,8 @@ fn encode(film: &Film) -> Result<Vec<u8>> {
     let mut layers = vec![io::Layer { name: "", image: &film.beauty, channels: &["R", "G", "B"] }];
     let mut notes = vec![("luxfer.unit".to_string(), "cd/m^2".to_string())];
     for layer in &film.layers {
-        // Alpha and Z also go into the main image, where programs without layers look for them.
+        // Programs without layers look for A and Z in the main image. So alpha goes into the main image instead of a
+        // layer, and depth into both.
         if layer.name == Aov::Alpha.name() || layer.name == Aov::Depth.name() {
             layers.push(io::Layer { name: "", image: &layer.image, channels: layer.channels });
         }

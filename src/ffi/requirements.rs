@@ -24,11 +24,11 @@ pub const LUXFER_SCATTERING_GLASS: u32 = 8;
 /// At least one surface is partly transparent because of its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
-/// At least one surface emits.
+/// At least one surface emits; the faces of luminaires count.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
 /// At least one surface has an emission texture.
 pub const LUXFER_LIGHTS_TEXTURE: u32 = 2;
-/// At least one point light has an intensity above 0.
+/// At least one point light, or luminaire that shines from a point, has an intensity above 0.
 pub const LUXFER_LIGHTS_POINT: u32 = 4;
 /// At least one spot light has an intensity above 0.
 pub const LUXFER_LIGHTS_SPOT: u32 = 8;
@@ -49,14 +49,15 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light with
-    /// more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For information
-    /// only: no rendering ends paths at this number.
+    /// Number n of bounces that matter: light with more than n bounces is at most the share error of all scattered
+    /// light, where error is the argument of luxfer_scene_get_requirements. n is the smallest integer with a^n <=
+    /// error, where a is the largest channel of the field albedo. 0 if there is no such number. For information only:
+    /// no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,
-    /// Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects and
-    /// transmits.
+    /// Upper bound of the albedo of all surfaces, per channel, in [0, 1]. The albedo is the share of the received light
+    /// that a surface reflects or transmits.
     pub albedo: [f32; 3],
     /// Number of triangles with zero area, which are skipped.
     pub flat_triangles: u32,

@@ -60,7 +60,8 @@ versioned!(luxfer_scene_counts, [32], {
     Self { struct_size: 32, meshes: 0, materials: 0, textures: 0, lights: 0, cameras: 0, triangles: 0 }
 });
 
-/// A planar surface of a scene: triangles in one plane, and their bounding rectangle.
+/// A planar surface of a scene: triangles in one plane, and their bounding rectangle. Seen from the room, u runs to the
+/// right and v runs down, as in an image.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_surface {
@@ -307,11 +308,11 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, the
-/// radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the
-/// radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is
-/// towards -z, its top towards +y, the centre of its right half towards +x. The renderer samples the image in
-/// proportion to its brightness. The image is copied. Any thread.
+/// Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
+/// the radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise
+/// the radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image
+/// is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn
+/// in proportion to the brightness of the image. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
@@ -371,7 +372,8 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
 }
 
 /// Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
-/// object or material, in UTF-8. size is sizeof *found. Any thread.
+/// object or material, in UTF-8. If no name is equal to it, a name that differs only in upper and lower case is taken;
+/// if there is none, the only name that contains it. size is sizeof *found. Any thread.
 /// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
 /// there is no planar surface.
 #[unsafe(no_mangle)]
@@ -400,10 +402,11 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 }
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
-/// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material, which
-/// emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the new
-/// mesh and material; each pointer may be NULL. Any thread.
-/// Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
+/// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
+/// side towards the room, this copy emits texture * (red, green, blue) in cd/m², each factor in [0, 1e15]. *mesh and
+/// *material receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
+/// Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
+/// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
     scene: *mut luxfer_scene,

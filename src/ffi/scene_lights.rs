@@ -118,8 +118,8 @@ pub struct luxfer_luminaire_params {
     pub shape: luxfer_luminaire_shape,
     /// Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution.
     pub flux: f64,
-    /// Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). A
-    /// flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not hidden.
+    /// Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
+    /// Flat faces are moved outwards by at least 0.2 mm, so that a ceiling in the same plane does not hide them.
     pub position: [f32; 3],
     /// Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down.
     pub axis: [f32; 3],
@@ -179,9 +179,9 @@ impl luxfer_luminaire_params {
 
 /// Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
 /// distribution. *index, unless NULL, receives its index among the punctual lights. It shines from the faces of its
-/// luminous opening, which are black where they do not emit: they block light and reflect none. If its file states no
-/// size, or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may
-/// be NULL for the defaults. Any thread.
+/// luminous opening. Faces that do not emit are black: they block light and reflect none. If its file states no size,
+/// or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be
+/// NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

@@ -19,9 +19,9 @@ use std::path::Path;
 /// From where a luminaire shines: a LUXFER_LUMINAIRE_ value.
 pub type luxfer_luminaire_shape = i32;
 /// A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
-/// a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in each direction, the
-/// intensity divided by the projected area of the faces. So the light is right at any distance, and renderings show
-/// the faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
+/// a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the same luminance: the intensity
+/// divided by the projected area of the faces. The light is therefore right at any distance, and renderings show the
+/// faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
 pub const LUXFER_LUMINAIRE_FACES: luxfer_luminaire_shape = 0;
 /// A luminaire shines from its position as from a point, and is invisible in renderings. The light is right only at
 /// distances of at least five times its size.
@@ -51,7 +51,7 @@ pub struct luxfer_scene_load_params {
     pub unit: f64,
     /// 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
     /// relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
-    /// origin of the file, and rounding to floats moves them.
+    /// origin of the file; far from it, the rounding of coordinates to floats moves them.
     pub keep_origin: u32,
     /// From where the luminaires of the file (EXT_lights_ies) shine: a LUXFER_LUMINAIRE_ value; default
     /// LUXFER_LUMINAIRE_FACES.
@@ -111,9 +111,9 @@ pub unsafe extern "C" fn luxfer_scene_load(
     })
 }
 
-/// Loads a scene from a GLB or glTF file in memory of size bytes at data. If this file names other files, they are
-/// read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others. Settings, ownership,
-/// threads and errors are as for luxfer_scene_load.
+/// Loads a scene from a GLB or glTF file in memory, which has size bytes and starts at data. If this file names other
+/// files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others.
+/// Settings, ownership, threads and errors are as for luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
     context: *mut luxfer_context,

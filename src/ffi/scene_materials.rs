@@ -35,7 +35,8 @@ pub const LUXFER_ALPHA_BLEND: luxfer_alpha_mode = 2;
 pub struct luxfer_material_params {
     /// sizeof(luxfer_material_params), set by luxfer_material_params_init.
     pub struct_size: u32,
-    /// 1, the default: back faces reflect and emit as front faces do; 0: only front faces do.
+    /// 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block light in
+    /// both cases.
     pub double_sided: u32,
     /// Name in UTF-8, copied; NULL, the default: no name.
     pub name: *const c_char,
@@ -47,9 +48,10 @@ pub struct luxfer_material_params {
     pub roughness: f32,
     /// Emission per channel in cd/m², each in [0, 1e15]; default 0.
     pub emission: [f32; 3],
-    /// Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
+    /// Share of the light entering the surface that passes straight through it, instead of being reflected diffusely,
+    /// in [0, 1]; default 0.
     pub transmission: f32,
-    /// Index of refraction in [1, 4]; default 1.5.
+    /// Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly.
     pub ior: f32,
     /// Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1.
     pub alpha: f32,

@@ -30,7 +30,7 @@ pub struct luxfer_mesh_params {
     pub positions: *const c_void,
     /// Bytes from one position to the next; at least 12, or 0, the default: packed.
     pub position_stride: usize,
-    /// Normals: three floats per vertex, finite; NULL, the default: faces are flat.
+    /// Normals: three floats per vertex, finite; NULL, the default: triangles are shaded flat.
     pub normals: *const c_void,
     /// Bytes from one normal to the next; at least 12, or 0, the default: packed.
     pub normal_stride: usize,

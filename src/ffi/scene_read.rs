@@ -38,7 +38,7 @@ pub struct luxfer_mesh_info {
     pub vertex_count: usize,
     /// Number of triangles.
     pub triangle_count: usize,
-    /// 1 if each vertex has a normal, 0 if the faces are flat.
+    /// 1 if each vertex has a normal, 0 if triangles are shaded flat.
     pub has_normals: u32,
     /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second.
     pub uv_sets: u32,

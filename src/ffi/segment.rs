@@ -30,8 +30,8 @@ pub type luxfer_segment_image = i32;
 pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
 /// The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
-/// The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another
-/// stroke helps.
+/// How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions that resemble
+/// the painted lamps but not closely enough for the mask, else 0. Where it is high, another stroke helps.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
 /// The subject of a segmentation: a LUXFER_SUBJECT_ value.
@@ -39,9 +39,10 @@ pub type luxfer_subject = i32;
 /// Chooses the subject: lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as
 /// luxfer_features makes them; else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
-/// A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
-/// restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of
-/// these, the mask is restricted to its connected parts that positive strokes touch.
+/// A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
+/// of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
+/// ceiling that the positive strokes lie on. If they lie on more than one of these, it is restricted to the connected
+/// parts of the mask that positive strokes touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -54,12 +55,14 @@ pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 pub struct luxfer_segment_params {
     /// sizeof(luxfer_segment_params), set by luxfer_segment_params_init.
     pub struct_size: u32,
-    /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
+    /// Maximum number of pixels that are drawn as samples from the strokes of each class, in [1, 1000000]; default
+    /// 1000.
     pub samples_per_class: u32,
     /// Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
     /// tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
-    /// smallest error on held-out strokes. With another number of channels, 0 uses all channels. For lights use 7,
-    /// colour only, since lights and plane have one geometry.
+    /// smallest error on held-out strokes. Sets with position are left out if the mask will be restricted to a wall,
+    /// floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. For
+    /// lights use 7, colour only, since lights and their plane have the same geometry.
     pub channels: u32,
     /// Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
     /// The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three

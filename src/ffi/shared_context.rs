@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// Number of threads whose last error message a context keeps: those that failed last.
+/// Maximum number of threads whose last error message a context keeps. If more threads fail, the oldest message is
+/// dropped.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.

@@ -76,7 +76,7 @@ pub struct luxfer_sheet_report {
     /// Root mean square distance, in pixels of the photo, between the found marks and the positions that to_photo
     /// predicts for them. If it is more than one or two pixels, the paper is not flat or the lens distorts.
     pub residual: f64,
-    /// Expected alignment error in pixels of the picture.
+    /// Expected alignment error in pixels of the picture, from the residual and the number of marks.
     pub error: f64,
     /// Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row.
     pub to_photo: [f64; 9],

@@ -36,8 +36,7 @@ pub const LUXFER_INTERNAL: luxfer_status = 10;
 pub const LUXFER_DEGENERATE: luxfer_status = 11;
 /// No surface, image or entry has the given name or index.
 pub const LUXFER_NOT_FOUND: luxfer_status = 12;
-/// No light can reach the target: there is no light path, all light of a channel is absorbed, or negative light would
-/// be needed.
+/// No solution exists: no emitted light reaches the target, or the other lights alone exceed the wanted value.
 pub const LUXFER_UNREACHABLE: luxfer_status = 13;
 
 /// Returns the name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The

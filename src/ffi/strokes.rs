@@ -209,7 +209,8 @@ pub unsafe extern "C" fn luxfer_strokes_add_image(
 /// Adds the strokes of a text in UTF-8. Each line has a class, a radius in pixels, and x and y of the points in
 /// pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a
 /// comment. Any thread.
-/// LUXFER_FORMAT, naming the line, if the text is malformed.
+/// LUXFER_FORMAT if the text is malformed, LUXFER_INVALID_ARGUMENT if a radius or a coordinate is out of range: the
+/// message names the line.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add_text(
     strokes: *mut luxfer_strokes,
