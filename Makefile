@@ -28,7 +28,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format lint test bench trade blender studio studio-setup docs peers setup clean
+.PHONY: all lib demo format lint test bench trade blender studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -53,8 +53,10 @@ demo: out/lighting_transfer out/stylize
 	./out/stylize --out out
 	@echo "look at out/overview.png and out/stylize.png"
 
-# Installs missing Debian packages, the renderer that tests compare with, and the requirements of the Python package.
-setup:
+# Installs missing Debian packages (packages); the renderer that tests compare with, the requirements of the Python
+# package and the page of the studio (tools).
+setup: packages tools
+packages:
 	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
 	  root=""; [ "$$(id -u)" = 0 ] || root="sudo -n"; \
@@ -63,6 +65,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
+tools: packages
 	@benches/peers/install.sh mitsuba python dask exr usd report onnx docs studio
 	@$(MAKE) --no-print-directory studio-setup
 
@@ -76,7 +79,9 @@ lint: format
 	@$(CARGO) doc --quiet --no-deps
 	@if $(CARGO) deny --version >/dev/null 2>&1; then $(CARGO) deny check; else echo "skipped: cargo deny is not installed"; fi
 
-test: setup format lib
+# Tools are downloaded while the library is built.
+test: packages format
+	@$(MAKE) --no-print-directory tools & $(MAKE) --no-print-directory lib && wait $$! || { kill $$! 2>/dev/null; exit 1; }
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
