@@ -119,9 +119,10 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     blend(input, &[], params, job)
 }
 
-/// Like [`run`], but blends in the lights of further exemplars by their weight maps. The texture, its lamps and its
-/// statistics describe the blend; the other fields of the result describe the first exemplar only. Errors: as for
-/// [`run`]; weights that are not in `[0, 1]`, or add up to more than 1.
+/// Like [`run`], but blends in the lights of further exemplars by their weight maps. In the result, `law`,
+/// `regularity`, `choice` and the metadata describe the first exemplar only.
+///
+/// Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more than 1.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
     make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
 }

@@ -20,8 +20,8 @@ pub struct Emission {
     pub luminaires: Vec<Luminaire>,
     /// How the pattern continues beyond the exemplar: on a lattice, in a row, by repetition or without a lattice.
     pub law: Law,
-    /// Autocorrelation of the lights at a shift by one period, in `[0, 1]`: the lower value of the two periods; 0 if
-    /// no period was found.
+    /// Autocorrelation of the lights at a shift by one period, in `[0, 1]`: the lower value of the two periods. 0 if
+    /// there is no period, or if the periods were found from the distances between lamps.
     pub regularity: f64,
     /// How well `law` predicts the lamps of the photo, and the best alternative.
     pub choice: Choice,

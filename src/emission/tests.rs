@@ -280,7 +280,8 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
 
 #[test]
 fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
-    // Edges with steps of 5 unwarped pixels, the length of a photo pixel; the steps differ from lamp to lamp.
+    // The left and right edges of a lamp are jagged: they jump every 5 unwarped pixels, the length of a photo pixel.
+    // The jumps differ from lamp to lamp.
     let is_lamp = |x: f64, y: f64| {
         let (x, y) = (x as usize, y as usize);
         let step = [0, 2, 4, 1][(x / 50 + 3 * (y / 40) + y / 5) % 4];
@@ -493,7 +494,8 @@ fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();
     let params = Params { width: 300, height: 280, ..Params::default() };
     let job = Monitor::default();
-    // If the settings differ, the exemplar must be analysed again.
+    // Measure with the settings of the texture and with others. With others that affect the analysis, the exemplar must
+    // be analysed again, so that the result is the same.
     for read_with in [Params::default(), params.clone(), Params { working_side: 64, ..Params::default() }] {
         let measured = measure(&exemplar.input(), &read_with, job.job()).unwrap();
         let result = blend_measured(measured, &exemplar.input(), &[], &params, job.job()).unwrap();

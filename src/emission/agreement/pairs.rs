@@ -11,8 +11,8 @@ const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the distances from 0 to the longest one are divided.
 const STEPS: usize = 100;
 
-/// Points in a window that reaches from the origin to `size`. Any unit of length will do, if both patterns of a
-/// comparison have it.
+/// Points in a rectangular window from the origin to `size`. All lengths may be in any unit, but two patterns that are
+/// compared must have the same unit.
 pub struct Points<'a> {
     pub at: &'a [DVec2],
     pub size: DVec2,

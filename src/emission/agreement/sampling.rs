@@ -1,5 +1,5 @@
-//! Estimates the sampling error of an exemplar's statistics. They have such an error because the exemplar shows only a
-//! part of its ceiling, with few lamps.
+//! Estimates the sampling error of an exemplar's statistics. This error arises because the exemplar shows only a part
+//! of its ceiling, with few lamps.
 //!
 //! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture, of the size
 //! and shape of the region that the photo shows, stand in for the exemplar and are measured like it. The difference

@@ -195,7 +195,8 @@ mod tests {
         }
     }
 
-    /// Statistics of a grid of lamps of 9 × 5 pixels with periods 20 and 16, shifted relative to the window.
+    /// Statistics of a grid of lamps of 9 × 5 pixels with periods 20 and 16, shifted by `shift` pixels relative to an
+    /// image of `width` × `height`.
     fn grid(width: usize, height: usize, shift: [usize; 2], periods: [Option<f64>; 2]) -> Statistics {
         let lit = |i: usize| (i % width + shift[0]) % 20 < 9 && (i / width + shift[1]) % 16 < 5;
         let components = components::find(width, height, lit).unwrap();

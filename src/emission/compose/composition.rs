@@ -1,8 +1,8 @@
 //! The composition of a texture: the plan of the positions of all lamps and patches, from which texels are rendered.
 //!
-//! A composition holds positions only. Any tile of the texture can be rendered from it, so a texture of any size needs
-//! the memory of one tile. A texel depends on nothing but its position, so the bits of the texture do not depend on
-//! the tiles, their order or the number of threads.
+//! A composition holds positions, but no texels. Any tile of the texture can be rendered from it, so rendering needs
+//! the memory of one tile only, whatever the size of the texture. The colour of a texel does not depend on other
+//! texels, so the bits of the texture do not depend on the tiles, their order or the number of threads.
 
 use super::bands::Bands;
 use super::draw;

@@ -1,4 +1,5 @@
-//! A coarse map of the light of an exemplar. Most texels are dark; the map finds them without reading their pixels.
+//! A coarse map of the light of an exemplar. Most texels are dark; the map finds dark texels without reading the pixels
+//! that they show.
 
 use crate::emission::exemplar::Exemplar;
 use crate::error::Result;

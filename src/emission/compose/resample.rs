@@ -1,8 +1,8 @@
 //! Resamples the photo under a texel: computes its mean colour over a small square of the unwarped image.
 //!
-//! The homography maps the square to a quadrangle in the photo. The sides of the quadrangle are divided into steps of
-//! about one photo pixel, and the colours at these points are averaged. Cubic interpolation gives the colour at a
-//! point (Catmull and Rom 1974). Detail is thus kept where the photo is magnified, and averaged where it is reduced.
+//! The homography maps the square to a quadrangle in the photo. The colours at a grid of points in the quadrangle,
+//! about one photo pixel apart, are averaged. Cubic interpolation gives the colour at a point (Catmull and Rom 1974).
+//! Detail is thus kept where the photo is magnified, and averaged where it is reduced.
 //! If the quadrangle is at least [`MIN_PIXELS`] photo pixels wide, the points are read from a copy of the photo at 1/2,
 //! 1/4, … of its size. In this copy, the quadrangle is 4 to 8 pixels wide.
 //!
@@ -27,7 +27,7 @@ const MAX_POINTS: f64 = 32.0;
 /// [bench emission:recovery]
 const MIN_PIXELS: f64 = 8.0;
 
-/// The photo and its smaller copies, each half as large as the one before.
+/// The photo and its smaller copies, each with half the width and height of the one before.
 #[derive(Clone, Copy)]
 pub struct Levels<'a> {
     pub photo: &'a Image,

@@ -30,7 +30,7 @@ impl Component {
 }
 
 pub struct Components {
-    /// For every pixel 0, or the index of its component plus 1.
+    /// For every pixel the index of its component plus 1; 0 for unlit pixels.
     pub labels: Vec<u32>,
     /// The components in the order of their first pixel, row by row.
     pub list: Vec<Component>,

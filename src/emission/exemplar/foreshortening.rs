@@ -31,8 +31,8 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// Length of a photo pixel in unwarped pixels, along x and along y. If an edge of a lamp perpendicular to the axis
-    /// moves by one pixel in the photo, it moves by this length in the unwarped image.
+    /// Length of a photo pixel in unwarped pixels, along x and along y. If an edge perpendicular to the axis moves by
+    /// one pixel in the photo, it moves by this length in the unwarped image.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());

@@ -61,8 +61,9 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
         bluntest = bluntest.min(own);
         is_changed |= lines.cut(bar, &sections, own, light);
     }
-    // Remove the bars that the period predicts, too. A predicted bar stays light where the photo is sharp enough to
-    // show a bar but shows none. Sharp enough means: as sharp as in the least sharp section of a visible bar.
+    // Remove the bars that the period predicts, too. A section of a predicted bar stays lit if the photo is sharp
+    // enough to show a bar there but shows none. Sharp enough means: as sharp as the least sharp section of a visible
+    // bar.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
         is_changed |= lines.cut(bar, &lines.sections(bar), bluntest, light);
