@@ -494,8 +494,8 @@ fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();
     let params = Params { width: 300, height: 280, ..Params::default() };
     let job = Monitor::default();
-    // Measure with the settings of the texture and with others. With others that affect the analysis, the exemplar must
-    // be analysed again, so that the result is the same.
+    // Measure the exemplar with the settings of the texture and with other settings. The texture must be the same: if
+    // the other settings change the analysis, it must be repeated.
     for read_with in [Params::default(), params.clone(), Params { working_side: 64, ..Params::default() }] {
         let measured = measure(&exemplar.input(), &read_with, job.job()).unwrap();
         let result = blend_measured(measured, &exemplar.input(), &[], &params, job.job()).unwrap();

@@ -153,7 +153,7 @@ impl Layer {
     /// but only where its pattern has not ended. If lamps are drawn from designs, the areas are corrected to those of
     /// the designs.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
-        // If the exemplar repeats as a whole, the exemplar itself is one period.
+        // If the exemplar repeats as a whole, the exemplar itself is one period, for which infinity stands.
         let periods = match self.law {
             Law::Whole(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),

@@ -6,8 +6,8 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Two lamps are of one kind if each side differs by at most this share, plus an allowance for measurement error and
-/// bloom. [judged on 20 photos]
+/// Two lamps are of one kind if they differ along each axis by at most this share of the longer side, plus an allowance
+/// for measurement error and bloom. [judged on 20 photos]
 const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 /// Allowances when sides of two lamps are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`:
 /// lengthening of a side by bloom. In unwarped pixels, bloom differs between the lamps if unwarping magnifies them
