@@ -34,7 +34,8 @@ pub struct luxfer_stylize {
 
 /// How the values of a guide are compared: a LUXFER_GUIDE_ value.
 pub type luxfer_guide_range = i32;
-/// Linear light >= 0, such as a rendering; its values are compared as they would look on a screen.
+/// Linear light >= 0, such as a rendering. Its values are clipped at white (1) and compared in the sRGB encoding. If
+/// the 99.9th percentile of source and target together exceeds 1, all values are divided by this percentile first.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
 /// Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
 /// to [0, 1].
@@ -58,7 +59,7 @@ pub(super) struct Inputs {
     source_mask: Option<Arc<Pixels>>,
     target: Target,
     motion: Option<Arc<Pixels>>,
-    /// The surfaces of the target scene, if luxfer_stylize_add_guides added its guides.
+    /// The surfaces of the target scene; known only if luxfer_stylize_add_guides has added the guides of this scene.
     surfaces: Option<Arc<Surfaces>>,
 }
 
@@ -189,10 +190,10 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
 /// Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
 /// paint. Any thread.
 ///
-/// The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure,
-/// under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the
-/// LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or "materials", each with
-/// weight extra_weight, in [0, 1e6].
+/// The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure:
+/// the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",
+/// "indirect" and "two bounces", and each has weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the
+/// guide "caustics", "normals", "edges" or "materials", each with weight extra_weight, in [0, 1e6].
 /// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
 /// range.
 #[unsafe(no_mangle)]
@@ -290,8 +291,8 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     })
 }
 
-/// Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
-/// moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. It is found anew where the
+/// Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame moves
+/// with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. The paint is found anew where the
 /// light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
 ///
 /// The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
@@ -398,9 +399,9 @@ pub unsafe extern "C" fn luxfer_stylize_update(
 ///
 /// The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
 /// the inverse mask and the artwork. The painted pixels stay as they are. The new paint continues strokes across the
-/// border of the painted part and joins it almost without a step, and hardly any patch of the artwork is used more than
-/// 100 times as often as the mean. If the painted part lacks light that the rest shows, the result has the warning
-/// LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
+/// border of the painted part, and at this border its colours change hardly more abruptly than elsewhere. Hardly any
+/// patch of the artwork is used more than 100 times as often as the mean. If the painted part lacks light that the rest
+/// shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

@@ -26,7 +26,7 @@ pub(super) struct Finished {
     /// Root mean square of the guide error.
     pub guide_rms: f64,
     pub usage: Usage,
-    /// Share of whole exemplar pixels.
+    /// Share of the painted pixels that are whole exemplar pixels instead of blends, in `[0, 1]`.
     pub whole: f64,
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.

@@ -1,7 +1,7 @@
 //! Settings of a stylisation
 //!
-//! Presets and settings. The defaults were chosen from the curves of quality against time that benches/stylit.rs
-//! draws.
+//! Presets and settings. "The paper" is Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based Stylization of 3D
+//! Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
 
 use super::guard::guard;
 use super::params::{self, versioned};
@@ -29,7 +29,8 @@ pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
 pub const LUXFER_STYLIZE_MODE_UNIFORM: luxfer_stylize_mode = 1;
 /// Each target patch takes its nearest exemplar patch (Wexler et al. 2007).
 pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
-/// Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread.
+/// One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour (Hertzmann
+/// et al. 2001); runs on one thread.
 pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
 /// Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
 /// et al. 2001).
@@ -40,7 +41,7 @@ pub const LUXFER_STYLIZE_MODE_OCCURRENCE: luxfer_stylize_mode = 5;
 
 /// The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
 pub type luxfer_stylize_search = i32;
-/// PatchMatch, the default.
+/// PatchMatch (Barnes et al. 2009), the default.
 pub const LUXFER_STYLIZE_SEARCH_PATCHMATCH: luxfer_stylize_search = 0;
 /// A k-d tree over the mean colours and guides of patches.
 pub const LUXFER_STYLIZE_SEARCH_TABLE: luxfer_stylize_search = 1;
@@ -57,10 +58,10 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
 /// each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
-/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
-/// picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
-/// transitions in smooth paint, and edges as sharp as in the artwork. luxfer_stylize_report.whole is the share of whole
-/// pixels.
+/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST. The proportion varies, so that each place of the
+/// picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
+/// pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
+/// luxfer_stylize_report.whole is the share of whole pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
@@ -79,7 +80,8 @@ pub struct luxfer_stylize_params {
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
     pub guide_weight: f32,
-    /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6.
+    /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The coarsest
+    /// level is at least 5 patches wide and high.
     pub levels: u32,
     /// Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting.
     pub iterations: u32,
@@ -99,8 +101,9 @@ pub struct luxfer_stylize_params {
     /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
     /// may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
-    /// Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It applies
-    /// to the sweeps after each matching; see settle.
+    /// Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between two
+    /// neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the sweeps
+    /// after each matching; see settle.
     pub seam: f32,
     /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
     /// LUXFER_STYLIZE_VOTE_WEIGHTED.
@@ -126,10 +129,11 @@ pub struct luxfer_stylize_params {
     pub coarse_guides: f32,
     /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
-    /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; 0
-    /// is LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a
-    /// patch of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
-    /// differences of channels in [0, 1] (Eq. 1).
+    /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
+    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty
+    /// is added to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over
+    /// the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
+    /// lambda.
     pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,

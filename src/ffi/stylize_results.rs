@@ -24,8 +24,8 @@ pub type luxfer_stylize_image = i32;
 /// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it
 /// is smaller than the target: the target's sides are halved luxfer_stylize_report.halvings times, rounded down.
 pub const LUXFER_STYLIZE_IMAGE_PICTURE: luxfer_stylize_image = 0;
-/// Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from which the
-/// pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
+/// Weighted root mean square difference, in [0, 1], between the guides at a pixel and the guides at the place in the
+/// exemplar from which the pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
 pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
 /// Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
 /// channels.
@@ -48,8 +48,9 @@ pub struct luxfer_stylize_report {
     pub patch: u32,
     /// Number of uses of the exemplar patch that was used most often.
     pub max_uses: u32,
-    /// Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All channels
-    /// of the artwork together have the weight 1, all guides together have the weight guide_weight.
+    /// Mean squared difference of matched patches after the last round (Fiser et al. 2016, Eq. 3), with channels in [0,
+    /// 1]. All channels of the artwork together have the weight 1. All guides together have the weight guide_weight;
+    /// before the finest level is finished, they have guide_weight * coarse_guides.
     pub energy: f64,
     /// Share of the exemplar patches that were used, in [0, 1].
     pub used: f64,
@@ -110,7 +111,8 @@ pub struct luxfer_stylize_round {
     pub struct_size: u32,
     /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
     pub passes: u32,
-    /// Energy after this round, defined as for luxfer_stylize_report.energy.
+    /// Energy after this round, as luxfer_stylize_report.energy. On all levels but the finest, all guides together have
+    /// the weight guide_weight * coarse_guides.
     pub energy: f64,
 }
 

@@ -77,13 +77,13 @@ pub struct luxfer_transfer_params {
     pub struct_size: u32,
     /// Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048.
     pub max_texels: u32,
-    /// Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]; it sets the scale of
-    /// the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles.
-    /// luxfer_transfer_report states the distance and its error.
+    /// Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]. With
+    /// LUXFER_PATTERN_DISTANCE, it sets the scale of the pattern. 0, the default: estimated from the size of the lamps,
+    /// which are mostly made to fit ceiling tiles. luxfer_transfer_report states the distance and its error.
     pub plane_distance: f64,
-    /// Luminance in cd/m² of the photo's white, in [1e-6, 1e9]; default 100, the luminance of matt white paper in 314
-    /// lux. The strength of the lamps is proportional to it. A photo alone does not determine this luminance: see
-    /// proposed_white of luxfer_transfer_report.
+    /// Luminance in cd/m² of the photo's white (value 1), in [1e-6, 1e9]; default 100, the luminance of matt white
+    /// paper in 314 lux. The strength of the lamps is proportional to it. A photo alone does not determine this
+    /// luminance: see proposed_white of luxfer_transfer_report.
     pub white_luminance: f32,
     /// Part of the photo whose mean colour is matched: a LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
     pub target: luxfer_target,
@@ -341,8 +341,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
 }
 
 /// Sets the strokes on the photo, for the mask of the plane and the mask of the lights. Strokes on lights count as
-/// strokes on the plane too. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no
-/// strokes. Any thread.
+/// strokes on the plane too. Strokes for the plane serve as negative strokes for the lights, except where they cross
+/// lights. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_strokes(
@@ -455,12 +455,14 @@ fn use_segmentation(
     }
 }
 
-/// Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included. All
-/// stages before these must have results. Stages that have ended keep their results even if the job fails. params may
-/// be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included.
+/// Results of earlier stages that these stages use must exist, from an earlier job or from a luxfer_transfer_use_
+/// function. Stages that have ended keep their results even if the job fails. params may be NULL for the defaults. The
+/// caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
 /// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with any status with which a stage
-/// may end; the message names the stage. The job ends at once if the scene does not have the surface.
+/// may end; the message names the stage. If EMISSION is one of the stages and the scene lacks the surface, the job ends
+/// before the first stage.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,

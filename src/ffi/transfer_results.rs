@@ -53,11 +53,12 @@ pub const LUXFER_TRANSFER_RENDER_PREVIEW: luxfer_transfer_image = 11;
 
 /// A scene that the transfer has made: a LUXFER_SCENE_ value.
 pub type luxfer_transfer_scene = i32;
-/// The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor.
+/// The scene with the emission before the stage RELIGHT solves for its factor: the texture times white_luminance of
+/// luxfer_transfer_params, as bright as the lamps in the photo.
 pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
 /// The scene with the solved emission: the result.
 pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
-/// The scene LUXFER_SCENE_LIT with white light of equal luminance.
+/// The scene LUXFER_SCENE_LIT with white instead of coloured emission of equal luminance, for comparison.
 pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
 
 /// Time and error of each stage. The error of a stage without a result is NaN.
@@ -69,7 +70,7 @@ pub struct luxfer_transfer_report {
     /// Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
     /// ended.
     pub fixtures: u32,
-    /// Duration of each stage's last run in seconds; the index is the LUXFER_STAGE_ value.
+    /// Duration of each stage's last run in seconds, 0 without a run; the index is the LUXFER_STAGE_ value.
     pub seconds: [f64; 8],
     /// Largest standard deviation of the directions of the vanishing points, in radians.
     pub view_error: f64,
@@ -94,8 +95,9 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as they
-    /// are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the texture.
+    /// Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo are as
+    /// large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the caller gave
+    /// the texture.
     pub plane_distance: f64,
     /// Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps, it is
     /// about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings determine the
@@ -196,7 +198,7 @@ pub struct luxfer_fixture {
     pub normal: [f32; 3],
     /// Unit vector along the lamp's long axis.
     pub axis: [f32; 3],
-    /// Mean luminance of the lamp per channel in cd/m².
+    /// Mean emission of the lamp: linear RGB in cd/m².
     pub radiance: [f32; 3],
     /// Number of the lamp's kind, as in luxfer_luminaire.
     pub kind: u32,
@@ -204,7 +206,7 @@ pub struct luxfer_fixture {
     pub size: [f64; 2],
     /// Area in m².
     pub area: f64,
-    /// Luminous flux in lumens.
+    /// Luminous flux in lumens: pi * luminance * area, since the lamp is Lambertian.
     pub flux: f64,
     /// Correlated colour temperature of the light in kelvin; 0 for a lamp that is off.
     pub cct: f64,
@@ -314,8 +316,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_report(
     })
 }
 
-/// Gets the camera that was found from the lines of the photo, and the unwarping of the plane. size is sizeof *view.
-/// Any thread.
+/// Gets the camera of the photo, and the unwarping of the plane. The camera was found from the lines and the lamps of
+/// the photo, or set by luxfer_transfer_use_rectify. size is sizeof *view. Any thread.
 /// LUXFER_NOT_READY before the stage VIEW has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_view(

@@ -33,8 +33,8 @@ pub struct luxfer_warnings {
 
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
-/// The vanishing points do not determine the focal length, so it was assumed; the severity is the relative standard
-/// deviation of the focal length.
+/// The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
+/// standard deviation of the focal length.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
@@ -76,12 +76,14 @@ pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
 /// The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is below the
 /// limit.
 pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
-/// No lattice was found on which the lamps lie; the severity is luxfer_emission_report.error.
+/// No lattice was found on which the lamps lie, and the texture differs from the photo; the severity is
+/// luxfer_emission_report.error.
 pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 /// Colour channels do not meet their target; the severity is the number of these channels.
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
-/// The photo clips channels of the target colour, so the values of these channels are only lower bounds; the severity
-/// is the number of these channels.
+/// Channels of the target colour are only lower bounds (LUXFER_CONSTRAINT_AT_LEAST). A transfer sets such a bound if
+/// the photo clips the channel in most pixels that the target colour is computed from. The severity is the number of
+/// these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
 /// A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
 /// height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
@@ -107,24 +109,23 @@ pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
 /// A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does
 /// not rate them. The severity is their number; the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
-/// The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their motion is
-/// unknown: it is NaN. The severity is the share of the picture that shows these objects; the message names them. The
-/// warning points to a pixel of the largest one.
+/// Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles there. Their
+/// motion is unknown and therefore NaN. The severity is the share of the picture that shows these objects; the message
+/// names them. The warning points to a pixel of the largest one.
 pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
-/// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows
-/// another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with
-/// the exact motion of their scenes; otherwise the guides of data, such as object codes, normals or positions, are
-/// compared along the motion, except in a preview, and guides of light alone find no error. The severity is the
-/// share of these pixels among the pixels that were compared. The warning points to the pixel with the largest
-/// error.
+/// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
+/// surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
+/// motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
+/// the motion; without such guides, or in a preview, no error is found. The severity is the share of pixels with wrong
+/// motion among the pixels that were compared. The warning points to the pixel with the largest error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
-/// The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
-/// the artist of a half-painted picture has not painted yet. The new paint there is a guess. The severity is the
-/// share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
-/// the place of the target where most of them lie.
+/// The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
+/// painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of these
+/// pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
+/// the target where most of them lie.
 pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
-/// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The severity is the
-/// share of the exemplar with such light. The warning points to a place of the artwork with such light.
+/// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
+/// the share of the exemplar with such light. The warning points to a place of the artwork with such light.
 pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
 /// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
 /// the difference, in units of the difference that places with equal guides typically have. The warning points to the
@@ -144,7 +145,7 @@ pub struct luxfer_warning {
     /// scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE; for a luxfer_guides or a luxfer_stylize it is
     /// LUXFER_STAGE_STYLIZE.
     pub stage: luxfer_stage,
-    /// 1 if the warning has a place in the photo, else 0.
+    /// 1 if the warning points to a place, else 0.
     pub has_place: u32,
     /// The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
     /// measures.
@@ -152,7 +153,8 @@ pub struct luxfer_warning {
     /// The limit that the severity has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says
     /// that the severity is below the limit.
     pub limit: f64,
-    /// The place in the photo, x and y in pixels; 0 if the warning has no place.
+    /// The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the target or,
+    /// where the comment of the LUXFER_WARNING_ value says so, of the artwork. 0 if the warning has no place.
     pub place: [f64; 2],
     /// The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
     /// luxfer_warnings.

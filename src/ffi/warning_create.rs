@@ -18,7 +18,7 @@ use std::ffi::c_void;
 /// - a luxfer_emission: about the texture; a plan has no warnings;
 /// - a luxfer_relight;
 /// - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
-/// - a luxfer_stylize: about the motion of its latest result;
+/// - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;
 /// - a luxfer_scene: an implausible size, a place far from the origin, luminaires that are invisible in renderings,
 ///   and features of its file that are not rendered.
 ///
