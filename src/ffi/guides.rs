@@ -38,7 +38,7 @@ pub const LUXFER_GUIDES_DIRECT: luxfer_guides_image = 1;
 pub const LUXFER_GUIDES_SPECULAR: luxfer_guides_image = 2;
 /// Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding.
 pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
-/// Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows.
+/// Light reflected once or twice, by diffuse surfaces (LD{1,2}E): unlike direct light, it shows detail in shadows.
 pub const LUXFER_GUIDES_TWO_BOUNCES: luxfer_guides_image = 4;
 /// Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3 channels.
 pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;

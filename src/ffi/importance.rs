@@ -229,7 +229,8 @@ pub unsafe extern "C" fn luxfer_importance_respond(
 /// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
 /// blue) in cd/m², each in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new
 /// paths. texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture reaches the target, or
+/// the other lights alone exceed (red, green, blue).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
     importance: *mut luxfer_importance,

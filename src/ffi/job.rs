@@ -118,7 +118,7 @@ impl Drop for Job {
         // cannot wait for itself.
         let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
         if let Some(thread) = lock(&self.thread).take().filter(is_other) {
-            // The thread catches all panics, so it always ends well.
+            // The thread catches all panics, so `join` returns no error.
             let _ = thread.join();
         }
     }

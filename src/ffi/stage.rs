@@ -51,7 +51,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         })
     }
 
-    /// Stores an intermediate result while a job runs.
+    /// Stores a result: an intermediate one while the job runs, or the final one when the job has succeeded.
     pub(super) fn publish(&self, output: O) {
         lock(&self.state).output = Some(Arc::new(output));
     }

@@ -40,8 +40,8 @@ pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
 /// The lens bends straight lines; the severity is the distortion of luxfer_rectify_report without its sign.
 pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
-/// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in
-/// radians.
+/// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation of an
+/// angle between two room axes from a right angle, in radians.
 pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
 /// There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
 /// confidence of the fit, which is below the limit.
