@@ -79,7 +79,7 @@ impl<'a> Accumulator<'a> {
             TileContext { world: learning, camera_rays, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Skip tiles in which a coarse pass covers no pixel.
-            if !pass.passes_over(grid.corner(tile)) {
+            if !pass.skips_tile(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }
         })?;

@@ -29,7 +29,7 @@ impl Pass {
 
     /// Whether the pass covers no pixel of the tile whose first pixel is given. A pass with a stride of [`TILE`] or
     /// more covers at most the first pixel of a tile.
-    pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
+    pub fn skips_tile(&self, (left, top): (usize, usize)) -> bool {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 

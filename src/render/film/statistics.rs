@@ -74,9 +74,9 @@ impl Accumulator<'_> {
     /// ([`Pixel::trimmed_mean`]), since a rare bright path would raise the variance and the mean alike. If the pixel
     /// has few paths, the estimate is blended with the mean of the tile.
     pub fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
-        let weight = |pixel: &Pixel, tile: f64| {
-            let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
-            if mean > 0.0 { mean / shown.max(MIN_RELATIVE_RADIANCE * mean) } else { 1.0 }
+        let weight = |pixel: &Pixel, tile_mean: f64| {
+            let reference = tile_mean + (pixel.trimmed_mean() - tile_mean) * shrinkage(f64::from(pixel.count()));
+            if mean > 0.0 { mean / reference.max(MIN_RELATIVE_RADIANCE * mean) } else { 1.0 }
         };
         self.statistics(weight, job)
     }
@@ -86,9 +86,9 @@ impl Accumulator<'_> {
     pub fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut sum = Statistics::default();
-            let shown = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
+            let tile_mean = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
             for pixel in self.tile(tile) {
-                let variance = average(pixel.variance()) * weight(pixel, shown).powi(2);
+                let variance = average(pixel.variance()) * weight(pixel, tile_mean).powi(2);
                 sum.paths += u64::from(pixel.count());
                 sum.pixels += 1;
                 sum.max_paths = sum.max_paths.max(pixel.count());

@@ -36,8 +36,8 @@ pub struct Sums {
     corner: [usize; 2],
     grid: Grid,
     /// How many numbers are stored per pixel: radiance sums, then the sums of the layers.
-    width: usize,
-    /// The sums of all pixels in `grid`, tile by tile, `width` numbers for each pixel.
+    numbers_per_pixel: usize,
+    /// The sums of all pixels in `grid`, tile by tile, `numbers_per_pixel` numbers for each pixel.
     numbers: Vec<f64>,
     /// Number of paths dropped because their radiance was not finite.
     discarded: u64,
@@ -48,9 +48,9 @@ impl Sums {
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
-        let width = LIGHT + layers.map_or(0, Layers::summed);
-        let numbers = try_vec(grid.tiles() * AREA * width, 0.0)?;
-        Ok(Self { part: *part, corner, grid, width, numbers, discarded: 0 })
+        let numbers_per_pixel = LIGHT + layers.map_or(0, Layers::summed);
+        let numbers = try_vec(grid.tiles() * AREA * numbers_per_pixel, 0.0)?;
+        Ok(Self { part: *part, corner, grid, numbers_per_pixel, numbers, discarded: 0 })
     }
 
     /// Traces the paths of a part and returns their sums.
@@ -63,24 +63,18 @@ impl Sums {
         let world = &learning.settled()?;
         let prepass = prepass.in_world(world);
         let discarded = AtomicU64::new(0);
-        let Self { corner, grid, width, numbers, .. } = &mut sums;
-        exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
+        let Self { corner, grid, numbers_per_pixel, numbers, .. } = &mut sums;
+        exec::for_rows(numbers, AREA * *numbers_per_pixel, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
-            let length = PathLength {
-                max_bounces: MAX_BOUNCES,
-                roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
-            };
+            let tile_corner = [corner[0] + left, corner[1] + top];
+            let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: prepass.weight(tile_corner) };
             let mut tracer = BlockTracer::new(layers.as_ref());
             // The paths of a block share secondary vertices, so the pixels of the block outside this part are traced
             // too. The layers of these pixels go into this buffer, which is never read.
-            let mut others_of_neighbours = vec![0.0; *width - LIGHT];
+            let mut ignored_layer_sums = vec![0.0; *numbers_per_pixel - LIGHT];
             for replication in 0..REPLICATIONS {
                 for block in blocks(replication) {
-                    let at = |i: usize| [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
-                    let is_there = |[x, y]: [usize; 2]| x < params.width && y < params.height;
-                    let there = block.iter().map(|&i| (i, at(i))).filter(|(_, at)| is_there(*at));
-                    let members: Vec<BlockPixel> =
-                        there.map(|(i, at)| BlockPixel::new(i, at, length, params.seed, replication)).collect();
+                    let members = members_in_image(&block, tile_corner, length, params, replication);
                     if !members.iter().any(|m| part.has(m.at)) {
                         continue;
                     }
@@ -97,11 +91,11 @@ impl Sums {
                         };
                         let sums = tracer.paths(world, &camera_rays, &members, index..index + 1, discard);
                         for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
-                            let numbers = &mut numbers[member.pixel * *width..][..*width];
-                            let (light, others) = numbers.split_at_mut(LIGHT);
+                            let numbers = &mut numbers[member.pixel * *numbers_per_pixel..][..*numbers_per_pixel];
+                            let (light, layer_sums) = numbers.split_at_mut(LIGHT);
                             let is_wanted = part.has(member.at);
                             if let Some(recorders) = tracer.recorders() {
-                                recorders[k].add_to(if is_wanted { others } else { &mut others_of_neighbours });
+                                recorders[k].add_to(if is_wanted { layer_sums } else { &mut ignored_layer_sums });
                             }
                             if is_wanted {
                                 let light = &mut light[3 * replication as usize..][..3];
@@ -119,17 +113,17 @@ impl Sums {
 
     /// Adds the sums of `other`, a part that lies within this one.
     pub fn join(&mut self, other: &Self, layers: Option<&Layers>, job: Job) -> Result<()> {
-        let Self { corner, grid, width, numbers, .. } = self;
-        exec::for_rows(numbers, AREA * *width, job, |tile, numbers| {
+        let Self { corner, grid, numbers_per_pixel, numbers, .. } = self;
+        exec::for_rows(numbers, AREA * *numbers_per_pixel, job, |tile, numbers| {
             let (left, top) = grid.corner(tile);
-            for (i, numbers) in numbers.chunks_exact_mut(*width).enumerate() {
+            for (i, numbers) in numbers.chunks_exact_mut(*numbers_per_pixel).enumerate() {
                 let at = [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
                 if other.part.has(at) {
-                    let (light, others) = numbers.split_at_mut(LIGHT);
-                    let (other_light, other_others) = other.numbers(at).split_at(LIGHT);
+                    let (light, layer_sums) = numbers.split_at_mut(LIGHT);
+                    let (other_light, other_layer_sums) = other.numbers(at).split_at(LIGHT);
                     light.iter_mut().zip(other_light).for_each(|(sum, other)| *sum += other);
                     if let Some(layers) = layers {
-                        layers.join_sums(others, other_others);
+                        layers.join_sums(layer_sums, other_layer_sums);
                     }
                 }
             }
@@ -151,30 +145,45 @@ impl Sums {
     }
 
     /// Returns how many numbers are stored per pixel.
-    pub fn width(&self) -> usize {
-        self.width
+    pub fn numbers_per_pixel(&self) -> usize {
+        self.numbers_per_pixel
     }
 
     /// Returns the radiance sum of each replication (point sequence), and the sums of the layers. The list of
     /// replications begins with the one that contains the part's first path, as `Pixel::of_sums` expects.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
-        let (light, others) = self.numbers([x, y]).split_at(LIGHT);
+        let (light, layer_sums) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;
-        (std::array::from_fn(|i| DVec3::from_slice(&light[3 * ((first + i) % REPLICATIONS as usize)..])), others)
+        (std::array::from_fn(|i| DVec3::from_slice(&light[3 * ((first + i) % REPLICATIONS as usize)..])), layer_sums)
     }
 
     /// Returns all sums of a pixel of the part: radiance, then layers.
     pub fn numbers(&self, at: [usize; 2]) -> &[f64] {
-        &self.numbers[self.place(at)..][..self.width]
+        &self.numbers[self.place(at)..][..self.numbers_per_pixel]
     }
 
     pub fn numbers_mut(&mut self, at: [usize; 2]) -> &mut [f64] {
         let place = self.place(at);
-        &mut self.numbers[place..][..self.width]
+        &mut self.numbers[place..][..self.numbers_per_pixel]
     }
 
     fn place(&self, [x, y]: [usize; 2]) -> usize {
         let (tile, i) = self.grid.locate(x - self.corner[0], y - self.corner[1]);
-        (tile * AREA + i) * self.width
+        (tile * AREA + i) * self.numbers_per_pixel
     }
+}
+
+/// Returns the pixels of a block that lie in the image, for the paths of one replication (point sequence). `block`
+/// holds the indices of the pixels in their tile, and `tile_corner` is the column and row of the tile's first pixel.
+fn members_in_image(
+    block: &[usize],
+    tile_corner: [usize; 2],
+    length: PathLength,
+    params: &Params,
+    replication: u32,
+) -> Vec<BlockPixel> {
+    let at = |i: usize| [tile_corner[0] + i % TILE, tile_corner[1] + i / TILE];
+    let is_in_image = |[x, y]: [usize; 2]| x < params.width && y < params.height;
+    let members = block.iter().map(|&i| (i, at(i))).filter(|(_, at)| is_in_image(*at));
+    members.map(|(i, at)| BlockPixel::new(i, at, length, params.seed, replication)).collect()
 }

@@ -4,7 +4,7 @@
 use super::Lights;
 use super::lamps::Lamps;
 use super::reach::{Reach, Split, unlikely_share, weights};
-use super::survey::{ENOUGH, Evidence, Progress, Survey};
+use super::survey::{ENOUGH, Progress, SampleCounts, Survey};
 use crate::error::Result;
 use crate::render::vicinity::Places;
 use std::sync::Arc;
@@ -40,13 +40,14 @@ impl Lights {
     /// all paths so far, but not on their order.
     pub fn learned(&self) -> Result<Option<Self>> {
         let Some(survey) = &self.survey else { return Ok(None) };
-        let evidence = survey.evidence()?;
-        let counted: u64 = evidence.iter().map(|e| e.drawn).sum();
+        let sample_counts = survey.sample_counts()?;
+        let counted: u64 = sample_counts.iter().map(|e| e.drawn).sum();
         if counted < self.progress.next {
             return Ok(None);
         }
-        let weights = weights(&self.inventory, &self.all.tree, &evidence)?;
-        let unlikely = evidence.iter().zip(&weights).filter(|&(_, &w)| w == 0.0).map(|(e, _)| e.drawn).sum::<u64>();
+        let weights = weights(&self.inventory, &self.all.tree, &sample_counts)?;
+        let unlikely =
+            sample_counts.iter().zip(&weights).filter(|&(_, &w)| w == 0.0).map(|(e, _)| e.drawn).sum::<u64>();
         let later = (2 * counted).min(counted + DECISION.max(self.inventory.count() as u64 / 2));
         let mut lights = Self { progress: Progress { counted, next: later }, ..self.clone() };
         match &self.split {
@@ -71,8 +72,8 @@ impl Lights {
     /// environment arrive.
     pub fn places(&self) -> Result<Option<(&Places, u64)>> {
         let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) else { return Ok(None) };
-        let mut far = Evidence::default();
-        survey.evidence()?[self.inventory.bounds.len()..].iter().for_each(|&e| far += e);
+        let mut far = SampleCounts::default();
+        survey.sample_counts()?[self.inventory.bounds.len()..].iter().for_each(|&e| far += e);
         let is_open = far.arrived as f64 > MAX_OPEN * far.drawn as f64;
         Ok((!is_open).then_some((&survey.places, self.progress.counted)))
     }

@@ -15,14 +15,15 @@
 //!
 //! Before a light has samples of its own, the probability that its samples arrive is estimated from its neighbours in
 //! the light tree: if many of them are hidden, the light is probably hidden too. A neighbour counts as at most
-//! [`MAX_WITNESS`] samples, because a bright light with many samples says little about a dim light without samples.
+//! [`MAX_NEIGHBOUR_SAMPLES`] samples, because a bright light with many samples says little about a dim light without
+//! samples.
 //!
 //! A render that wastes few light samples on hidden lights keeps the selector of all lights. Its image is then the
 //! same, bit for bit, as without learning.
 
 use super::bounds::Receiver;
 use super::selector::{Inventory, Selector};
-use super::survey::Evidence;
+use super::survey::SampleCounts;
 use super::tree::{Child, LightTree};
 use crate::error::Result;
 use crate::image::try_vec;
@@ -38,7 +39,7 @@ const UNLIKELY_ROOT: f64 = 4.0;
 /// When the samples of a light's neighbours in the light tree serve to estimate whether its own samples arrive, each
 /// neighbour counts as at most this many samples. The counts of a neighbour with more samples, drawn and arrived, are
 /// scaled down by the same factor. [judged on 3 scenes]
-const MAX_WITNESS: f64 = 16.0;
+const MAX_NEIGHBOUR_SAMPLES: f64 = 16.0;
 /// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
 /// arrives. This factor is rounded to a power of two and is at least this value. [judged on 3 scenes]
 const MIN_WEIGHT: f64 = 0.125;
@@ -143,11 +144,11 @@ pub fn unlikely_share(samples: u64) -> f64 {
 /// - √p minimises the variance if p is the same for all receivers.
 /// - √p is rounded to a power of two and is at least [`MIN_WEIGHT`]. Due to the rounding, one sample more or less
 ///   seldom changes the factors, and lights whose samples nearly all arrive keep the factor 1.
-pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> Result<Vec<f32>> {
+pub fn weights(lights: &Inventory, tree: &LightTree, sample_counts: &[SampleCounts]) -> Result<Vec<f32>> {
     let mut priors = try_vec(lights.len(), 1.0)?;
-    neighbour_priors(tree, evidence, &mut priors)?;
+    neighbour_priors(tree, sample_counts, &mut priors)?;
     let mut weights = try_vec(lights.len(), 0.0)?;
-    for ((weight, prior), own) in weights.iter_mut().zip(priors).zip(evidence) {
+    for ((weight, prior), own) in weights.iter_mut().zip(priors).zip(sample_counts) {
         let arrival = (own.arrived as f64 + prior) / (own.drawn as f64 + 1.0);
         if own.arrived > 0 || arrival >= MIN_ARRIVAL {
             *weight = arrival.sqrt().log2().round().exp2().clamp(MIN_WEIGHT, 1.0) as f32;
@@ -159,34 +160,35 @@ pub fn weights(lights: &Inventory, tree: &LightTree, evidence: &[Evidence]) -> R
 /// Sets the prior of each light of a tree: an estimate of the probability that a sample of the light arrives, from the
 /// samples of other lights near it in the tree. Priors are passed down from the root. A child of a cluster gets the
 /// prior (a + q) / (d + 1). Here q is the prior of the cluster, and d and a are the numbers of drawn and of arrived
-/// samples of the cluster's other children. Each of these children counts as at most [`MAX_WITNESS`] samples.
-fn neighbour_priors(tree: &LightTree, evidence: &[Evidence], priors: &mut [f64]) -> Result<()> {
+/// samples of the cluster's other children. Each of these children counts as at most [`MAX_NEIGHBOUR_SAMPLES`]
+/// samples.
+fn neighbour_priors(tree: &LightTree, sample_counts: &[SampleCounts], priors: &mut [f64]) -> Result<()> {
     // Add up the samples of each cluster, from the last cluster to the first, because a cluster has a lower index than
-    // the clusters within it. A child counts as at most `MAX_WITNESS` samples.
-    let mut witnesses = try_vec(tree.clusters(), [0.0; 2])?;
-    let of_child = |witnesses: &[[f64; 2]], child: Child| {
+    // the clusters within it. A child counts as at most `MAX_NEIGHBOUR_SAMPLES` samples.
+    let mut cluster_counts = try_vec(tree.clusters(), [0.0; 2])?;
+    let of_child = |cluster_counts: &[[f64; 2]], child: Child| {
         let [drawn, arrived] = match child {
-            Child::Cluster(cluster) => witnesses[cluster],
-            Child::Light(light) => [evidence[light].drawn as f64, evidence[light].arrived as f64],
+            Child::Cluster(cluster) => cluster_counts[cluster],
+            Child::Light(light) => [sample_counts[light].drawn as f64, sample_counts[light].arrived as f64],
         };
-        let scale = MAX_WITNESS.min(drawn) / drawn.max(1.0);
+        let scale = MAX_NEIGHBOUR_SAMPLES.min(drawn) / drawn.max(1.0);
         [drawn * scale, arrived * scale]
     };
     for cluster in (0..tree.clusters()).rev() {
         let [mut drawn, mut arrived] = [0.0; 2];
         for child in tree.children(cluster) {
-            let witness = of_child(&witnesses, child);
-            (drawn, arrived) = (drawn + witness[0], arrived + witness[1]);
+            let counts = of_child(&cluster_counts, child);
+            (drawn, arrived) = (drawn + counts[0], arrived + counts[1]);
         }
-        witnesses[cluster] = [drawn, arrived];
+        cluster_counts[cluster] = [drawn, arrived];
     }
     // Compute the prior of each child of a cluster from the prior of the cluster and the samples of the other
     // children.
     let mut of_clusters = try_vec(tree.clusters(), 1.0)?;
     for cluster in 0..tree.clusters() {
-        let ([drawn, arrived], prior) = (witnesses[cluster], of_clusters[cluster]);
+        let ([drawn, arrived], prior) = (cluster_counts[cluster], of_clusters[cluster]);
         for child in tree.children(cluster) {
-            let own = of_child(&witnesses, child);
+            let own = of_child(&cluster_counts, child);
             let others = (arrived - own[1] + prior) / (drawn - own[0] + 1.0);
             match child {
                 Child::Cluster(child) => of_clusters[child] = others.clamp(0.0, 1.0),

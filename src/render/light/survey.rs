@@ -24,14 +24,14 @@ pub struct Survey {
 
 /// The counts of a light or of a cluster of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Evidence {
+pub struct SampleCounts {
     /// Number of light samples.
     pub drawn: u64,
     /// Number of light samples that were not occluded.
     pub arrived: u64,
 }
 
-impl std::ops::AddAssign for Evidence {
+impl std::ops::AddAssign for SampleCounts {
     fn add_assign(&mut self, other: Self) {
         self.drawn += other.drawn;
         self.arrived += other.arrived;
@@ -60,10 +60,10 @@ impl Survey {
     }
 
     /// Returns the counts of all lights so far.
-    pub fn evidence(&self) -> Result<Vec<Evidence>> {
+    pub fn sample_counts(&self) -> Result<Vec<SampleCounts>> {
         let count = |n: &AtomicU32| u64::from(n.load(Ordering::Relaxed));
         try_collect(
-            self.counts.iter().map(|[drawn, arrived]| Evidence { drawn: count(drawn), arrived: count(arrived) }),
+            self.counts.iter().map(|[drawn, arrived]| SampleCounts { drawn: count(drawn), arrived: count(arrived) }),
         )
     }
 }

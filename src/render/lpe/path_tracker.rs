@@ -135,28 +135,28 @@ impl<'a> PathTracker<'a> {
         if self.absorbing {
             return;
         }
-        let way = match kind {
+        let scatter = match kind {
             ScatterKind::NonSpecular(_) => only_layer(lobes),
             ScatterKind::Mirror => Some(Scatter::Mirror),
             ScatterKind::Pane => Some(Scatter::Pane),
         };
-        match (way, &mut self.components[..]) {
+        match (scatter, &mut self.components[..]) {
             // Handle the common case of a single component.
-            (Some(way), [component]) => {
-                component.state = self.automaton.next(component.state, self.automaton.class(mesh))[way as usize];
+            (Some(scatter), [component]) => {
+                component.state = self.automaton.next(component.state, self.automaton.class(mesh))[scatter as usize];
                 self.absorbing = self.automaton.is_absorbing(component.state);
             }
-            _ => self.divide(mesh, way, lobes),
+            _ => self.divide(mesh, scatter, lobes),
         }
     }
 
     /// Advances the components by a scattering event in the general case: there are several components, or the two
     /// layers of the surface split a component.
     #[inline(never)]
-    fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
+    fn divide(&mut self, mesh: u32, scatter: Option<Scatter>, lobes: Lobes) {
         let Self { automaton, components, before, .. } = self;
         std::mem::swap(components, before);
-        advance(automaton, automaton.class(mesh), way, lobes, before, components);
+        advance(automaton, automaton.class(mesh), scatter, lobes, before, components);
         self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
@@ -208,13 +208,14 @@ impl<'a> PathTracker<'a> {
         let diffuse = diffuse_fraction(lobes) * contribution;
         let glossy = contribution - diffuse;
         for &Component { offset, state, share } in components.iter() {
-            let [one, other, ..] = *automaton.next(state, class);
-            let (one, other) = (automaton.accepting(one, light), automaton.accepting(other, light));
-            if one == other {
-                add_to_list(sums, offset, one, share * contribution);
+            let [first_state, second_state, ..] = *automaton.next(state, class);
+            let (first_list, second_list) =
+                (automaton.accepting(first_state, light), automaton.accepting(second_state, light));
+            if first_list == second_list {
+                add_to_list(sums, offset, first_list, share * contribution);
             } else {
-                add_to_list(sums, offset, one, share * diffuse);
-                add_to_list(sums, offset, other, share * glossy);
+                add_to_list(sums, offset, first_list, share * diffuse);
+                add_to_list(sums, offset, second_list, share * glossy);
             }
         }
     }
@@ -320,20 +321,26 @@ fn advance(
     }
     let diffuse = diffuse_fraction(lobes);
     for component in from {
-        let [one, other, ..] = *automaton.next(component.state, class);
-        split_component(to, component, one, other, diffuse);
+        let [first_state, second_state, ..] = *automaton.next(component.state, class);
+        split_component(to, component, first_state, second_state, diffuse);
     }
 }
 
-/// Splits a component: the share `first` goes to state `one`, the remainder to state `other`.
+/// Splits a component: `first_share` of its light goes to `first_state`, the remainder to `second_state`.
 #[inline]
-fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, other: u16, first: Vec3A) {
-    if one == other {
-        return add(to, component, one, component.share);
+fn split_component(
+    to: &mut Vec<Component>,
+    component: &Component,
+    first_state: u16,
+    second_state: u16,
+    first_share: Vec3A,
+) {
+    if first_state == second_state {
+        return add(to, component, first_state, component.share);
     }
-    let first = component.share * first;
-    add(to, component, one, first);
-    add(to, component, other, component.share - first);
+    let first = component.share * first_share;
+    add(to, component, first_state, first);
+    add(to, component, second_state, component.share - first);
 }
 
 /// Adds a component in `state`, or merges it with an existing component of equal offset and state.

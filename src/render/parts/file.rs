@@ -98,7 +98,7 @@ pub fn save(path: &Path, sums: &Sums, identity: &Identity, picture: &Image) -> R
         whole: identity.size,
         corner: [x, y],
         size: [width, height],
-        numbers: sums.width(),
+        numbers: sums.numbers_per_pixel(),
         notes: notes.collect(),
     };
     let bytes = numbers::encode(&head, picture, |at, k| sums.numbers([x + at[0], y + at[1]])[k])?;

@@ -79,7 +79,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     let layers = Layers::new(world, camera, &guided.outputs, 0, 0)?;
     let mut sums = Sums::new(&Part::whole(params), layers.as_ref())?;
     for file in files {
-        file.check(&identity, sums.width(), params)?;
+        file.check(&identity, sums.numbers_per_pixel(), params)?;
     }
     // Add up the parts in a fixed order, so that the order of the files does not change the image by a single bit.
     for (done, &index) in cover::order(files, params, job)?.iter().enumerate() {

@@ -83,13 +83,13 @@ fn c_planes_follow_the_axes_of_the_luminaire() {
 /// The flux through all sides of a box equals the flux of the luminaire inside it.
 #[test]
 fn flux_is_conserved() {
-    let batwing = Luminaire {
+    let uneven = Luminaire {
         gammas: (0..=18).map(|i| f64::from(i) * 10.0).collect(),
         planes: (0..8).map(|i| f64::from(i) * 45.0).collect(),
         candela: (0..19 * 8).map(|i| 50.0 + 40.0 * f64::from(i * 7 % 11)).collect(),
         ..Luminaire::lambertian("", 0.0, [0.0; 3])
     };
-    let wanted = batwing.flux();
+    let wanted = uneven.flux();
     let tilted = Vec3::new(0.6, -0.8, 0.0);
     let mut flux = 0.0;
     for axis in 0..3 {
@@ -97,7 +97,7 @@ fn flux_is_conserved() {
             let [n, u, v] = [axis, axis + 1, axis + 2].map(|i| Vec3::AXES[i % 3]);
             let origin = POSITION - Vec3::ONE + if far { 2.0 * n } else { Vec3::ZERO };
             let side = [origin, 2.0 * u, 2.0 * v, if far { -n } else { n }];
-            flux += 4.0 * lux(hung(batwing.clone(), tilted, Vec3::Z), side, 96).mean;
+            flux += 4.0 * lux(hung(uneven.clone(), tilted, Vec3::Z), side, 96).mean;
         }
     }
     assert!((flux / wanted - 1.0).abs() < 1e-3, "{flux} lm of {wanted}");
