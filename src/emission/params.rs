@@ -165,7 +165,7 @@ impl Input<'_> {
 }
 
 /// Maximum number of pixels at which the layout of a texture (its lamps and patches) is computed. The layout of a
-/// larger texture is computed at a lower resolution.
+/// larger texture is computed at a lower resolution. [convention]
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {

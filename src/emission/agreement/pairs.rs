@@ -6,6 +6,7 @@ use glam::DVec2;
 
 /// `MAX_DISTANCE`: longest distance between two points that is compared. `KERNEL_HALF_WIDTH`: half width of the kernel
 /// that smooths the distances. Both are multiples of the mean distance between nearest neighbours.
+/// [origin not recorded]
 const MAX_DISTANCE: f64 = 2.5;
 const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the distances from 0 to the longest one are divided.

@@ -22,7 +22,7 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, Vec2Swizzles};
 
-/// A lamp is listed if at least this area of it, in texels, lies within the texture.
+/// A lamp is listed if at least this area of it, in texels, lies within the texture. [rounding]
 const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.

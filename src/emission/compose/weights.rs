@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::image::Image;
 use glam::DVec2;
 
-/// Tolerance for rounding: the sum of the weights may exceed 1 by this amount.
+/// Tolerance for rounding: the sum of the weights may exceed 1 by this amount. [rounding]
 const ROUNDING: f32 = 1e-4;
 
 /// A further exemplar, and the weight map by which its lights replace those of the first exemplar.

@@ -15,10 +15,10 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// A lamp is placed only if patches that have the same shift copy at least this share of it.
+/// A lamp is placed only if patches that have the same shift copy at least this share of it. [origin not recorded]
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
-/// through rounding.
+/// through rounding. [origin not recorded]
 const MAX_LATTICE_OVERLAP: f64 = 0.2;
 
 /// Rules for placing lamps.

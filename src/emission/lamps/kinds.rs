@@ -11,16 +11,16 @@ use crate::geometry::polygon;
 use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
-/// Maximum relative difference in area, and in each side, between two lamps of one kind.
+/// Maximum relative difference in area, and in each side, between two lamps of one kind. [origin not recorded]
 const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
-/// most this value.
+/// most this value. [origin not recorded]
 const MAX_FILL_DIFFERENCE: f64 = 0.1;
 /// Tolerance, in texels, for the sides of two equal lamps, which differ by rounding and by the simplification of their
-/// outlines.
+/// outlines. [rounding]
 const ROUNDING: f64 = 2.0;
 /// Number of bins per factor of e, for binning lamps by the logarithms of their area and sides before they are
-/// compared.
+/// compared. [convention]
 const BINS_PER_E: f64 = 20.0;
 
 /// The measures by which lamps are compared; lengths are in texels.

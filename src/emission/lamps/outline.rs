@@ -16,22 +16,23 @@ use crate::geometry::polygon;
 use glam::DVec2;
 
 /// Maximum distance in texels by which simplification may move an outline that runs between the centres of texels.
+/// [rounding]
 const TOLERANCE: f64 = 0.1;
 /// Like `TOLERANCE`, but for an outline along the corners of texels, which is used if every texel is either fully lit
-/// or unlit. This distance turns a staircase into a line.
+/// or unlit. This distance turns a staircase into a line. [rounding]
 const STAIRCASE_TOLERANCE: f64 = 1.0;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
-/// centres would enclose only half of a single texel.
+/// centres would enclose only half of a single texel. [rounding]
 const MAX_NARROW_WIDTH: f64 = 2.0;
 /// Limits for restoring sharp corners, in texels. `MIN_SIDE`: minimum length of a side whose direction is used.
 /// `MAX_BLUNT`: maximum length of the blunt part between two sides. `MAX_EXTENDED`: maximum length by which a side is
 /// extended. `COS_CORNER`: cosine of 60°, the minimum angle by which the outline must turn from one side to the next.
-/// A disc turns by less from one side of length `MIN_SIDE` to the next, so it gets no corners.
+/// A disc turns by less from one side of length `MIN_SIDE` to the next, so it gets no corners. [origin not recorded]
 const MIN_SIDE: f64 = 2.0;
 const MAX_BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
 const COS_CORNER: f64 = 0.5;
-/// Tolerance, in texels, within which a restored corner may lie outside the texture because of rounding.
+/// Tolerance, in texels, within which a restored corner may lie outside the texture because of rounding. [rounding]
 const ROUNDING: f64 = 1e-6;
 
 /// The outer boundary of a lamp, traversed with the lamp on the right. For each texel edge on the way, `crossings`

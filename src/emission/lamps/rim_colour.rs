@@ -11,15 +11,17 @@ use crate::emission::exemplar::components::Components;
 use crate::image::Image;
 use glam::{DVec3, Vec3};
 
-/// An image in which a lit pixel exceeds this value has a high dynamic range and is not clipped.
+/// An image in which a lit pixel exceeds this value has a high dynamic range and is not clipped. [convention]
 const MAX_CLIPPED: f32 = 1.05;
 /// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
+/// [origin not recorded]
 const MIN_BRIGHTNESS: f32 = 0.5;
 /// A pixel may belong to a lamp's rim if its distance from the lamp is at most this, in pixels.
 const RIM_WIDTH: usize = 2;
-/// A colour is read from a rim only if the rim has at least this number of pixels.
+/// A colour is read from a rim only if the rim has at least this number of pixels. [origin not recorded]
 const MIN_RIM: f64 = 8.0;
 /// Minimum ratio of a channel to the strongest channel; a weaker channel is raised to this value.
+/// [origin not recorded]
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
 /// The colours of lamps, read from their rims, which replace clipped pixels.

@@ -8,16 +8,17 @@ use crate::rng::Rng;
 use std::collections::BTreeMap;
 
 /// Two lamps are similar if their areas, their sides and their aspect ratios each differ by at most this share.
+/// [origin not recorded]
 const DIFFERENCE: f64 = 0.25;
 
 /// `BLUR_PIXELS`: number of photo pixels by which sides may differ in addition to `DIFFERENCE`, because blur and bloom
 /// lengthen a lamp with few photo pixels. `MAX_DIFFERENCE`: maximum of both tolerances together, as a relative
-/// difference.
+/// difference. [origin not recorded]
 const BLUR_PIXELS: f64 = 2.0;
-
 const MAX_DIFFERENCE: f64 = 0.5;
 
 /// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
+/// [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
 /// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several such lamps, one is

@@ -11,10 +11,10 @@ use crate::error::Result;
 use glam::{DMat2, DVec2};
 
 /// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
-/// than this, in periods.
+/// than this, in periods. [origin not recorded]
 const MAX_OFF_SITE: f64 = 0.2;
 /// A position in the lattice cell counts as a site of lamps if a lamp lies there in at least this share of the cells
-/// in which the position is fully visible.
+/// in which the position is fully visible. [convention]
 const MIN_OCCUPANCY: f64 = 0.5;
 
 /// Marks parts of the exemplar as unusable for patches: the lattice sites that have no lamp and that the border cuts.

@@ -6,7 +6,7 @@ use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
 /// In a texture with more lattice cells than this, counting the lamps that the border cuts would take too long. A lamp
-/// is then moved to the texture's centre without comparison.
+/// is then moved to the texture's centre without comparison. [convention]
 const MAX_CELLS: f64 = 1e6;
 
 /// A bounding box of lights.

@@ -4,10 +4,11 @@ use super::correlation::Autocorrelation;
 use glam::DVec2;
 
 /// Number of standard errors that are subtracted from each correlation before the highest one is sought. Without this,
-/// shifts that compare few lamps would often have the highest correlation by chance.
+/// shifts that compare few lamps would often have the highest correlation by chance. [convention]
 const STANDARD_ERRORS: f32 = 2.0;
 
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
+/// [origin not recorded]
 const MIN_UNCHANGING: f32 = 0.95;
 
 /// A peak counts only if the correlation falls by `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of the peak,

@@ -10,7 +10,7 @@ use crate::image::try_vec;
 /// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp.
 /// `ON_LATTICE` equals the squared difference that a lamp in the wrong position causes in colour, confidence and
 /// distances. `ANYWHERE`, for patterns without a lattice, must stay below 1/3: a larger weight would select patches
-/// with the right amount of light but wrong distances between lamps.
+/// with the right amount of light but wrong distances between lamps. [origin not recorded]
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 

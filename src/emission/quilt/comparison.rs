@@ -13,14 +13,14 @@ use glam::Vec4;
 
 /// A patch counts as equally good as the best one if its error is at most a · e + b. Here e is the lowest error, a is
 /// the first value (Efros and Freeman 2001 allow 10 %), and b is the second value or, on a lattice,
-/// `Comparison::slack` if that is larger.
+/// `Comparison::slack` if that is larger. [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
-/// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers.
+/// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers. [rounding]
 const LIGHT_STEPS: f32 = 255.0;
 
 /// Patches are compared by their error only if they fill enough pixels of a block: at least this share of the largest
-/// number of pixels that any candidate patch fills. The other patches are discarded.
+/// number of pixels that any candidate patch fills. The other patches are discarded. [origin not recorded]
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If a block has more than this many candidate patches, a first comparison uses only every `ROW_STEP`-th row of the

@@ -4,7 +4,7 @@ use crate::emission::exemplar::working::Working;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Shifts are rounded to this many steps per unwarped pixel before they are compared.
+/// Shifts are rounded to this many steps per unwarped pixel before they are compared. [rounding]
 const SUBPIXELS: f64 = 1e6;
 
 /// The label of a pixel without a patch.
