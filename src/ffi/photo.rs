@@ -58,8 +58,8 @@ pub struct luxfer_photo_metadata {
     /// Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO speed is a
     /// standard output sensitivity (ISO 12232) instead of a saturation-based speed.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: twice white_luminance. If the ISO speed is a recommended exposure index (ISO
-    /// 12232), the camera may have up to about one stop of headroom below white.
+    /// Upper bound of white_luminance: twice white_luminance. It allows for an ISO speed that is a recommended exposure
+    /// index (ISO 12232), with which the manufacturer chooses the luminance at which the camera clips.
     pub white_luminance_high: f64,
     /// How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value.
     pub colour: luxfer_file_colour,
