@@ -1,7 +1,7 @@
 //! Scene read-back
 //!
 //! Reads the meshes of a scene back. With luxfer_scene_get_counts and the functions that read materials, textures and
-//! cameras, a host can copy a whole scene.
+//! cameras, a host can copy these parts of a scene. Lights and the environment cannot be read back.
 
 use super::guard::enter;
 use super::params::{Report, Versioned, versioned};
