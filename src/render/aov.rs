@@ -93,7 +93,7 @@ impl Aov {
 
     /// Returns the number of f64 values per pixel in which a render in parts (`super::parts`) sums up this attribute by
     /// [`Surfaces::add_to`].
-    pub fn summed(self) -> usize {
+    pub fn sum_count(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
             _ => self.total_count(),

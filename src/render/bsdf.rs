@@ -76,7 +76,7 @@ struct Layers<'a> {
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
     /// (1 - E(ωo)) / (1 - Ē): the share of light that the top layer lets through to the viewer, divided by the
     /// cosine-weighted mean of this share over all directions (see the module's documentation).
-    left_over: f32,
+    relative_coat_transmittance: f32,
 }
 
 /// The BSDF values of the diffuse and of the glossy lobe for one pair of directions. Each is multiplied by cos θi, the
@@ -254,13 +254,13 @@ impl<'a> Layers<'a> {
             // The mean of Schlick's factor (1 - cos θ)⁵, weighted by the cosine over the hemisphere, is 1/21.
             mean_coat_albedo = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
         }
-        let left_over = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
+        let relative_coat_transmittance = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
         // Set the probability of each layer in proportion to its albedo.
         let diffuse = s.diffuse.max_element() * (1.0 - coat_albedo);
         let through = s.through(upright);
         let sum = diffuse + top + through.max_element();
         let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
-        Self { bsdf_params: *s, tangents: [t, b], wo, through, shares, lobe, left_over }
+        Self { bsdf_params: *s, tangents: [t, b], wo, through, shares, lobe, relative_coat_transmittance }
     }
 
     fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
@@ -271,8 +271,8 @@ impl<'a> Layers<'a> {
         let s = &self.bsdf_params;
         let [diffuse, top] = self.shares;
         if diffuse > 0.0 {
-            let left = self.left_over * (1.0 - self.coat_albedo(cosine)).max(0.0);
-            lobes.diffuse = s.diffuse * (left * cosine * FRAC_1_PI);
+            let transmittance = self.relative_coat_transmittance * (1.0 - self.coat_albedo(cosine)).max(0.0);
+            lobes.diffuse = s.diffuse * (transmittance * cosine * FRAC_1_PI);
             pdf += diffuse * cosine * FRAC_1_PI;
         }
         if let Some((lobe, _)) = &self.lobe

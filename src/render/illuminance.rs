@@ -97,7 +97,7 @@ pub fn run(world: &World, place: &CalculationPoints, params: &Params, job: Job) 
         let (vertex, front) = receivers.at(world, i)?;
         let mut luxes = [0.0; BATCHES as usize];
         for (batch, lux) in luxes.iter_mut().enumerate() {
-            let mut sum = Sum(DVec3::ZERO);
+            let mut sum = ContributionSum(DVec3::ZERO);
             let seed = rng::hash(params.seed, &[i as u64, batch as u64]);
             for index in 0..per_batch {
                 if job.is_cancelled() {
@@ -126,7 +126,7 @@ fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> 
         exec::map(count, job, |i| {
             let Some((vertex, front)) = receivers.at(learning, i * stride) else { return };
             let seed = rng::hash(params.seed ^ SALT, &[i as u64]);
-            let mut sum = Sum(DVec3::ZERO);
+            let mut sum = ContributionSum(DVec3::ZERO);
             for index in 0..LEARNING_PATHS {
                 path::gather(learning, &vertex, front, &mut Sampler::new(seed, index), &mut Contributions(&mut sum));
             }
@@ -253,9 +253,9 @@ fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32
 }
 
 /// Adds up the contributions of paths.
-struct Sum(DVec3);
+struct ContributionSum(DVec3);
 
-impl PathSink for Sum {
+impl PathSink for ContributionSum {
     fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
         self.0 += (importance * emission).as_dvec3();
     }

@@ -131,16 +131,16 @@ impl<'a> Layers<'a> {
             for aov in &self.outputs.aovs {
                 let (of_sums, of_totals);
                 (of_totals, totals) = totals.split_at_mut(aov.total_count());
-                (of_sums, sums) = sums.split_at(aov.summed());
+                (of_sums, sums) = sums.split_at(aov.sum_count());
                 aov.set_totals(of_sums, of_totals);
             }
         }
     }
 
     /// Returns the number of f64 sums per pixel that [`Recorder::add_to`] writes.
-    pub fn summed(&self) -> usize {
+    pub fn sum_count(&self) -> usize {
         let Outputs { expressions, aovs, .. } = self.outputs;
-        3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.summed()).sum::<usize>() }
+        3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.sum_count()).sum::<usize>() }
     }
 
     /// Adds `others`, the sums over other paths of the same pixel, to `sums`.
@@ -151,8 +151,8 @@ impl<'a> Layers<'a> {
         light.iter_mut().zip(other_light).for_each(|(sum, other)| *sum += other);
         for aov in &self.outputs.aovs {
             let (into, from);
-            (into, sums) = sums.split_at_mut(aov.summed());
-            (from, others) = others.split_at(aov.summed());
+            (into, sums) = sums.split_at_mut(aov.sum_count());
+            (from, others) = others.split_at(aov.sum_count());
             aov.join_sums(into, from);
         }
     }
@@ -278,7 +278,7 @@ impl Recorder<'_> {
     }
 
     /// Adds the recorded sums of a pixel to f64 totals, and clears the recorded sums. The totals have three numbers
-    /// per expression, then the number of primary hits, then [`Aov::summed`] numbers per surface attribute.
+    /// per expression, then the number of primary hits, then [`Aov::sum_count`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());
@@ -297,7 +297,7 @@ impl Recorder<'_> {
             *hits += f64::from(self.surfaces.hits);
             for aov in &layers.outputs.aovs {
                 let total;
-                (total, rest) = rest.split_at_mut(aov.summed());
+                (total, rest) = rest.split_at_mut(aov.sum_count());
                 self.surfaces.add_to(*aov, total);
             }
             self.surfaces = Surfaces::default();

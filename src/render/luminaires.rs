@@ -35,11 +35,11 @@ const STEP: [usize; 2] = [15, 5];
 /// luminaire. [convention]
 const MIN_SHARE: f64 = 0.01;
 /// Let L be the largest luminance of a flat patch, A its area and I its largest intensity, over all directions. If L A
-/// is larger than this multiple of I, the patch is bounded by [`Profile::Cone`] instead of [`Profile::Cosine`].
-/// [convention]
-const MAX_PEAK: f64 = 2.0;
-/// A flat patch is also bounded by [`Profile::Cone`] if it emits only within this angle in degrees to its normal.
-/// [convention]
+/// is larger than this multiple of I, the patch is bounded by [`IntensityBound::Cone`] instead of
+/// [`IntensityBound::Cosine`]. [convention]
+const MAX_COSINE_EXCESS: f64 = 2.0;
+/// A flat patch is also bounded by [`IntensityBound::Cone`] if it emits only within this angle in degrees to its
+/// normal. [convention]
 const NARROW: f64 = 60.0;
 
 /// The faces of the luminaires of a scene.
@@ -68,7 +68,7 @@ pub struct Source {
 struct Shape {
     faces: Faces,
     /// For each patch, the bound on its intensity; `None` for patches that do not emit.
-    profiles: Vec<Option<Profile>>,
+    intensity_bounds: Vec<Option<IntensityBound>>,
     /// Luminous flux in lumens of a luminaire whose `colour` is (1, 1, 1).
     flux: f64,
 }
@@ -76,7 +76,7 @@ struct Shape {
 /// An upper bound of the intensity of a patch in candela, as a function of direction, for a luminaire whose `colour` is
 /// (1, 1, 1).
 #[derive(Clone, Copy)]
-enum Profile {
+enum IntensityBound {
     /// With the value I₀: a triangle of area a, in a patch of area A, emits at most I₀ (a / A) cos θ at the angle θ to
     /// its normal.
     Cosine(f64),
@@ -179,32 +179,32 @@ impl Source {
     /// Returns the patches that emit: the range of their triangles, and their bounds for light sampling. A dark
     /// luminaire has none. `strength` is the colour of the luminaire, mean of the channels.
     pub fn patches(&self, strength: f32) -> impl Iterator<Item = (Range<usize>, Bounds)> {
-        let patches = self.shape.faces.patches.iter().zip(&self.shape.profiles);
-        patches.filter_map(move |(patch, profile)| {
-            let bounds = self.bounds(patch, (*profile)?, strength);
+        let patches = self.shape.faces.patches.iter().zip(&self.shape.intensity_bounds);
+        patches.filter_map(move |(patch, intensity_bound)| {
+            let bounds = self.bounds(patch, (*intensity_bound)?, strength);
             (bounds.intensity > 0.0).then_some((patch.triangles.clone(), bounds))
         })
     }
 
-    fn bounds(&self, patch: &Patch, profile: Profile, strength: f32) -> Bounds {
+    fn bounds(&self, patch: &Patch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
         let Faces { points, triangles, .. } = &self.shape.faces;
         let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area(t).length()).sum();
         let of_triangle = |t: usize| {
             let normal = self.shape.faces.area(t);
             let corners = triangles[t].map(|i| self.in_world(points[i as usize]).as_vec3());
             let direction = (self.in_world(normal) - self.position).normalize_or_zero().as_vec3();
-            let peak = match profile {
-                Profile::Cosine(peak) | Profile::Cone { peak, .. } => peak,
+            let peak = match intensity_bound {
+                IntensityBound::Cosine(peak) | IntensityBound::Cone { peak, .. } => peak,
             };
             Bounds::of_surface(corners, direction, false, (peak * normal.length() / area) as f32 * strength)
         };
         let parts: Vec<Bounds> = patch.triangles.clone().map(of_triangle).collect();
         let whole = Bounds::union(&parts);
-        match profile {
-            Profile::Cosine(_) => whole,
+        match intensity_bound {
+            IntensityBound::Cosine(_) => whole,
             // In `Bounds`, the intensity has its full value up to the angle `cone_angle` - 90° to the axis, hence 90°
             // are added.
-            Profile::Cone { angle, .. } => Bounds { cone_angle: (angle + FRAC_PI_2) as f32, ..whole },
+            IntensityBound::Cone { angle, .. } => Bounds { cone_angle: (angle + FRAC_PI_2) as f32, ..whole },
         }
     }
 }
@@ -228,20 +228,20 @@ impl Shape {
                 (local, measured.candela(local) / opening.projected_area(local).max(least))
             })
             .collect();
-        let mut profiles: Vec<_> = faces
+        let mut intensity_bounds: Vec<_> = faces
             .patches
             .iter()
-            .map(|patch| patch.is_luminous.then(|| Profile::new(&faces, patch, &samples, [low, high])))
+            .map(|patch| patch.is_luminous.then(|| IntensityBound::new(&faces, patch, &samples, [low, high])))
             .collect();
         // A patch may seem dark only because the grid of directions misses its light. Give such a patch a share of the
         // samples too.
-        let brightest = profiles.iter().flatten().map(Profile::peak).fold(0.0, f64::max);
-        profiles.iter_mut().flatten().for_each(|profile| profile.raise(brightest * MIN_SHARE));
-        Self { faces, profiles, flux: luminaire.flux() }
+        let brightest = intensity_bounds.iter().flatten().map(IntensityBound::peak).fold(0.0, f64::max);
+        intensity_bounds.iter_mut().flatten().for_each(|bound| bound.raise(brightest * MIN_SHARE));
+        Self { faces, intensity_bounds, flux: luminaire.flux() }
     }
 }
 
-impl Profile {
+impl IntensityBound {
     /// `samples` are directions with the luminance in each. The luminaire emits only at angles γ between the two
     /// `limits` in degrees.
     fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
@@ -261,7 +261,7 @@ impl Profile {
             z if z < 1e-9 - 1.0 => (180.0 - limits[0]).min(90.0),
             _ => 90.0,
         };
-        if is_flat && (luminance * area > MAX_PEAK * peak || widest < NARROW) {
+        if is_flat && (luminance * area > MAX_COSINE_EXCESS * peak || widest < NARROW) {
             // Widen the cone slightly, to allow for rounding.
             Self::Cone { peak, angle: widest.to_radians() + 0.01 }
         } else {

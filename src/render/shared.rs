@@ -50,7 +50,7 @@ pub trait Tape: Observer {
     fn begin(&mut self);
 
     /// Starts a new recording, which begins after the path has scattered at a secondary vertex on a mesh.
-    fn begin_behind(&mut self, _mesh: u32) {
+    fn begin_after_scattering(&mut self, _mesh: u32) {
         self.begin();
     }
 
@@ -274,7 +274,7 @@ fn record_view_dependent<'w, T: Tape>(
     scratch: &mut Scratch<T>,
 ) -> Option<SecondaryLight<'w>> {
     let Scratch { tape, panes } = scratch;
-    tape.begin_behind(vertex.mesh);
+    tape.begin_after_scattering(vertex.mesh);
     panes.clear();
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     let light = path::sample_light(world, &receiver, bsdf, light_u).filter(|l| l.emission != Vec3::ZERO);

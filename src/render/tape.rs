@@ -1,4 +1,4 @@
-//! Recorded subpaths for `shared`. [`Sum`] only adds up contributions; [`LpeTape`] also tracks the states of light
+//! Recorded subpaths for `shared`. [`SumTape`] only adds up contributions; [`LpeTape`] also tracks the states of light
 //! path expressions.
 
 use super::bsdf::{Lobes, ScatterKind};
@@ -12,16 +12,16 @@ use glam::Vec3;
 
 /// An observer and tape that only adds up contributions.
 #[derive(Clone, Copy, Default)]
-pub struct Sum(pub Vec3);
+pub struct SumTape(pub Vec3);
 
-impl Observer for Sum {
+impl Observer for SumTape {
     #[inline]
     fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3, _: Strategy) {
         self.0 += importance * emission;
     }
 }
 
-impl Tape for Sum {
+impl Tape for SumTape {
     fn begin(&mut self) {
         self.0 = Vec3::ZERO;
     }
@@ -31,7 +31,7 @@ impl Tape for Sum {
     }
 }
 
-impl ReplayObserver for Sum {
+impl ReplayObserver for SumTape {
     type Tape = Self;
 
     fn restart(&mut self) {}
@@ -56,7 +56,7 @@ pub struct LpeTape<'a> {
     tracker: PathTracker<'a>,
     /// States of the automaton. `viewers` are the states after scattering at the primary vertices. `origins` are the
     /// states in which the recorded subpath may begin: the `viewers`, or the states after a further scattering at the
-    /// secondary vertex ([`Tape::begin_behind`]).
+    /// secondary vertex ([`Tape::begin_after_scattering`]).
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,
@@ -109,7 +109,7 @@ impl Tape for LpeTape<'_> {
         self.tracker.start_from(&self.origins);
     }
 
-    fn begin_behind(&mut self, mesh: u32) {
+    fn begin_after_scattering(&mut self, mesh: u32) {
         self.origins.clear();
         self.viewers.iter().for_each(|&state| self.automaton.spread(state, mesh, true, &mut self.origins));
         self.sum = Vec3::ZERO;

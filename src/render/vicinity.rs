@@ -1,11 +1,11 @@
 //! The surroundings of the vertices of a render's paths: a small acceleration structure that answers most rays.
 //!
 //! In a building, most paths stay in a few rooms, but their rays descend through an acceleration structure of the whole
-//! building. The first passes therefore record where vertices lie ([`Places`]), and the render builds a second
-//! structure of the triangles that meet the box around these places. This second structure answers rays that stay
-//! within the box. Its answers are exact: the box is convex, so a segment between two points of the box stays within
-//! the box, and every triangle that the segment hits meets the box. Both structures therefore find the same hits, to
-//! the last bit. The structure of the whole scene answers all other rays.
+//! building. The first passes therefore record where vertices lie ([`PositionReservoir`]), and the render builds a
+//! second structure of the triangles that meet the box around these positions. This second structure answers rays that
+//! stay within the box. Its answers are exact: the box is convex, so a segment between two points of the box stays
+//! within the box, and every triangle that the segment hits meets the box. Both structures therefore find the same
+//! hits, to the last bit. The structure of the whole scene answers all other rays.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
@@ -15,9 +15,9 @@ use glam::Vec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of positions that are recorded. [convention]
-const PLACES: usize = 1024;
+const CAPACITY: usize = 1024;
 /// Minimum number of recorded positions from which a box is computed. [convention]
-const MIN_PLACES: usize = 128;
+const MIN_POSITIONS: usize = 128;
 /// Share of the recorded positions that may lie beyond each side of the box. [judged on 3 scenes]
 const BEYOND: f64 = 1.0 / 128.0;
 /// The box is computed again if more than this share of the recorded positions lies outside. [judged on 3 scenes]
@@ -32,27 +32,27 @@ const MIN_RATIO: usize = 4;
 /// A random sample of the positions of vertices, to which all threads of a render add. The sample does not depend on
 /// the order of the additions: each position has a random entry and a random priority, and each entry keeps the
 /// coordinates with the highest priority (for each axis on its own).
-pub struct Places {
+pub struct PositionReservoir {
     /// For each axis of each entry, the priority (upper 32 bits) and the bits of the f32 coordinate (lower 32 bits); 0
     /// if empty.
     entries: Vec<[AtomicU64; 3]>,
 }
 
-impl Places {
+impl PositionReservoir {
     pub fn new() -> Result<Self> {
-        let mut entries = try_with_capacity(PLACES)?;
-        entries.resize_with(PLACES, Default::default);
+        let mut entries = try_with_capacity(CAPACITY)?;
+        entries.resize_with(CAPACITY, Default::default);
         Ok(Self { entries })
     }
 
     /// Adds a position. `u` is uniform in `[0, 1)`, with 32 random bits.
     #[inline]
     pub fn add(&self, position: Vec3, u: f64) {
-        let random = ((u * 4_294_967_296.0) as u32).rotate_left(PLACES.ilog2());
+        let random = ((u * 4_294_967_296.0) as u32).rotate_left(CAPACITY.ilog2());
         // The 10 highest bits of `u` choose the entry; the lower bits are the priority.
-        let entry = &self.entries[random as usize % PLACES];
+        let entry = &self.entries[random as usize % CAPACITY];
         for (entry, x) in entry.iter().zip(position.to_array()) {
-            let candidate = u64::from(random / PLACES as u32 + 1) << 32 | u64::from(x.to_bits());
+            let candidate = u64::from(random / CAPACITY as u32 + 1) << 32 | u64::from(x.to_bits());
             if candidate > entry.load(Ordering::Relaxed) {
                 entry.fetch_max(candidate, Ordering::Relaxed);
             }
@@ -79,12 +79,12 @@ pub struct Vicinity {
 }
 
 impl Vicinity {
-    /// Builds the structure of the triangles around the given places. `all` is the structure of the scene, which has
-    /// `count` triangles. Returns `None` if there are too few places, if no triangle meets the box, or if more than
+    /// Builds the structure of the triangles around the given positions. `all` is the structure of the scene, which has
+    /// `count` triangles. Returns `None` if there are too few positions, if no triangle meets the box, or if more than
     /// `max` triangles or more than `count / MIN_RATIO` triangles do.
-    pub fn new(all: &Accel, count: usize, places: &Places, max: usize) -> Result<Option<Self>> {
-        let sorted = places.sorted()?;
-        let Some(few) = sorted.iter().map(Vec::len).min().filter(|&n| n >= MIN_PLACES) else { return Ok(None) };
+    pub fn new(all: &Accel, count: usize, positions: &PositionReservoir, max: usize) -> Result<Option<Self>> {
+        let sorted = positions.sorted()?;
+        let Some(few) = sorted.iter().map(Vec::len).min().filter(|&n| n >= MIN_POSITIONS) else { return Ok(None) };
         let skipped = (few as f64 * BEYOND) as usize;
         let low = Vec3::from_array(sorted.each_ref().map(|values| values[skipped]));
         let high = Vec3::from_array(sorted.each_ref().map(|values| values[values.len() - 1 - skipped]));
@@ -100,10 +100,10 @@ impl Vicinity {
         Ok(accel.map(|accel| Self { accel, low, high }))
     }
 
-    /// Whether the box still fits the places: at most the share `MAX_OUTSIDE` of the coordinates of each axis lies
+    /// Whether the box still fits the positions: at most the share `MAX_OUTSIDE` of the coordinates of each axis lies
     /// outside.
-    pub fn fits(&self, places: &Places) -> Result<bool> {
-        let sorted = places.sorted()?;
+    pub fn fits(&self, positions: &PositionReservoir) -> Result<bool> {
+        let sorted = positions.sorted()?;
         let outside = sorted.iter().zip(self.low.to_array()).zip(self.high.to_array()).map(|((values, low), high)| {
             let inside = values.partition_point(|&x| x <= high) - values.partition_point(|&x| x < low);
             1.0 - inside as f64 / values.len().max(1) as f64
@@ -168,17 +168,17 @@ mod tests {
         let triangles = rooms();
         let all = Accel::build(&triangles, Monitor::default().job()).unwrap();
         let (low, high) = (Vec3::new(0.0, -16.0, 4.0), Vec3::new(4.0, -13.0, 8.0));
-        let (mut rng, places) = (Rng::new(3, &[]), Places::new().unwrap());
-        let is_none = |max| Vicinity::new(&all, triangles.len(), &places, max).unwrap().is_none();
+        let (mut rng, positions) = (Rng::new(3, &[]), PositionReservoir::new().unwrap());
+        let is_none = |max| Vicinity::new(&all, triangles.len(), &positions, max).unwrap().is_none();
         assert!(is_none(usize::MAX));
         for _ in 0..5000 {
             // Most paths have their vertices on the walls of one room, a few go elsewhere.
             let p = within(&mut rng, low - 1.0, high + 1.0).clamp(low, high);
             let far = within(&mut rng, Vec3::splat(-16.0), Vec3::splat(16.0));
-            places.add(if rng.next_f32() < 0.002 { far } else { p }, f64::from(rng.next_f32()));
+            positions.add(if rng.next_f32() < 0.002 { far } else { p }, f64::from(rng.next_f32()));
         }
         assert!(is_none(10));
-        let near = Vicinity::new(&all, triangles.len(), &places, usize::MAX).unwrap().unwrap();
+        let near = Vicinity::new(&all, triangles.len(), &positions, usize::MAX).unwrap().unwrap();
         assert!((near.low - low).abs().max_element() < 1e-3 && (near.high - high).abs().max_element() < 1e-3);
         assert!(near.accel.bytes() * 4 < all.bytes(), "{} {}", near.accel.bytes(), all.bytes());
         let [mut answered, mut clear, mut blocked] = [0; 3];
@@ -198,26 +198,26 @@ mod tests {
         }
         assert!(answered > 2500 && clear > 1000 && blocked > 300, "{answered} {clear} {blocked}");
         // The box fits until many of the recorded positions lie outside.
-        assert!(near.fits(&places).unwrap());
-        (0..5000).for_each(|_| places.add(low + Vec3::X * 9.0, f64::from(rng.next_f32())));
-        assert!(!near.fits(&places).unwrap());
+        assert!(near.fits(&positions).unwrap());
+        (0..5000).for_each(|_| positions.add(low + Vec3::X * 9.0, f64::from(rng.next_f32())));
+        assert!(!near.fits(&positions).unwrap());
     }
 
     #[test]
-    fn places_do_not_depend_on_the_order_in_which_they_are_added() {
+    fn positions_do_not_depend_on_the_order_in_which_they_are_added() {
         let mut rng = Rng::new(4, &[]);
         let mut added: Vec<(Vec3, f64)> = Vec::new();
         for _ in 0..4000 {
             added.push((within(&mut rng, Vec3::splat(-5.0), Vec3::splat(5.0)), f64::from(rng.next_f32())));
         }
         let sorted = |added: &[(Vec3, f64)]| {
-            let places = Places::new().unwrap();
-            added.iter().for_each(|&(position, u)| places.add(position, u));
-            places.sorted().unwrap()
+            let positions = PositionReservoir::new().unwrap();
+            added.iter().for_each(|&(position, u)| positions.add(position, u));
+            positions.sorted().unwrap()
         };
         let forwards = sorted(&added);
         added.reverse();
-        assert!(forwards == sorted(&added) && forwards[0].len() > PLACES * 9 / 10);
+        assert!(forwards == sorted(&added) && forwards[0].len() > CAPACITY * 9 / 10);
         // The sample is uniform: the deciles of each axis are 1 m apart, with a standard error below 2 dm.
         for values in &forwards {
             for tenth in 1..10 {

@@ -49,7 +49,7 @@ pub struct World {
 
 /// The structure `vicinity` is built only if its number of triangles, times this number, is at most the number of light
 /// samples so far. Building it then takes a small part of the time spent so far. [convention]
-const TRIANGLES_PER_SAMPLE: usize = 4;
+const SAMPLES_PER_TRIANGLE: usize = 4;
 
 /// A surface on a shadow ray through which light passes in a straight line: a clear pane, or a surface of partial
 /// opacity.
@@ -59,7 +59,7 @@ pub struct Pane {
     pub t: f32,
     pub triangle: u32,
     /// Share of the light that misses the surface: 1 - opacity.
-    pub beside: f32,
+    pub uncovered: f32,
     /// Share of the light that the surface transmits, per channel.
     pub through: Vec3,
 }
@@ -161,14 +161,16 @@ impl World {
 
     /// Builds the structure `vicinity` from the vertices recorded so far, unless the present structure still fits them.
     fn in_vicinity(self) -> Result<Self> {
-        let Some((places, counted)) = self.lights.places()?.filter(|_| self.has_vicinity) else { return Ok(self) };
+        let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.has_vicinity) else {
+            return Ok(self);
+        };
         if let Some(vicinity) = &self.vicinity
-            && vicinity.fits(places)?
+            && vicinity.fits(positions)?
         {
             return Ok(self);
         }
-        let max = counted as usize / TRIANGLES_PER_SAMPLE;
-        let vicinity = Vicinity::new(&self.accel, self.facets.len(), places, max)?;
+        let max = counted as usize / SAMPLES_PER_TRIANGLE;
+        let vicinity = Vicinity::new(&self.accel, self.facets.len(), positions, max)?;
         Ok(Self { vicinity: vicinity.map(Arc::new), ..self })
     }
 
@@ -374,7 +376,7 @@ impl World {
                 return false;
             }
             let pane = self.pane(hit, ray.direction);
-            share *= (Vec3::splat(pane.beside) + pane.through).as_dvec3();
+            share *= (Vec3::splat(pane.uncovered) + pane.through).as_dvec3();
             if let Some(panes) = &mut panes {
                 panes.push(pane);
             }
@@ -393,7 +395,7 @@ impl World {
     /// surfaces, except where the opacity is 0. The triangles in `ends`, at the two ends of the ray, do not count.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
-        let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;
+        let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).uncovered < 1.0;
         !self.is_blocked(ray, |hit| !ends.contains(&hit.triangle) && is_met(hit))
     }
 
@@ -401,20 +403,20 @@ impl World {
         let facet = self.facet(hit.triangle);
         let compiled = self.compiled_material(facet);
         if !compiled.lets_light_through {
-            return Pane { t: hit.t, triangle: hit.triangle, beside: 0.0, through: Vec3::ZERO };
+            return Pane { t: hit.t, triangle: hit.triangle, uncovered: 0.0, through: Vec3::ZERO };
         }
         let context = self.context(facet, hit);
-        let there = match context.material.alpha_mode {
+        let coverage = match context.material.alpha_mode {
             AlphaMode::Opaque => 1.0,
             AlphaMode::Mask(cutoff) => f32::from(u8::from(context.opacity() >= cutoff)),
             AlphaMode::Blend => context.opacity().clamp(0.0, 1.0),
         };
-        let through = if context.material.transmission > 0.0 && there > 0.0 {
+        let through = if context.material.transmission > 0.0 && coverage > 0.0 {
             context.bsdf_params(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };
-        Pane { t: hit.t, triangle: hit.triangle, beside: 1.0 - there, through: through * there }
+        Pane { t: hit.t, triangle: hit.triangle, uncovered: 1.0 - coverage, through: through * coverage }
     }
 
     fn context(&self, facet: &Facet, hit: &Hit) -> TextureContext<'_> {

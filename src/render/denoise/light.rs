@@ -14,10 +14,10 @@ pub const LIGHT: usize = 6;
 /// of 0. [bench filter]
 const MIN_ALBEDO: f32 = 0.02;
 /// If the variance of a half of a pixel is r times the mean variance of this half in the pixels around, it gets the
-/// weight `1 / (1 + RARE * r)`. [bench filter]
-const RARE: f32 = 0.3;
+/// weight `1 / (1 + CONFIDENCE_FALLOFF * r)`. [bench filter]
+const CONFIDENCE_FALLOFF: f32 = 0.3;
 /// Radius in pixels over which this mean variance is taken. [bench filter]
-const RARE_RADIUS: usize = 6;
+const CONFIDENCE_RADIUS: usize = 6;
 /// Relative errors are errors divided by a mean radiance around the pixel; this is the radius of the mean in pixels.
 /// [bench filter]
 const RADIANCE_RADIUS: usize = 4;
@@ -108,13 +108,13 @@ fn confidence(input: &Input, albedo: &Planes, unit: f32, job: Job) -> Result<Pla
             }
         }
     })?;
-    let typical = noise.smoothed(RARE_RADIUS, job.part(0.2, 0.9))?;
+    let typical = noise.smoothed(CONFIDENCE_RADIUS, job.part(0.2, 0.9))?;
     Planes::from_rows([width, height, 2], job.part(0.9, 1.0), |y, row| {
         for (half, plane) in row.chunks_exact_mut(width).enumerate() {
             let (noise, typical) = (noise.row(y, half), typical.row(y, half));
             for (x, out) in plane.iter_mut().enumerate() {
                 let ratio = noise[x] / typical[x];
-                *out = if ratio.is_finite() { 1.0 / (1.0 + RARE * ratio) } else { 1.0 };
+                *out = if ratio.is_finite() { 1.0 / (1.0 + CONFIDENCE_FALLOFF * ratio) } else { 1.0 };
             }
         }
     })

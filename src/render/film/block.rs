@@ -10,7 +10,7 @@ use crate::render::layers::{Layers, Recorder};
 use crate::render::path::PathLength;
 use crate::render::sampler::Sampler;
 use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
-use crate::render::tape::{LpeTape, Sum};
+use crate::render::tape::{LpeTape, SumTape};
 use crate::render::world::World;
 use crate::rng;
 use glam::{DVec3, Vec3};
@@ -59,7 +59,7 @@ pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
 /// Traces the paths of blocks of pixels, one block at a time.
 pub struct BlockTracer<'a> {
     starts: Vec<Start>,
-    scratch: Scratch<Sum>,
+    scratch: Scratch<SumTape>,
     /// If the film has layers: a recorder for each pixel of a block, and the scratch memory for replaying recorded
     /// paths.
     recorders: Option<(Vec<Recorder<'a>>, Scratch<LpeTape<'a>>)>,
@@ -95,7 +95,7 @@ impl<'a> BlockTracer<'a> {
                 .extend(members.iter().map(|m| camera_rays.start(world, m.at, m.length, Sampler::new(m.seed, index))));
             let radiances = match &mut self.recorders {
                 None => {
-                    let mut observers = [Sum(Vec3::ZERO); MAX_SHARED];
+                    let mut observers = [SumTape(Vec3::ZERO); MAX_SHARED];
                     shared::trace(world, &mut self.starts, &mut observers[..members.len()], &mut self.scratch);
                     observers.map(|w| w.0)
                 }

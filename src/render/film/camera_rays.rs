@@ -5,7 +5,7 @@ use crate::render::params::Params;
 use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
 use crate::render::shared::Start;
-use crate::render::tape::Sum;
+use crate::render::tape::SumTape;
 use crate::render::world::World;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
@@ -48,7 +48,7 @@ fn radiance(
     let Start { ray, light_u, length, mut sampler } = camera_rays.start(world, at, length, sampler);
     match recorder {
         None => {
-            let mut sum = Sum::default();
+            let mut sum = SumTape::default();
             path::trace(world, ray, light_u, length, &mut sampler, &mut sum);
             sum.0
         }

@@ -48,7 +48,7 @@ impl Sums {
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
-        let numbers_per_pixel = LIGHT + layers.map_or(0, Layers::summed);
+        let numbers_per_pixel = LIGHT + layers.map_or(0, Layers::sum_count);
         let numbers = try_vec(grid.tiles() * AREA * numbers_per_pixel, 0.0)?;
         Ok(Self { part: *part, corner, grid, numbers_per_pixel, numbers, discarded: 0 })
     }

@@ -6,7 +6,7 @@ use super::lamps::Lamps;
 use super::reach::{Reach, Split, unlikely_share, weights};
 use super::survey::{ENOUGH, Progress, SampleCounts, Survey};
 use crate::error::Result;
-use crate::render::vicinity::Places;
+use crate::render::vicinity::PositionReservoir;
 use std::sync::Arc;
 
 /// Unlikely lights get a selector of their own only if they took at least this share of all light samples so far. If
@@ -70,12 +70,12 @@ impl Lights {
     /// no positions are recorded any more. Also returns `None` if the scene is open, which means that many rays leave
     /// the surroundings of these positions: more than [`MAX_OPEN`] of the samples of directional lights and of the
     /// environment arrive.
-    pub fn places(&self) -> Result<Option<(&Places, u64)>> {
+    pub fn positions(&self) -> Result<Option<(&PositionReservoir, u64)>> {
         let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) else { return Ok(None) };
         let mut far = SampleCounts::default();
         survey.sample_counts()?[self.inventory.bounds.len()..].iter().for_each(|&e| far += e);
         let is_open = far.arrived as f64 > MAX_OPEN * far.drawn as f64;
-        Ok((!is_open).then_some((&survey.places, self.progress.counted)))
+        Ok((!is_open).then_some((&survey.positions, self.progress.counted)))
     }
 
     /// Ends the learning: keeps the selectors learned so far, and counts no further samples.

@@ -136,7 +136,7 @@ impl Lights {
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         if let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) {
-            survey.places.add(receiver.position, u);
+            survey.positions.add(receiver.position, u);
         }
         let Some(split) = self.split.as_deref() else {
             return self.sample_from(&self.all, 1.0, true, scene, receiver, (u, v));

@@ -4,7 +4,7 @@
 
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
-use crate::render::vicinity::Places;
+use crate::render::vicinity::PositionReservoir;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Value of `LightSample::surveyed` for a light sample that is not counted.
@@ -19,7 +19,7 @@ pub struct Survey {
     /// For each light, the number of its samples, and the number of its samples that were not occluded.
     counts: Vec<[AtomicU32; 2]>,
     /// A random selection of the positions of receivers.
-    pub places: Places,
+    pub positions: PositionReservoir,
 }
 
 /// The counts of a light or of a cluster of lights.
@@ -42,7 +42,7 @@ impl Survey {
     pub fn new(lights: usize) -> Result<Self> {
         let mut counts = try_with_capacity(lights)?;
         counts.resize_with(lights, Default::default);
-        Ok(Self { counts, places: Places::new()? })
+        Ok(Self { counts, positions: PositionReservoir::new()? })
     }
 
     /// Counts a sample of the light with number `light`.

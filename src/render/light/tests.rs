@@ -310,9 +310,9 @@ fn world(scene: Scene) -> World {
     World::build(Arc::new(scene), Monitor::default().job()).unwrap()
 }
 
-struct Sum(f64);
+struct ContributionSum(f64);
 
-impl PathSink for Sum {
+impl PathSink for ContributionSum {
     fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
         self.0 += f64::from(importance.x * emission.x);
     }
@@ -326,7 +326,7 @@ fn measure(scene: Scene) -> (f64, f64) {
     let (batches, per_batch) = (32u32, 512);
     let means: Vec<f64> = (0..batches)
         .map(|batch| {
-            let mut sum = Sum(0.0);
+            let mut sum = ContributionSum(0.0);
             (0..per_batch).for_each(|i| irradiance(&world, &ORIGIN, u64::from(batch), i, &mut sum));
             sum.0 / f64::from(per_batch)
         })
@@ -563,7 +563,7 @@ fn light_transport_between_two_surfaces_is_reciprocal() {
             let (u, v) = (rng.next_f32(), rng.next_f32());
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             let point = SurfacePoint { mesh: to, triangle: i % 2, barycentric: Vec2::new(u, v), front: true };
-            let mut one = Sum(0.0);
+            let mut one = ContributionSum(0.0);
             irradiance(&world, &point, u64::from(i), 0, &mut one);
             sum += one.0;
             square += one.0 * one.0;

@@ -232,7 +232,7 @@ impl<'a> PathTracker<'a> {
         for pane in panes.iter() {
             let (mesh, _) = world.locate(pane.triangle);
             let class = automaton.class(mesh);
-            let through = fraction(pane.through, Vec3::splat(pane.beside) + pane.through);
+            let through = fraction(pane.through, Vec3::splat(pane.uncovered) + pane.through);
             std::mem::swap(ends, before);
             ends.clear();
             for component in before.iter() {

@@ -35,7 +35,7 @@ fn lux(world: &World, position: Vec3, normal: Vec3, per_batch: u32) -> (f64, f64
     let batches = 32;
     let means: Vec<f64> = (0..batches)
         .map(|batch| {
-            let mut sum = Sum(DVec3::ZERO);
+            let mut sum = ContributionSum(DVec3::ZERO);
             (0..per_batch).for_each(|i| irradiance_in_air(world, position, normal, 70 + batch, i, &mut sum));
             sum.0.x / f64::from(per_batch)
         })

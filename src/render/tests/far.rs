@@ -41,7 +41,7 @@ fn points_in_air_see_the_light_near_them_however_far_the_scene_extends() {
         let (mut scene, _) = room(at);
         scene.meshes.extend(outlier.map(tile));
         let world = world(scene);
-        let mut sum = Sum(DVec3::ZERO);
+        let mut sum = ContributionSum(DVec3::ZERO);
         // Measure at a point 8 mm above the table.
         let point = Vec3::new(2.5, 0.7578125, 1.5) + at;
         (0..1024).for_each(|i| irradiance_in_air(&world, point, Vec3::Y, 1, i, &mut sum));

@@ -64,9 +64,9 @@ fn render(world: &World, camera: &Camera, params: &Params) -> Film {
     run(world, camera, params, Monitor::default().job(), &mut |_| ()).unwrap()
 }
 
-struct Sum(DVec3);
+struct ContributionSum(DVec3);
 
-impl PathSink for Sum {
+impl PathSink for ContributionSum {
     fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
         self.0 += (importance * emission).as_dvec3();
     }
@@ -78,7 +78,7 @@ fn measure(world: &World, point: &SurfacePoint) -> (f64, f64) {
     let (batches, per_batch) = (64, 256);
     let means: Vec<f64> = (0..batches)
         .map(|batch| {
-            let mut sum = Sum(DVec3::ZERO);
+            let mut sum = ContributionSum(DVec3::ZERO);
             (0..per_batch).for_each(|i| irradiance(world, point, 1000 + batch, i, &mut sum));
             sum.0.x / f64::from(per_batch)
         })

@@ -146,7 +146,7 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     let has_vicinity = |world: &World| {
         let learning = world.learning().unwrap();
         let point = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::splat(0.3), front: true };
-        (0..1024).for_each(|i| irradiance(&learning, &point, 5, i, &mut Sum(DVec3::ZERO)));
+        (0..1024).for_each(|i| irradiance(&learning, &point, 5, i, &mut ContributionSum(DVec3::ZERO)));
         learning.settled().unwrap().vicinity().is_some()
     };
     assert!(has_vicinity(&surroundings) && !has_vicinity(&whole));

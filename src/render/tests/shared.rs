@@ -4,7 +4,7 @@ use super::*;
 use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
 use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
-use crate::render::tape::Sum as Light;
+use crate::render::tape::SumTape;
 use crate::scene::accel::Ray;
 
 /// A room with every case that path sharing distinguishes: matt, glossy, metal, mirror and glass surfaces, a smooth
@@ -56,7 +56,7 @@ fn rays(world: &World, towards: Vec3) -> [Ray; MAX_SHARED] {
 
 fn apart(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64) -> [Vec3; MAX_SHARED] {
     std::array::from_fn(|i| {
-        let mut sum = Light::default();
+        let mut sum = SumTape::default();
         for index in 0..64 {
             let mut sampler = Sampler::new(crate::rng::hash(trial, &[1, i as u64]), index);
             let first = sampler.next();
@@ -67,7 +67,7 @@ fn apart(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64
 }
 
 fn together(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64) -> [Vec3; MAX_SHARED] {
-    let mut sums = [Light::default(); MAX_SHARED];
+    let mut sums = [SumTape::default(); MAX_SHARED];
     let mut scratch = Scratch::default();
     for index in 0..64 {
         let start = |i: usize| {
