@@ -13,8 +13,8 @@ use super::relight::{constraint, luxfer_constraint, luxfer_quantity, quantity};
 use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::error::{Error, Result};
-use crate::relight::{Aspect, Constraint, MAX_LEVELS, Quantity};
+use crate::error::{Error, Result, check_range};
+use crate::relight::{Aspect, Constraint, MAX_LEVELS, MAX_WEIGHT, Quantity};
 
 /// Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
 /// 1e15]. quantity is a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other
@@ -67,9 +67,7 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
 }
 
 fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
-    if !(goal.weight >= 0.0 && goal.weight.is_finite()) {
-        return Err(Error::argument(format!("weight is {}; it must be finite and not negative", goal.weight)));
-    }
+    check_range("weight", goal.weight, 0.0, MAX_WEIGHT)?;
     stage.change(|inputs| {
         let (scene, _) = need(&inputs.emission, "luxfer_lamps_set_scene")?;
         let meshes = scene.snapshot().meshes.len();

@@ -29,6 +29,9 @@ pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192
 /// Maximum number of dimming levels. \[convention\]
 pub const MAX_LEVELS: usize = 4096;
 
+/// Maximum weight of a goal, so that squared weights stay far from overflow. [rounding]
+pub const MAX_WEIGHT: f64 = 1e12;
+
 /// Whether the colour of a group may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
@@ -173,7 +176,7 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
         for channel in goal.target.to_array() {
             check_range("target", channel, 0.0, f32::MAX)?;
         }
-        check_range("weight", goal.weight, 0.0, 1e12)?;
+        check_range("weight", goal.weight, 0.0, MAX_WEIGHT)?;
         if goal.aspect == Aspect::Luminance && goal.constraint != [goal.constraint[0]; 3] {
             return Err(Error::argument("a goal of luminance has limits that differ between channels; give it one"));
         }

@@ -40,7 +40,7 @@ mod transport;
 mod warnings;
 
 pub use estimate::BATCHES;
-pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};
+pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, MAX_WEIGHT, Outcome, solve_groups};
 pub use importance::{Importance, ImportanceParams, Response};
 pub use lamps::Lamps;
 pub use params::{Fit, Params, Quantity, TargetGeometry};

@@ -115,7 +115,8 @@ impl Scene {
         listed.extend((count > MAX_LISTED).then(|| format!("and {} more", count - MAX_LISTED)));
         let message = format!("pictures do not show luminaires that shine from points: {}", listed.join("; "));
         let advice = "state their luminous size in their files, and let them shine from their faces; \
-                      luxfer_scene_get_glare rates luminaires with a size";
+                      luxfer_scene_get_glare rates luminaires with a size, luxfer_image_get_glare only what a picture \
+                      shows";
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 

@@ -436,8 +436,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     }
     if !params.tileable || by_patches {
         return Err(Error::argument(format!(
-            "emission.offset is {}; the lights lie on no lattice that it could shift: set it to 0, or lower \
-             emission.min_regularity",
+            "emission.offset is {} texels (of a transfer: pattern.offset in metres); the lights lie on no lattice that \
+             it could shift: set it to 0, or lower emission.min_regularity",
             params.offset
         )));
     }
