@@ -1,4 +1,4 @@
-//! Computes the share of each texel that light covers, from which areas and outlines of lamps follow.
+//! Computes the share of each texel that light covers. The areas and outlines of lamps are computed from it.
 
 use crate::emission::exemplar::components::Components;
 use crate::error::Result;
@@ -18,8 +18,8 @@ pub struct Lights<'a> {
     /// For each texel, the number of its lamp, or 0.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// For each lamp number, the largest coverage of the lamp's texels. It counts as full coverage, because the
-    /// confidence may be below 1 even in the middle of a lamp.
+    /// For each lamp number, the largest coverage of the lamp's texels. This value counts as full coverage, because the
+    /// light mask may be below 1 even in the middle of a lamp.
     full: Vec<f32>,
 }
 
@@ -80,9 +80,12 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// The share of an edge texel that light would cover if the lamp's edge were sharp. An edge is blurred if the
-    /// coverage c changes by a step d < 0.5 from this texel to the next one across the edge. The edge is then
-    /// (c - 0.5) / d texels from the texel's centre, and the share is 0.5 + (c - 0.5) / d. At a sharp edge it is c.
+    /// The share of the edge texel `at` that light would cover if the lamp's edge were sharp. Let c be the coverage of
+    /// the texel, and d the largest difference between c and the coverage of an adjacent texel across the edge.
+    ///
+    /// - d ≥ 0.5: the edge is sharp, and the share is c.
+    /// - d < 0.5: the edge is blurred. It lies (c - 0.5) / d texels from the texel's centre, so the share is
+    ///   0.5 + (c - 0.5) / d, clamped to `[0, 1]`.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -3,14 +3,14 @@
 use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
-/// Maximum side, in texels, of the bounding box of a crumb. The area of a crumb is below `crumb` texels.
+/// Maximum width and height, in texels, of a crumb's bounding box: 2 √`crumb`, where `crumb` limits its area.
 pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
 /// Removes every connected piece of light whose area is below `crumb` texels and whose bounding box is at most
-/// [`reach`] texels wide and high. Keeps a piece that is the visible part of a larger light: `is_cut` returns true for
-/// its first column and row, and its last column and row.
+/// [`reach`] texels wide and high. Keeps a piece for which `is_cut` returns true, because it is the visible part of a
+/// larger light. The arguments of `is_cut` are `[first column, first row]` and `[last column, last row]` of the piece.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -30,9 +30,9 @@ pub fn remove(
     }
 }
 
-/// Removes the light of the lamp texels for which `goes` returns true; its arguments are the index of the lamp and of
-/// the texel. The texels around a lamp may hold light, too, although light covers less than half of them. Their light
-/// is removed if all lamp texels next to them are removed.
+/// Removes the light of the lamp texels for which `goes` returns true. The arguments of `goes` are the index of the
+/// lamp and the index of the texel. A texel beside a lamp may hold light as well, although light covers less than half
+/// of it. Its light is removed if all lamp texels among its eight neighbours are removed.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

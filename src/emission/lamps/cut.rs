@@ -1,8 +1,8 @@
 //! Completes the lamps that the border of the photo cuts.
 //!
-//! The texture shows a cut lamp only if the photo shows no whole lamp like it. Where the border runs obliquely, the
-//! visible part of a rectangle is a triangle or a wedge, and few lamps have such shapes. So a cut lamp becomes the
-//! bounding rectangle of its visible part, unless the photo shows that some of this rectangle is dark.
+//! The texture shows a cut lamp only if the photo shows no whole lamp like it. The border of the unwarped photo may run
+//! obliquely. It then cuts a rectangle to a triangle or a wedge, and few lamps have such shapes. So a cut lamp is drawn
+//! as the bounding rectangle of its visible part, unless the photo shows that this rectangle is partly dark.
 
 use super::design::{Design, Designs, Fitted, Shape};
 use crate::emission::exemplar::Exemplar;
@@ -11,8 +11,9 @@ use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Of the pixels of the rectangle that the photo shows, at least this share must be light. It excludes a half or a
-/// quarter of a disc, which covers only π/4 = 0.79 of its bounding rectangle. [convention]
+/// A cut lamp is drawn as a rectangle only if at least this share of the rectangle's pixels is lit. Pixels that the
+/// photo does not show do not count. The limit excludes a half or a quarter of a disc, which covers only π/4 = 0.79 of
+/// its bounding rectangle. [convention]
 const MIN_LIT: f64 = 0.92;
 
 /// Adds the designs of the lamps that the border cuts.
@@ -26,8 +27,8 @@ pub fn complete(mut designs: Designs, exemplar: &Exemplar) -> Designs {
     designs
 }
 
-/// The design of a lamp that the border cuts, and its fit as the only lamp of `kind`. `None` if the visible part shows
-/// that the lamp is not a rectangle along the axes.
+/// The design of a lamp that the border cuts, and the lamp's fit to it. No other lamp has this design, whose index is
+/// `kind`. `None` if the visible part shows that the lamp is not an axis-aligned rectangle.
 fn rectangle(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Design, Fitted)> {
     let lamp = &exemplar.components.list[component];
     if (lamp.area as f64) < MIN_LIT * shown_in_box(exemplar, lamp) as f64 {

@@ -11,13 +11,15 @@ pub struct Instance {
     pub shift: DVec2,
 }
 
-/// Offsets of a tileable texture and its eight neighbouring copies, as multiples of its sides.
+/// The nine vectors (x, y) with x and y in {-1, 0, 1}: the offsets, in units of the texture's sides, from a tileable
+/// texture to itself and to its eight neighbouring copies.
 pub fn turns() -> impl Iterator<Item = DVec2> {
     (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(f64::from(x), f64::from(y))))
 }
 
-/// Copies every lamp into the eight neighbouring copies of a tileable texture. A lamp that leaves the texture on one
-/// side then re-enters on the opposite side. `size` is the texture's size in unwarped pixels.
+/// Returns every lamp nine times: in the tileable texture itself and in its eight neighbouring copies. If the result is
+/// drawn in the texture alone, a lamp that crosses one side re-enters on the opposite side. `size` is the texture's
+/// size in unwarped pixels.
 pub fn wrapped(instances: &[Instance], size: DVec2) -> Vec<Instance> {
     instances.iter().flat_map(|i| turns().map(|t| Instance { shift: i.shift + t * size, ..*i })).collect()
 }

@@ -1,8 +1,11 @@
 //! Finds the lamps of the exemplar that a quilted texture shows, and places each as a whole.
 //!
-//! The texture is black outside the lights (Fig. 12c), so a patch contributes nothing but its lamps. A seam between
-//! patches may cut a lamp and leave only a part of it. Therefore a lamp is placed as a whole if patches with one shift
-//! show enough of it, and left out if they show less, or if another lamp occupies its place.
+//! The texture is black outside the lights (Fig. 12c of the paper), so a patch contributes nothing but its lamps. A
+//! seam between patches may cut a lamp and leave only a part of it. Therefore parts of lamps are never drawn:
+//!
+//! - A lamp is placed as a whole if patches with one common shift show enough of it. A shift is the position in the
+//!   texture minus the position in the exemplar.
+//! - A lamp is left out if such patches show less of it, or if another lamp occupies its place.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -30,8 +33,9 @@ pub struct Rules {
     pub wraps: bool,
 }
 
-/// Places the lamps of which a patch map copies at least the share [`MIN_SHARE`], those with the largest copied share
-/// first. Afterwards replaces each lamp with few photo pixels by a similar lamp with many.
+/// Places the lamps of which a patch map copies at least the share [`MIN_SHARE`]. Lamps with a larger copied share are
+/// placed first, because a place is given only once. Afterwards replaces each lamp that has few photo pixels by a
+/// similar lamp that has many.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = PatchLamps { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
@@ -57,15 +61,16 @@ impl PatchLamps<'_> {
         side(x, self.patch_map.width).zip(side(y, self.patch_map.height))
     }
 
-    /// The pixels of the texture that lamp `k` covers if moved by the shift with the given label.
+    /// The working pixels of the texture that lamp `k` covers after it is moved by shift number `label` of the patch
+    /// map.
     fn place(&self, k: u32, label: u32) -> impl Iterator<Item = (usize, usize)> {
         let [dx, dy] = self.patch_map.shifts[label as usize].working;
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Finds the exemplar's lamps of which the patch map copies at least the share `MIN_SHARE`, each with the shift by
-    /// which it is copied. Each entry holds the copied share of the lamp, the index of the lamp, and the label of the
-    /// shift; largest share first.
+    /// Finds the pairs of a lamp and a shift for which the patch map copies at least the share `MIN_SHARE` of the lamp
+    /// by this shift. Each entry holds the copied share, the index of the lamp, and the label of the shift. The largest
+    /// share comes first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
         let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
@@ -91,9 +96,11 @@ impl PatchLamps<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. A lamp is skipped if its place is
-    /// taken. Without a lattice, one taken pixel in the lamp or beside it suffices; on a lattice, more than the share
-    /// [`MAX_LATTICE_OVERLAP`] of its pixels must be taken.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`]. Skips a lamp whose place is taken by
+    /// lamps that are already placed:
+    ///
+    /// - On a lattice, if they cover more than the share [`MAX_LATTICE_OVERLAP`] of its pixels.
+    /// - Without a lattice, if they cover or touch any of its pixels.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = BitSet::new(width * height)?;
@@ -115,9 +122,12 @@ impl PatchLamps<'_> {
     }
 }
 
-/// Places the lamps of an exemplar that repeats as a whole, with the periods `a` and `b`. Each lamp is placed in every
-/// repetition that shows a part of it in the texture. In a tileable texture, it is placed once for every repetition
-/// whose origin lies in the texture.
+/// Places the lamps of an exemplar that repeats as a whole, with the periods `a` and `b`, in a texture of the given
+/// size. A repetition moves the exemplar's upper left corner to `offset` + i a + j b, with integers i and j. Lengths
+/// are in unwarped pixels.
+///
+/// - A texture that is not tileable gets every copy of a lamp that lies at least partly in it.
+/// - A tileable texture (`wraps`) gets all lamps of each repetition whose corner lies in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let mut instances = Vec::new();
@@ -128,8 +138,9 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-last, size - first) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
-            // In a tileable texture, a cell that begins exactly on the far border equals the cell that begins on the
-            // near border: count it once.
+            // In a tileable texture, a repetition that begins on the right or lower border equals the one that begins
+            // on the left or upper border. Both test limits are lowered by a slack, so that rounding cannot count such
+            // a repetition twice or not at all.
             let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
             if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
                 instances.push(Instance { component, shift });
@@ -139,16 +150,16 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     instances
 }
 
-/// A run of pixels that a lamp covers in a row of the exemplar at working size, from `start` up to, but not including,
-/// `end`.
+/// Adjacent pixels that a lamp covers in one row of the exemplar at working size: the columns from `start` to
+/// `end` - 1.
 struct PixelRun {
     start: i32,
     end: i32,
     lamp: u32,
 }
 
-/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. A pixel that several
-/// lamps share, each smaller than the pixel, belongs to the last one.
+/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. Several lamps that
+/// are smaller than a pixel may share one. Such a pixel belongs to the last of them.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<PixelRun>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {
@@ -186,8 +197,8 @@ impl BitSet {
     }
 }
 
-/// The pixels, at working size, of each lamp that is copied as one piece: the pixels whose centre the lamp covers or,
-/// if there are none, the pixel that contains the lamp's centre.
+/// For each lamp that is copied as one piece, the working pixels whose centre the lamp covers. A lamp that covers no
+/// pixel centre gets the pixel that contains the lamp's centre. Other components get an empty list.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];

@@ -1,10 +1,11 @@
 //! Groups lamps into kinds: lamps of about equal size and shape, regardless of colour and orientation.
 //!
 //! Lamps are compared by their area and by the smallest rectangle that encloses their outline. A square fills all of
-//! that rectangle, a disc π/4 of it, a triangle half. For lamps smaller than about twenty texels, the outline cannot
-//! distinguish a square from a disc of equal width.
+//! this rectangle, a disc π/4 of it, a triangle half. If lamps are narrower than about twenty texels, the tolerances
+//! for rounding are too wide to distinguish a square from a disc of equal width.
 //!
-//! The lamp that resembles most other lamps forms a kind with them. This is repeated for the remaining lamps.
+//! Kinds are found greedily: the lamp that resembles the largest number of other lamps forms a kind with these. This is
+//! repeated for the remaining lamps.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
@@ -16,11 +17,11 @@ const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
 /// most this value. [origin not recorded]
 const MAX_FILL_DIFFERENCE: f64 = 0.1;
-/// Tolerance, in texels, for the sides of two equal lamps, which differ by rounding and by the simplification of their
-/// outlines. [rounding]
+/// Maximum difference, in texels, between the measured sides of two equal lamps. The sides differ because outlines are
+/// rounded to texels and simplified. [rounding]
 const ROUNDING: f64 = 2.0;
-/// Number of bins per factor of e, for binning lamps by the logarithms of their area and sides before they are
-/// compared. [convention]
+/// Before lamps are compared, they are binned by the logarithms of their area and sides. A factor of e = 2.718 spans
+/// this number of bins, so the values in one bin differ by at most about 5 %. [convention]
 const BINS_PER_E: f64 = 20.0;
 
 /// The measures by which lamps are compared; lengths are in texels.
@@ -49,7 +50,7 @@ impl Measures {
             && (self.fill() - other.fill()).abs() <= MAX_FILL_DIFFERENCE + ROUNDING / short
     }
 
-    /// The bin of a shape. Lamps in one bin are treated as equal.
+    /// The bin of a lamp with these measures. Lamps in one bin are treated as equal.
     fn step(self) -> [i64; 3] {
         [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * BINS_PER_E).round() as i64)
     }
@@ -62,9 +63,9 @@ struct Bin<'a> {
     count: usize,
 }
 
-/// Gives every lamp the number of its kind, from 1; the kind with most lamps has number 1. Each lamp comes with a
-/// count, the number of lamps in the texture that it stands for. A lamp with count 0, such as one that the border
-/// cuts, gets number 0, which means no kind.
+/// Gives every lamp the number of its kind: 1 for the kind with the most lamps, 2 for the next, and so on. Each lamp
+/// comes with a count, the number of lamps in the texture that it stands for. A lamp with count 0, for example one that
+/// the border cuts, gets number 0, which means no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     let mut steps: BTreeMap<[i64; 3], Bin> = BTreeMap::new();
     for (lamp, count) in lamps {
@@ -78,7 +79,8 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
     let mut left: Vec<Bin> = steps.into_values().collect();
 
-    // The shape that resembles most lamps forms a kind with them. Repeat this for the remaining lamps.
+    // Take the shape that the largest number of lamps resembles. Together, these lamps form a kind. Repeat this for the
+    // remaining lamps.
     let count = |steps: &[Bin]| steps.iter().map(|s| s.count).sum::<usize>();
     let mut kinds: Vec<Vec<Bin>> = Vec::new();
     loop {

@@ -7,11 +7,11 @@ use glam::{DVec2, Vec3};
 pub struct Luminaire {
     /// Centre in texels.
     pub centre: DVec2,
-    /// Lengths along and across the long principal axis, in texels, the long one first.
+    /// Lengths along and across the axis of largest variance, in texels, the long one first.
     pub size: DVec2,
-    /// Angle of the long axis from x towards y, in radians, in (-π/2, π/2].
+    /// Angle of that axis from x towards y, in radians, in (-π/2, π/2].
     pub orientation: f64,
-    /// Area in texels; texels at the edge count with their lit part.
+    /// Area in texels. A texel at the lamp's edge counts only with the share that light covers.
     pub area: f64,
     /// Mean linear colour.
     pub colour: Vec3,
@@ -21,16 +21,17 @@ pub struct Luminaire {
     /// would be half covered by light.
     ///
     /// Accuracy: let u be the side of a texel or of an unwarped pixel, whichever is larger. The sides of the outline
-    /// are exact to 0.25 u, and corners of at least 90 degrees to 0.71 u. This holds if the lamp is wider than two
-    /// texels and the confidence also takes values between 0 and 1. Otherwise the outline follows the sides of texels.
+    /// are exact to 0.25 u, and corners with an inner angle of at least 90 degrees to 0.71 u. This holds if the lamp is
+    /// wider than two texels and the light mask has values between 0 and 1 at its edge. Otherwise the outline follows
+    /// the sides of texels.
     pub outline: Vec<DVec2>,
-    /// Number of the lamp's kind ([`super::kinds`]), counted from 1; the kind with most lamps has number 1. 0 for a
-    /// lamp that the border cuts.
+    /// Number of the lamp's kind ([`super::kinds`]). Kind 1 has the most lamps, kind 2 the second most, and so on. A
+    /// lamp that the texture's border cuts has 0.
     pub kind: u32,
 }
 
 impl Luminaire {
-    /// Returns the lamp after it is moved by `shift` and then scaled by `factor`.
+    /// Returns the lamp after it is moved by `shift` texels and then scaled by `factor` about the origin.
     pub fn moved(&self, shift: DVec2, factor: f64) -> Self {
         Self {
             centre: (self.centre + shift) * factor,

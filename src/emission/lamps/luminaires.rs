@@ -11,12 +11,13 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, DVec3};
 
-/// The connected components of a mask, or of the texels with a coverage of at least 0.5.
+/// The 8-connected components of the texels at which `mask` is at least 0.5.
 pub fn components(mask: &Image) -> Result<Components> {
     components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
 }
 
-/// Measures each connected component of the lights as a luminaire, in the order of their first texel.
+/// Measures each component in `found`, the connected lights of `texture`, and returns it as a luminaire. The order is
+/// that of `found`.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
     let lights = Lights::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)
@@ -42,14 +43,15 @@ pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     }));
 }
 
-/// Measures a lamp. Its `flux_share` is luminance times number of texels, which the caller divides by the total of all
-/// lamps.
+/// Measures the lamp with number `label`. Its `flux_share` is provisional: the mean luminance times the number of
+/// texels. The caller divides this product by its sum over all lamps.
 fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Luminaire {
     let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
     let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
 
-    // Sum up area and moments of the light, its edge included. Positions are relative to the lamp's own corner, so
-    // that equal lamps get equal bits anywhere in the texture.
+    // Sum up the area and the first and second moments of the light, including partly lit texels at its edge.
+    // Positions are relative to the corner of the lamp's bounding box, so that equal lamps get bit-identical results
+    // anywhere in the texture.
     let (mut area, mut sum, mut squares, mut colour) = (0.0, DVec2::ZERO, DVec3::ZERO, DVec3::ZERO);
     for y in low[1]..=high[1] {
         for x in (low[0]..=high[0]).filter(|&x| is_in([x, y])) {
@@ -82,12 +84,13 @@ fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Lu
     }
 }
 
-/// The direction of largest variance, from second moments, in (-π/2, π/2]; 0 if all directions have equal variance.
+/// The angle of the axis of largest variance, in radians, in (-π/2, π/2]; 0 if the variance is equal in all directions.
+/// The argument holds the central second moments.
 pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     let (difference, cross) = (xx - yy, 2.0 * xy);
     let anisotropy = difference.hypot(cross);
     let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
-    // -π/2 and π/2 are the same direction, so always return π/2, whatever the rounding.
+    // -π/2 and π/2 are the same axis. Rounding may produce either, so return π/2 for both.
     if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }
 
