@@ -8,7 +8,7 @@
 //! For parallel work, the tree is cut near its root into parts. The cut depends on the tree alone, not on the number
 //! of threads.
 
-use super::costs::{Binary, Branch, Content, Source, distribute};
+use super::costs::{Branch, Content, CostedPart, Source, distribute};
 use super::lines::{Draft, Lines};
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
@@ -32,17 +32,17 @@ const PAGE_LINES: usize = 64;
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     // Compute the costs of the parts in parallel, then the costs of the tree above the parts.
     let cut = source.cut();
-    let part = |&root: &u32| Binary::new(source, root, &HashMap::new(), &[], job);
-    let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
+    let cost_part = |&root: &u32| CostedPart::new(source, root, &HashMap::new(), &[], job);
+    let mut parts: Vec<CostedPart> = cut.par_iter().map(cost_part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
-    binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries, job)?);
+    parts.push(CostedPart::new(source, Tree::ROOT, &places, &parts, job)?);
     // Write the nodes above the parts first; then the subtrees below them in parallel.
-    let choice = Choice { source, binaries: &binaries, job };
+    let choice = Choice { source, parts: &parts, job };
     let mut top = choice.widen((cut.len(), 0), true)?;
-    let tasks = std::mem::take(&mut top.left);
-    let below = |task: &Left| choice.widen(task.at, false);
+    let tasks = std::mem::take(&mut top.deferred);
+    let below = |task: &DeferredChild| choice.widen(task.at, false);
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
-    drop(binaries);
+    drop(parts);
 
     // Determine the final positions of all nodes in the list of cache lines: the top first, then one block per
     // subtree. Store the position of each subtree's root in its parent node.
@@ -50,7 +50,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let mut bases = Vec::with_capacity(tasks.len());
     for (task, wide) in tasks.iter().zip(&done) {
         top.lines.get_mut::<Node>(task.node).children[task.lane] = wide.root.moved(len).bits();
-        top.stack_need = top.stack_need.max(task.waiting + wide.stack_need);
+        top.stack_need = top.stack_need.max(task.stack_depth + wide.stack_need);
         bases.push(len);
         len += wide.lines.len();
         if len > Child::LINES {
@@ -106,7 +106,7 @@ struct Wide {
     /// For each node, the index of its first cache line in `lines`.
     nodes: Vec<usize>,
     stack_need: usize,
-    left: Vec<Left>,
+    deferred: Vec<DeferredChild>,
 }
 
 impl Wide {
@@ -127,32 +127,32 @@ struct Open {
     /// root.
     parent: Option<(usize, usize)>,
     /// Number of entries on the traversal stack when a ray visits this node.
-    waiting: usize,
+    stack_depth: usize,
 }
 
 /// A child that another task will write, and its position in its parent.
-struct Left {
+struct DeferredChild {
     at: Place,
     node: usize,
     lane: usize,
     /// Number of entries on the traversal stack when a ray visits this child.
-    waiting: usize,
+    stack_depth: usize,
 }
 
 /// Follows the choices of minimum cost down the tree and writes wide nodes.
 struct Choice<'a> {
     source: &'a Source<'a>,
-    binaries: &'a [Binary],
+    parts: &'a [CostedPart],
     job: Job<'a>,
 }
 
 impl Choice<'_> {
-    fn branch(&self, (binary, at): Place) -> &Branch {
-        &self.binaries[binary].branches[at]
+    fn branch(&self, (part, at): Place) -> &Branch {
+        &self.parts[part].branches[at]
     }
 
     /// Writes the wide subtree below a branch. If `leave` is true, children that lie in other parts are left to other
-    /// tasks and listed in [`Wide::left`].
+    /// tasks and listed in [`Wide::deferred`].
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
         let mut wide = Wide { lines: Draft::with_capacity(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
@@ -162,7 +162,7 @@ impl Choice<'_> {
         // Fill each page of memory with the nodes most likely to be visited together: start with one node, then
         // repeatedly add the node of largest area among the children of nodes in the page. Children that do not fit
         // start new pages.
-        let mut roots = vec![Open { place: root, area: 0.0, parent: None, waiting: 0 }];
+        let mut roots = vec![Open { place: root, area: 0.0, parent: None, stack_depth: 0 }];
         let mut open = Vec::new();
         while let Some(next) = roots.pop() {
             self.job.check()?;
@@ -194,17 +194,17 @@ impl Choice<'_> {
         ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
         // Determine and prefetch the triangles of all packets before any of them is used.
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
-        wide.stack_need = wide.stack_need.max(this.waiting + len);
-        let waiting = this.waiting + len - 1;
+        wide.stack_need = wide.stack_need.max(this.stack_depth + len);
+        let stack_depth = this.stack_depth + len - 1;
         let unscale = 1.0 / self.source.scale;
         for (lane, &(_, at)) in ranked[..len].iter().enumerate() {
             let mut child = Child::EMPTY;
             if leave && at.0 != root.0 {
-                wide.left.push(Left { at, node, lane, waiting });
+                wide.deferred.push(DeferredChild { at, node, lane, stack_depth });
             } else if let Some(ids) = &packets[lane] {
                 child = Child::of_packet(wide.lines.push(&self.packet(ids))?);
             } else {
-                open.push(Open { place: at, area: self.branch(at).area, parent: Some((node, lane)), waiting });
+                open.push(Open { place: at, area: self.branch(at).area, parent: Some((node, lane)), stack_depth });
             }
             let branch = self.branch(at);
             let [low, high] = [branch.shape.min, branch.shape.max].map(|p| Vec3::from(p * unscale));
@@ -220,8 +220,8 @@ impl Choice<'_> {
         branch.surface / branch.cost[0]
     }
 
-    fn is_packet(&self, (binary, at): Place) -> bool {
-        self.binaries[binary].is_packet(at)
+    fn is_packet(&self, (part, at): Place) -> bool {
+        self.parts[part].is_packet(at)
     }
 
     /// Collects the up to eight children of a branch that becomes a wide node; returns their number.
@@ -233,8 +233,8 @@ impl Choice<'_> {
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
-            let ((binary, at), mut roots) = open[waiting];
-            let branch = self.branch((binary, at));
+            let ((part, at), mut roots) = open[waiting];
+            let branch = self.branch((part, at));
             // The branch may become up to `roots` wide subtrees. Choose fewer if they cost the same. The branch of the
             // node itself (`roots` = 8) is always divided.
             while roots < 8 && roots > 1 && branch.cost[roots - 2] <= branch.cost[roots - 1] {
@@ -242,7 +242,7 @@ impl Choice<'_> {
             }
             match branch.content {
                 Content::Halves(first) if roots > 1 => {
-                    let (l, r) = ((binary, first as usize), (binary, first as usize + 1));
+                    let (l, r) = ((part, first as usize), (part, first as usize + 1));
                     let (_, left) = distribute(&self.branch(l).cost, &self.branch(r).cost, roots);
                     open[waiting] = (r, roots - left);
                     open[waiting + 1] = (l, left);
@@ -257,7 +257,7 @@ impl Choice<'_> {
                     len += 1;
                 }
                 _ => {
-                    members[len] = (binary, at);
+                    members[len] = (part, at);
                     len += 1;
                 }
             }
@@ -274,11 +274,11 @@ impl Choice<'_> {
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
-            let (binary, at) = open[waiting];
-            match self.branch((binary, at)).content {
+            let (part, at) = open[waiting];
+            match self.branch((part, at)).content {
                 Content::Halves(first) => {
-                    open[waiting] = (binary, first as usize + 1);
-                    open[waiting + 1] = (binary, first as usize);
+                    open[waiting] = (part, first as usize + 1);
+                    open[waiting + 1] = (part, first as usize);
                     waiting += 2;
                 }
                 Content::Part(part) => {
@@ -286,7 +286,7 @@ impl Choice<'_> {
                     waiting += 1;
                 }
                 Content::Leaf(first) => {
-                    for id in self.branch((binary, at)).triangles(first) {
+                    for id in self.branch((part, at)).triangles(first) {
                         pages::prefetch(&raw const self.source.triangles[id as usize], 1);
                         ids[len] = id;
                         len += 1;

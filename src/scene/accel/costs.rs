@@ -76,12 +76,12 @@ impl Branch {
 }
 
 /// The branches of one part of the binary tree in breadth-first order, with their costs.
-pub(super) struct Binary {
+pub(super) struct CostedPart {
     pub branches: Vec<Branch>,
 }
 
-impl Binary {
-    pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary], job: Job) -> Result<Self> {
+impl CostedPart {
+    pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[CostedPart], job: Job) -> Result<Self> {
         let mut branches = Vec::new();
         // The nodes are scattered over memory. In breadth-first order their indices are known long before use, so many
         // nodes can be prefetched at once.
@@ -128,7 +128,7 @@ impl Binary {
         let halves = match (l.content, r.content) {
             (Content::Leaf(_), _) => r.cost.map(|cost| cost + l.cost[0]),
             (_, Content::Leaf(_)) => l.cost.map(|cost| cost + r.cost[0]),
-            _ => combine(&l.cost, &r.cost),
+            _ => min_cost_of_halves(&l.cost, &r.cost),
         };
         let mut cost = [area + halves[6]; 7];
         if count <= WIDTH as u32 {
@@ -152,7 +152,7 @@ impl Binary {
 
 /// Returns the minimum cost of two halves; entry `i` is for `i + 2` wide subtrees in total. The code has no conditional
 /// jumps, because the processor could not predict them.
-fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
+fn min_cost_of_halves(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {
         for r in 0..7 - l {

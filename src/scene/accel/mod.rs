@@ -11,7 +11,6 @@
 //!
 //! Not modelled: motion, instancing, curves.
 
-mod aligned;
 mod build;
 mod cluster;
 mod collapse;
@@ -23,6 +22,7 @@ mod node;
 mod packet;
 mod pages;
 mod part;
+mod prepared_ray;
 mod ray;
 mod reinsert;
 mod stack;

@@ -1,7 +1,7 @@
 //! Nodes of eight children, and the conservative test of a ray against their eight boxes.
 
-use super::aligned::{Aligned, finite};
 use super::lanes::{Lanes, Row};
+use super::prepared_ray::{PreparedRay, finite};
 use glam::{Vec3, Vec4};
 
 /// A child reference: another node, a packet of triangles, or empty. Nodes and packets are identified by the number of
@@ -132,7 +132,7 @@ pub(super) struct NodeRay<L> {
 
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
-    pub fn new(ray: &Aligned, largest: Vec4) -> Self {
+    pub fn new(ray: &PreparedRay, largest: Vec4) -> Self {
         let magnitude = ray.origin.abs() + largest;
         let dominant = Vec4::select(ray.is_dominant, magnitude, Vec4::ZERO).max_element();
         let margin = (magnitude + Vec4::splat(dominant)) * MARGIN;

@@ -1,7 +1,7 @@
 //! Packets of eight triangles, and the watertight ray test against them (Woop, Benthin and Wald 2013).
 
-use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
+use super::prepared_ray::PreparedRay;
 use super::ray::Hit;
 use glam::Vec3;
 
@@ -175,7 +175,7 @@ pub(super) struct TriangleRay {
 
 impl TriangleRay {
     #[inline(always)]
-    pub fn new(ray: &Aligned) -> Self {
+    pub fn new(ray: &PreparedRay) -> Self {
         let z = ray.dominant_axis();
         let (origin, d, inverse) = (ray.origin.to_array(), ray.direction.to_array(), ray.inverse.to_array()[z]);
         // Look up x = (z + 1) mod 3 and y = (z + 2) mod 3, in tables of two bits per entry: 1, 2, 0 and 2, 0, 1.

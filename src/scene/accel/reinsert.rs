@@ -26,7 +26,7 @@ const CHUNK: usize = 256;
 const COUNT_CHUNK: usize = 1 << 15;
 /// Number of highest bits of an area, after the sign bit, that select its histogram bin: the exponent and four bits of
 /// the mantissa.
-const SIZE_BITS: u32 = 8 + 4;
+const AREA_BIN_BITS: u32 = 8 + 4;
 
 /// A move of the subtree `from` to a new position as the sibling of `to`. `gain` is the decrease of the total half
 /// area of all boxes.
@@ -48,8 +48,8 @@ fn pair(node: u32) -> usize {
 
 /// Returns the histogram bin of an area. Bins are ordered like areas, because non-negative floats sort as their bits
 /// do.
-fn size(area: f32) -> usize {
-    (area.to_bits() >> (31 - SIZE_BITS)) as usize
+fn area_bin(area: f32) -> usize {
+    (area.to_bits() >> (31 - AREA_BIN_BITS)) as usize
 }
 
 fn sibling(node: u32) -> u32 {
@@ -66,8 +66,8 @@ impl<'a> Reinsertion<'a> {
     /// reach the threshold. It can be fewer, because thresholds are boundaries of histogram bins.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
-            let mut counts = vec![0; 1 << SIZE_BITS];
-            pairs.iter().flat_map(|pair| &pair.0).for_each(|node| counts[size(half_area(node.aabb()))] += 1);
+            let mut counts = vec![0; 1 << AREA_BIN_BITS];
+            pairs.iter().flat_map(|pair| &pair.0).for_each(|node| counts[area_bin(half_area(node.aabb()))] += 1);
             counts
         };
         let add = |mut a: Vec<u32>, b: Vec<u32>| {
@@ -75,12 +75,12 @@ impl<'a> Reinsertion<'a> {
             a
         };
         let counts = self.tree.pairs.par_chunks(COUNT_CHUNK).map(count).reduce_with(add).unwrap_or_default();
-        let largest = size(half_area(self.aabb(Tree::ROOT)));
+        let largest = area_bin(half_area(self.aabb(Tree::ROOT)));
         shares.map(|share| {
             let mut left = (share * self.tree.len() as f32) as u32;
             let is_full = |&count: &u32| left.checked_sub(count).map(|less| left = less).is_none();
-            let smallest = counts[..=largest].iter().rposition(is_full).map_or(0, |size| size + 1);
-            f32::from_bits((smallest as u32) << (31 - SIZE_BITS))
+            let smallest = counts[..=largest].iter().rposition(is_full).map_or(0, |bin| bin + 1);
+            f32::from_bits((smallest as u32) << (31 - AREA_BIN_BITS))
         })
     }
 
@@ -121,10 +121,10 @@ impl<'a> Reinsertion<'a> {
 
     /// Finds the best new position of a subtree. Removing the subtree deletes its parent and shrinks the boxes above;
     /// inserting it makes the boxes above the new position grow.
-    fn best_move(&self, from: u32, waiting: &mut Vec<Waiting>) -> Move {
+    fn best_move(&self, from: u32, candidates: &mut Vec<Candidate>) -> Move {
         let this = self.aabb(from);
         let best = Move { from, to: 0, gain: 0.0 };
-        let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
+        let mut search = Search { tree: self.tree, this, area: half_area(this), best, candidates };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
         // `gained` is the half area saved by removing the subtree, summed over the boxes from its parent up to
@@ -133,7 +133,7 @@ impl<'a> Reinsertion<'a> {
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {
-            search.below(gained, beside);
+            search.search_subtree(gained, beside);
             if pivot != parent
                 && let Some(smaller) = rest
             {
@@ -193,7 +193,7 @@ impl<'a> Reinsertion<'a> {
 
 /// A pair of siblings beside which the subtree may be placed. The second number is the index of the first sibling. The
 /// first number is the gain at these positions before the area of the new parent is subtracted.
-type Waiting = (f32, u32);
+type Candidate = (f32, u32);
 
 /// The search for the best position of one subtree.
 struct Search<'a> {
@@ -201,25 +201,25 @@ struct Search<'a> {
     this: &'a Aabb,
     area: f32,
     best: Move,
-    waiting: &'a mut Vec<Waiting>,
+    candidates: &'a mut Vec<Candidate>,
 }
 
 impl Search<'_> {
     /// Examines all positions beside `node` or below it. `gained` is the gain of a position beside `node` before the
     /// area of the new parent is subtracted.
-    fn below(&mut self, gained: f32, node: u32) {
-        self.beside(gained, node);
-        while let Some((gained, first)) = self.waiting.pop() {
+    fn search_subtree(&mut self, gained: f32, node: u32) {
+        self.try_sibling_of(gained, node);
+        while let Some((gained, first)) = self.candidates.pop() {
             // Skip the pair if no position in it can beat the best one, which may have improved since the pair was
             // pushed.
             if gained - self.area <= self.best.gain {
                 continue;
             }
-            let len = self.waiting.len();
-            self.beside(gained, first);
-            self.beside(gained, first + 1);
+            let len = self.candidates.len();
+            self.try_sibling_of(gained, first);
+            self.try_sibling_of(gained, first + 1);
             // Visit the more promising of the two children next.
-            if let [.., a, b] = &mut self.waiting[len..]
+            if let [.., a, b] = &mut self.candidates[len..]
                 && a.0 > b.0
             {
                 std::mem::swap(a, b);
@@ -227,11 +227,11 @@ impl Search<'_> {
         }
     }
 
-    /// Examines the position beside the node `to`, with `gained` as in [`Self::below`]. Pushes the children of `to` if
-    /// a position beside one of them could be better than the best one. Such a position costs at least the area of the
-    /// subtree, because the new parent contains the subtree.
+    /// Examines the position beside the node `to`, with `gained` as in [`Self::search_subtree`]. Pushes the children of
+    /// `to` if a position beside one of them could be better than the best one. Such a position costs at least the area
+    /// of the subtree, because the new parent contains the subtree.
     #[inline(always)]
-    fn beside(&mut self, gained: f32, to: u32) {
+    fn try_sibling_of(&mut self, gained: f32, to: u32) {
         let node = &self.tree[to];
         let gain = gained - half_area(&node.aabb().union(self.this));
         if gain > self.best.gain {
@@ -240,7 +240,7 @@ impl Search<'_> {
         let below = gain + half_area(node.aabb());
         if !node.is_leaf() && below - self.area > self.best.gain {
             pages::prefetch(&raw const self.tree[node.first_index], 1);
-            self.waiting.push((below, node.first_index));
+            self.candidates.push((below, node.first_index));
         }
     }
 }

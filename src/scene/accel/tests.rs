@@ -1,7 +1,7 @@
-use super::aligned::Aligned;
 use super::lanes::Baseline;
 use super::node::Node;
 use super::packet::{Packet, TriangleRay};
+use super::prepared_ray::PreparedRay;
 use super::traverse::is_better;
 use super::*;
 use crate::exec::Pool;
@@ -43,7 +43,7 @@ fn tessellated_box(n: usize, low: Vec3, high: Vec3) -> Vec<[Vec3; 3]> {
 }
 
 fn brute_force(triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
-    let triangle_ray = TriangleRay::new(&Aligned::new(ray).unwrap());
+    let triangle_ray = TriangleRay::new(&PreparedRay::new(ray).unwrap());
     let mut best: Option<Hit> = None;
     for id in 0..triangles.len() as u32 {
         let packet = Packet::new(triangles, &[id]);

@@ -1,10 +1,10 @@
 //! Traversal of the acceleration structure: finds the nearest hit of a ray, or whether there is any hit.
 
-use super::aligned::Aligned;
 use super::lanes::{self, Baseline, Lanes, take_highest, take_lowest};
 use super::lines::Lines;
 use super::node::{Child, Node, NodeRay};
 use super::packet::{Packet, TriangleRay};
+use super::prepared_ray::PreparedRay;
 use super::ray::{Hit, Ray};
 use super::stack::{SLACK, Stack, Waiting};
 use crate::simd::Level;
@@ -119,9 +119,9 @@ impl Accel {
         accept: &mut impl FnMut(&Hit) -> bool,
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        let aligned = Aligned::new(ray)?;
-        let node_ray = NodeRay::<L>::new(&aligned, self.largest);
-        let triangle_ray = TriangleRay::new(&aligned);
+        let prepared = PreparedRay::new(ray)?;
+        let node_ray = NodeRay::<L>::new(&prepared, self.largest);
+        let triangle_ray = TriangleRay::new(&prepared);
         let mut best = Best { hit: None, t_max: ray.t_max, ray_t_max: ray.t_max };
         let mut stack = Stack::new(stack);
         let mut child = self.root;

@@ -4,7 +4,7 @@ use super::ray::Ray;
 use glam::{BVec4A, Vec4};
 
 /// A ray in SIMD registers of four lanes (the fourth lane is 0), with its dominant axis.
-pub(super) struct Aligned {
+pub(super) struct PreparedRay {
     pub origin: Vec4,
     pub direction: Vec4,
     /// Componentwise reciprocal of the direction, always finite. Direction components too small to invert get a large
@@ -15,7 +15,7 @@ pub(super) struct Aligned {
     pub is_dominant: BVec4A,
 }
 
-impl Aligned {
+impl PreparedRay {
     /// Prepares a ray. `None` if the ray can hit nothing, because its direction is zero, its `t_max` is not positive,
     /// or a component is not finite.
     #[inline(always)]
