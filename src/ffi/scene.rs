@@ -394,7 +394,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
             normal: surface.normal.to_array(),
             size: surface.size.to_array(),
             area: surface.area,
-            sloped_area: surface.bent,
+            sloped_area: surface.sloped_area,
             ..luxfer_surface::defaults()
         });
         Ok(())

@@ -181,7 +181,7 @@ mod tests {
             normal,
             size,
             area: size.x * size.y,
-            bent: 0.0,
+            sloped_area: 0.0,
         }
     }
 

@@ -33,7 +33,7 @@ struct Stored<'a> {
 
 /// The properties of a material that both workflows (metallic-roughness and specular-glossiness) determine.
 #[derive(Default)]
-struct Surface {
+struct PbrValues {
     base_color: Vec3,
     alpha: f32,
     base_color_texture: Option<TextureRef>,
@@ -63,7 +63,7 @@ impl<'a> Materials<'a> {
     pub fn read(&mut self, index: usize, json: &material::Material) -> Result<Material> {
         let extensions = json.extensions.as_ref();
         let glossiness = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
-        let surface = match glossiness.filter(|settings| glossiness::is_convertible(settings)) {
+        let pbr = match glossiness.filter(|settings| glossiness::is_convertible(settings)) {
             Some(settings) => self.glossiness(settings)?,
             None => self.metallic_roughness(&json.pbr_metallic_roughness)?,
         };
@@ -74,18 +74,18 @@ impl<'a> Materials<'a> {
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
-            base_color: surface.base_color.clamp(Vec3::ZERO, Vec3::ONE),
-            base_color_texture: surface.base_color_texture,
-            alpha: surface.alpha.clamp(0.0, 1.0),
+            base_color: pbr.base_color.clamp(Vec3::ZERO, Vec3::ONE),
+            base_color_texture: pbr.base_color_texture,
+            alpha: pbr.alpha.clamp(0.0, 1.0),
             alpha_mode: match &json.alpha_mode {
                 Checked::Valid(material::AlphaMode::Opaque) => AlphaMode::Opaque,
                 Checked::Valid(material::AlphaMode::Mask) => AlphaMode::Mask(json.alpha_cutoff.map_or(0.5, |c| c.0)),
                 Checked::Valid(material::AlphaMode::Blend) => AlphaMode::Blend,
                 Checked::Invalid => return Err(Error::format("its alphaMode is unknown")),
             },
-            metallic: surface.metallic.clamp(0.0, 1.0),
-            roughness: surface.roughness.clamp(0.0, 1.0),
-            metallic_roughness_texture: surface.metallic_roughness_texture,
+            metallic: pbr.metallic.clamp(0.0, 1.0),
+            roughness: pbr.roughness.clamp(0.0, 1.0),
+            metallic_roughness_texture: pbr.metallic_roughness_texture,
             normal_texture: match &json.normal_texture {
                 Some(normal) => self.reference(normal.index, normal.tex_coord, None, Encoding::Linear)?,
                 None => None,
@@ -99,9 +99,9 @@ impl<'a> Materials<'a> {
         })
     }
 
-    fn metallic_roughness(&mut self, pbr: &material::PbrMetallicRoughness) -> Result<Surface> {
+    fn metallic_roughness(&mut self, pbr: &material::PbrMetallicRoughness) -> Result<PbrValues> {
         let [r, g, b, alpha] = pbr.base_color_factor.0;
-        Ok(Surface {
+        Ok(PbrValues {
             base_color: Vec3::new(r, g, b),
             alpha,
             base_color_texture: self.optional(pbr.base_color_texture.as_ref(), Encoding::Srgb)?,
@@ -112,11 +112,11 @@ impl<'a> Materials<'a> {
     }
 
     /// Converts a specular-glossiness material to metallic-roughness, with new textures if it has textures.
-    fn glossiness(&mut self, settings: &PbrSpecularGlossiness) -> Result<Surface> {
+    fn glossiness(&mut self, settings: &PbrSpecularGlossiness) -> Result<PbrValues> {
         let [r, g, b, alpha] = settings.diffuse_factor.0;
         let infos = [&settings.diffuse_texture, &settings.specular_glossiness_texture].map(Option::as_ref);
-        let diffuse_texture = infos[0].map_or(Ok(None), |info| self.separate(info.index))?;
-        let specular_texture = infos[1].map_or(Ok(None), |info| self.separate(info.index))?;
+        let diffuse_texture = infos[0].map_or(Ok(None), |info| self.decode_for_conversion(info.index))?;
+        let specular_texture = infos[1].map_or(Ok(None), |info| self.decode_for_conversion(info.index))?;
         let colours = Colours {
             diffuse: Vec3::new(r, g, b),
             alpha,
@@ -128,7 +128,7 @@ impl<'a> Materials<'a> {
         let (Some(size), Some(info)) = (colours.size(), infos[0].or(infos[1])) else {
             let (base_color, metallic) = glossiness::convert(colours.diffuse, colours.specular);
             let roughness = 1.0 - colours.glossiness;
-            return Ok(Surface { base_color, alpha, metallic, roughness, ..Surface::default() });
+            return Ok(PbrValues { base_color, alpha, metallic, roughness, ..PbrValues::default() });
         };
         let pixels = 2 * size[0] as u64 * size[1] as u64;
         self.count(pixels, pixels / 2 * 7)?;
@@ -146,11 +146,11 @@ impl<'a> Materials<'a> {
         }
         let [base_color_texture, metallic_roughness_texture] = references;
         let (base_color, metallic, roughness) = (Vec3::ONE, 1.0, 1.0);
-        Ok(Surface { base_color, alpha: 1.0, base_color_texture, metallic, roughness, metallic_roughness_texture })
+        Ok(PbrValues { base_color, alpha: 1.0, base_color_texture, metallic, roughness, metallic_roughness_texture })
     }
 
     /// Decodes a texture for a conversion, without adding it to the scene. `None` if it has no image.
-    fn separate(&mut self, index: Index<texture::Texture>) -> Result<Option<Texture>> {
+    fn decode_for_conversion(&mut self, index: Index<texture::Texture>) -> Result<Option<Texture>> {
         let within = |e: Error| e.context(format_args!("texture {}", index.value()));
         let Some(stored) = self.stored(index).map_err(within)? else { return Ok(None) };
         self.load(&stored, Encoding::Srgb).map(Some).map_err(within)

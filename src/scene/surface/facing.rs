@@ -30,9 +30,9 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let chunks = chunks(scene);
     let mut best: Option<(f64, usize, DVec3)> = None;
     for (i, patch) in patches.iter().enumerate() {
-        for normal in [wound(scene, patch), -wound(scene, patch)] {
+        for normal in [front_normal(scene, patch), -front_normal(scene, patch)] {
             let score = patch.area
-                * visibility(scene, &chunks, patch, normal)
+                * mean_clear_distance(scene, &chunks, patch, normal)
                 * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
             if best.is_none_or(|(b, ..)| score > b) {
                 best = Some((score, i, normal));
@@ -43,7 +43,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
 }
 
 /// Returns the normal on the front side of the plane: the side from which most of its area is wound counter-clockwise.
-fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
+fn front_normal(scene: &Scene, patch: &Patch) -> DVec3 {
     let signed: f64 = patch
         .triangles
         .iter()
@@ -63,7 +63,7 @@ fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
 
 /// Returns how far one can see from one side of a plane, in `[0, 1]`: the mean of `min(1, distance / √area)` over
 /// [`RAYS`] rays.
-fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
+fn mean_clear_distance(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
     // Accumulate the areas of the triangles, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());
     let mut sum = 0.0;

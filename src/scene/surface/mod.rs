@@ -6,12 +6,12 @@
 //! selects the plane and the side from which most of the room is visible, and fits a rectangle in that plane.
 //! [`place`] makes the patch a separate mesh and maps a texture onto the rectangle.
 //!
-//! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area of
-//! the remaining, sloped triangles.
+//! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::sloped_area`] reports the
+//! area of the remaining, sloped triangles.
 
+mod bounding_rectangle;
 mod candidates;
 mod facing;
-mod frame;
 mod name;
 mod patch;
 mod place;
@@ -48,7 +48,7 @@ pub struct Surface {
     pub area: f32,
     /// Area in m² of the triangles of the same object that are inclined to this plane by 5 to 75 degrees, as in a
     /// vault. They do not belong to the patch and get no light texture.
-    pub bent: f32,
+    pub sloped_area: f32,
 }
 
 impl Surface {
@@ -57,12 +57,17 @@ impl Surface {
     pub fn turned(&self, scene: &Scene, angle: f64) -> Result<Self> {
         let turn = DVec2::from_angle(angle);
         let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
-        let frame = frame::bound(&corners(scene, &self.triangles)?, self.origin.as_dvec3(), u, self.normal.as_dvec3());
+        let rectangle = bounding_rectangle::bound(
+            &corners(scene, &self.triangles)?,
+            self.origin.as_dvec3(),
+            u,
+            self.normal.as_dvec3(),
+        );
         Ok(Self {
-            origin: frame.origin.as_vec3(),
-            u_axis: frame.u.as_vec3(),
-            v_axis: frame.v.as_vec3(),
-            size: frame.size.as_vec2(),
+            origin: rectangle.origin.as_vec3(),
+            u_axis: rectangle.u.as_vec3(),
+            v_axis: rectangle.v.as_vec3(),
+            size: rectangle.size.as_vec2(),
             ..self.clone()
         })
     }
@@ -116,23 +121,23 @@ fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     let patches = patch::planes(scene, triangles)?;
     let (chosen, normal) = facing::facing(scene, &patches)?;
     let chosen = &patches[chosen];
-    let bent = patch::bent(scene, triangles, normal);
+    let sloped_area = patch::sloped_area(scene, triangles, normal);
     let mut triangles = chosen.triangles.clone();
     triangles.sort_unstable();
 
     // Fit the bounding rectangle in the plane.
-    let frame = frame::fit(&corners(scene, &triangles)?, chosen.centre, normal);
-    if frame.size.min_element() <= 0.0 || !frame.size.is_finite() {
+    let rectangle = bounding_rectangle::fit(&corners(scene, &triangles)?, chosen.centre, normal);
+    if rectangle.size.min_element() <= 0.0 || !rectangle.size.is_finite() {
         return Err(Error::degenerate("the surface has no extent in one direction; it must have an area"));
     }
     Ok(Surface {
         triangles,
-        origin: frame.origin.as_vec3(),
-        u_axis: frame.u.as_vec3(),
-        v_axis: frame.v.as_vec3(),
+        origin: rectangle.origin.as_vec3(),
+        u_axis: rectangle.u.as_vec3(),
+        v_axis: rectangle.v.as_vec3(),
         normal: normal.as_vec3(),
-        size: frame.size.as_vec2(),
+        size: rectangle.size.as_vec2(),
         area: chosen.area as f32,
-        bent: bent as f32,
+        sloped_area: sloped_area as f32,
     })
 }

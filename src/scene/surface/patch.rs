@@ -97,7 +97,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
 }
 
 /// Area in m² of the triangles inclined to the plane of `normal` by 5 to 75 degrees, on either side.
-pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
+pub fn sloped_area(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
     let slopes = |f: &Facet| {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
         SLOPED[0] < cosine && cosine < SLOPED[1]

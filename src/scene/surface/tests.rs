@@ -163,10 +163,10 @@ fn one_plane_of_many_small_triangles_is_one_patch() {
     assert!((surface.normal - Vec3::NEG_Y).length() < 1e-3);
     assert!((surface.size.y - 4.0).abs() < 1e-3 && surface.size.x >= 3.0 && surface.size.x <= 3.6, "{}", surface.size);
     // Each flank has six strips with slopes 0.075, 0.225, ... The first is inclined by 4.3 degrees, less than the 5
-    // degrees from which `bent` counts triangles.
+    // degrees from which `sloped_area` counts triangles.
     let strip = |k: i32| 4.0 * 0.25 * f64::hypot(1.0, 0.075 * f64::from(2 * k + 1));
     let flanks: f64 = 2.0 * (1..6).map(strip).sum::<f64>();
-    assert!((f64::from(surface.bent) - flanks).abs() < 1e-3, "{} of {flanks}", surface.bent);
+    assert!((f64::from(surface.sloped_area) - flanks).abs() < 1e-3, "{} of {flanks}", surface.sloped_area);
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
     let mut scene = shell();
     scene.meshes.push(Mesh { material: 1, ..slab("Lid", Vec3::new(0., 3., 0.), Vec3::new(6., 3.2, 4.)) });
     let surface = find(&scene, "Lid").unwrap();
-    assert_eq!(surface.bent.to_bits(), 0);
+    assert_eq!(surface.sloped_area.to_bits(), 0);
     let image = Image::from_fn(3, 2, |x, y| [x as f32, y as f32, 1.0]).unwrap();
     let placed = place(&mut scene, &surface, image, Vec3::new(5.0, 6.0, 7.0)).unwrap();
     assert_eq!(scene.validate(), Ok(()));

@@ -12,7 +12,7 @@ const MIN_SAVING: f64 = 1e-3;
 /// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-pub struct Frame {
+pub struct BoundingRectangle {
     /// The corner with u = v = 0.
     pub origin: DVec3,
     pub u: DVec3,
@@ -22,13 +22,14 @@ pub struct Frame {
 
 /// Fits the smallest bounding rectangle of points in the plane through `centre`. The unit `normal` points at the
 /// viewer, to whom u runs right and v runs down.
-pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
+pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> BoundingRectangle {
     let upright = upright(normal);
     let turned = smallest(points, centre, upright, normal);
-    let (aligned_frame, turned_frame) = (bound(points, centre, upright, normal), bound(points, centre, turned, normal));
+    let (aligned_rectangle, turned_rectangle) =
+        (bound(points, centre, upright, normal), bound(points, centre, turned, normal));
     let aligned = turned.dot(upright) >= COS_SNAP
-        || turned_frame.size.element_product() > (1.0 - MIN_SAVING) * aligned_frame.size.element_product();
-    if aligned { aligned_frame } else { turned_frame }
+        || turned_rectangle.size.element_product() > (1.0 - MIN_SAVING) * aligned_rectangle.size.element_product();
+    if aligned { aligned_rectangle } else { turned_rectangle }
 }
 
 /// Returns the u axis of the rectangle that is aligned with the world axes.
@@ -49,7 +50,7 @@ fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
 }
 
 /// Returns the bounding rectangle with sides along `u` and along the corresponding v axis.
-pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
+pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> BoundingRectangle {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for p in points {
@@ -57,7 +58,7 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame 
         low = low.min(at);
         high = high.max(at);
     }
-    Frame { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
+    BoundingRectangle { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
 }
 
 /// Returns the u axis of the bounding rectangle of minimum area. Of the four directions of its sides, this is the one
@@ -100,19 +101,19 @@ mod tests {
                 .map(|(x, y)| DVec2::new(x, y).rotate(turn))
                 .map(|p| DVec3::new(p.x, 2.5, p.y))
                 .into();
-            let frame = fit(&points, points[4], DVec3::NEG_Y);
-            assert!((frame.u.cross(frame.v) - DVec3::Y).length() < 1e-12, "{degrees}");
+            let rectangle = fit(&points, points[4], DVec3::NEG_Y);
+            assert!((rectangle.u.cross(rectangle.v) - DVec3::Y).length() < 1e-12, "{degrees}");
             let slack = if degrees == 0.5 { 0.06 } else { 1e-9 };
-            let (long, short) = (frame.size.max_element(), frame.size.min_element());
-            assert!((long - 3.0).abs() < slack && (short - 2.0).abs() < slack, "{degrees}: {}", frame.size);
+            let (long, short) = (rectangle.size.max_element(), rectangle.size.min_element());
+            assert!((long - 3.0).abs() < slack && (short - 2.0).abs() < slack, "{degrees}: {}", rectangle.size);
             // A rectangle rotated by half a degree snaps to the world axes; larger rotations do not.
-            assert!((degrees > 1.0) != (frame.u == DVec3::X), "{degrees}: {}", frame.u);
-            assert!(frame.u.x >= WALL - 1e-9);
+            assert!((degrees > 1.0) != (rectangle.u == DVec3::X), "{degrees}: {}", rectangle.u);
+            assert!(rectangle.u.x >= WALL - 1e-9);
         }
     }
 
     #[test]
-    fn frames_are_oriented_as_seen_from_the_room() {
+    fn rectangles_are_oriented_as_seen_from_the_room() {
         let square = |u: DVec3, v: DVec3| [DVec3::ZERO, u, u + v, v];
         // Expected axes u and v for a ceiling, a floor and two walls.
         for (normal, u, v) in [
@@ -121,12 +122,12 @@ mod tests {
             (DVec3::Z, DVec3::X, DVec3::NEG_Y),
             (DVec3::X, DVec3::NEG_Z, DVec3::NEG_Y),
         ] {
-            let frame = fit(&square(u, v), DVec3::ZERO, normal);
+            let rectangle = fit(&square(u, v), DVec3::ZERO, normal);
             assert!(
-                (frame.u - u).length() < 1e-12 && (frame.v - v).length() < 1e-12,
+                (rectangle.u - u).length() < 1e-12 && (rectangle.v - v).length() < 1e-12,
                 "{normal}: {} {}",
-                frame.u,
-                frame.v
+                rectangle.u,
+                rectangle.v
             );
         }
     }
