@@ -1,5 +1,5 @@
-//! Furniture of the demonstration rooms. Each piece is built at the origin with its front towards +z, then rotated and
-//! moved.
+//! Furniture of the demonstration rooms. A piece with a front is built at the origin with the front towards +z, then
+//! rotated and moved. Vases, bowls and plants are built in their places.
 
 use super::Builder;
 use super::shapes::{ball, cuboid, lathe, moved};

@@ -1,12 +1,13 @@
 //! Shapes of the demonstration scenes: sheets, boxes and bodies of revolution.
 //!
-//! Texture coordinates are in metres along the surface. Round shapes have normals and flat shapes have none, so the
-//! two kinds must not share a mesh.
+//! Texture coordinates of flat shapes are in metres along the surface. Those of round shapes are the share of a turn
+//! about the axis, in `[0, 1]`, and the height in metres above the foot. Round shapes have normals and flat shapes have
+//! none, so the two kinds must not share a mesh.
 
 use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};
 
-/// Creates a mesh from one call of a function that adds a shape.
+/// Creates a mesh and lets `build` add flat shapes to it.
 pub fn flat(build: impl FnOnce(&mut Mesh)) -> Mesh {
     let mut mesh = Mesh::default();
     build(&mut mesh);

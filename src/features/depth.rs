@@ -78,7 +78,8 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     Ok(surface)
 }
 
-/// Samples the known inverse depths at regular intervals, enough of them to estimate quantiles to a thousandth.
+/// Returns every n-th known inverse depth, where n is the smallest number for which there are at most
+/// [`QUANTILE_SAMPLES`].
 fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + Sync, job: Job) -> Result<Vec<f32>> {
     let (width, height) = (depth.width, depth.height);
     let at = |x: usize, y: usize| inverse_at(x, y, depth.data[y * width + x]);
@@ -119,7 +120,8 @@ pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, jo
     Ok(Surface { inverse_depth, normals, confidence })
 }
 
-/// Fills holes (confidence 0) by pulling known values down a pyramid and pushing them back up (Gortler et al. 1996).
+/// Fills holes (confidence 0) by the pull-push algorithm (Gortler et al. 1996): averages the known values to the
+/// coarser levels of a pyramid (pull), then fills the holes of each level from the next coarser one (push).
 fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
     let (width, height) = (surface.confidence.width, surface.confidence.height);
     let has_holes = exec::map(height, job.part(0.0, 0.0), |y| surface.confidence.row(y).contains(&0.0))?;

@@ -142,8 +142,8 @@ impl Tables {
             let quadrant = &evidence.quadrants[part];
             let at = values[wall][row];
             let entry = |&height: &f64| {
-                // Each wall, and each of ceiling and floor, belongs to two quadrants, so each quadrant counts half of
-                // its prior cost.
+                // Each side of the box belongs to two quadrants, so each quadrant counts half of the prior cost of the
+                // side.
                 let prior = -0.5 * (prior_cost(at) + prior_cost(height));
                 let lines = quadrant.lines(1.0 / at, 1.0 / height) + prior;
                 let strokes = quadrant.strokes(1.0 / at, 1.0 / height);

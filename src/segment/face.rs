@@ -13,7 +13,8 @@ use glam::Vec3;
 
 /// Minimum cosine of the angle between two normals of the same face; the angle is at most 45 degrees. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Pixels lie on one face if at least this share of them have nearly equal normals. [judged on 28 photos]
+/// Pixels lie on one face if the normals of at least this share of them agree with the mean normal (see
+/// [`agreed_normal`]). [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
 /// Minimum cosine between normals that differ by rounding only. Normals of a room laid out as a box pass this test,

@@ -168,8 +168,11 @@ fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: 
     }
 }
 
-/// Proposes the mask of a plane if the strokes of a class are missing. Returns `None` if both classes have strokes in
-/// the image, or if the positive strokes lie on more than one face.
+/// Proposes the mask of a plane if the strokes of a class are missing. Returns `None`
+/// - if both classes have strokes in the image;
+/// - if only positive strokes exist, and do not lie on a single face of a room laid out as a box.
+///
+/// Errors (`Degenerate`): positive strokes are missing, and no ceiling was found.
 fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentation>> {
     let count = input.features.width * input.features.height;
     let is_seen = |s: &Stroke| s.pixels.iter().any(|&p| (p as usize) < count);

@@ -17,7 +17,9 @@ pub enum Model {
 pub struct Segmentation {
     /// 1 where the confidence is above one half, else 0.
     pub mask: Image,
-    /// Probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out strokes.
+    /// For a surface: the probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out
+    /// strokes. For lamps: 0.5 on the contour of each lamp, rising to 1 inside and falling to 0 outside within about
+    /// one pixel.
     pub confidence: Image,
     /// How unlike all strokes a pixel is, in `[0, 1]`: 0 if its features lie among the samples of a class, near 1 if
     /// they lie far from the samples of both classes. For lamps: 1 in regions that are almost like the painted lamps,
@@ -41,8 +43,8 @@ pub struct Segmentation {
     /// Whether the mask is a proposal because strokes were missing: for a plane, the strokes of at least one class;
     /// for lamps, the positive strokes.
     pub is_proposed: bool,
-    /// For lamps only: regions outside the given plane mask that would have the size and the shape of a lamp if the
-    /// plane continued there. They suggest that the room is larger than its layout.
+    /// For lamps only: regions outside the given plane mask that lie in a row with lamps, and have the size and the
+    /// shape of these lamps if the plane continues there. They suggest that the room is larger than its layout.
     pub beyond: Vec<Stroke>,
 }
 

@@ -30,7 +30,7 @@ const MIN_BRIGHTER: f64 = 0.85;
 const MAX_LIT: f64 = 0.4;
 
 /// Number of grid cells along the longer side of the photo. [`Segmentation::warnings`] suggests the next stroke in the
-/// most doubtful cell.
+/// cell with the most doubt, summed over the cell and its neighbours.
 const CELLS: usize = 64;
 
 impl Segmentation {
@@ -47,12 +47,14 @@ impl Segmentation {
         all.into_iter().flatten().collect()
     }
 
-    /// Whether strokes were used to compute the mask.
+    /// Whether the mask was computed from samples of the strokes. False for a mask that the caller supplied, and for
+    /// the proposal of a whole face of the room.
     fn is_learnt(&self) -> bool {
         self.samples != [0, 0]
     }
 
-    /// Whether the mask consists of lamps. For lamps, `unseen` marks doubtful regions, which lie outside the mask.
+    /// Whether the mask consists of lamps that were found with the help of strokes. For such a mask, `unseen` marks
+    /// doubtful regions, which lie outside the mask.
     fn is_of_lamps(&self) -> bool {
         self.is_learnt() && self.model.is_none()
     }
@@ -162,7 +164,8 @@ impl Segmentation {
         raised.flatten().map(|warning| warning.at(place))
     }
 
-    /// Finds the place where another stroke helps most: the most doubtful pixel of the most doubtful neighbourhood.
+    /// Finds the place where another stroke helps most: the most doubtful pixel of the grid cell with the most doubt,
+    /// summed over the cell and its neighbours. `None` if no pixel is doubtful.
     fn next_stroke(&self) -> Option<DVec2> {
         let (width, height) = (self.mask.width, self.mask.height);
         let side = width.max(height).div_ceil(CELLS).max(1);

@@ -53,8 +53,8 @@ impl Distance {
         Self { metres, error: 0.0 }
     }
 
-    /// Estimates the distance of the plane of the lamps from the camera. `sides` are the lengths of the two sides of
-    /// the median lamp, the longer one first, as multiples of the distance. Lengths of 0 mean that there is no
+    /// Estimates the distance of the plane of the lamps from the camera. `sides` holds the median of the lamps' longer
+    /// sides and the median of their shorter sides, as multiples of the distance. Lengths of 0 mean that there is no
     /// rectangular lamp.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);

@@ -116,7 +116,8 @@ impl Pattern {
         };
         let distance = match self.scale {
             Scale::Distance => {
-                // Use rectangles only, because discs have no usual sizes.
+                // Estimate the distance from rectangular lamps only, because round lamps come in no usual sizes. Sides
+                // of 0 stand for "no rectangular lamp".
                 let is_rectangle = measured.lamp_fill > MIN_FILL;
                 Distance::of_lamps(measured.lamp_sides.map(|side| if is_rectangle { side * pixel } else { 0.0 }))
             }
@@ -210,7 +211,7 @@ mod tests {
         let coarse = grid(Vec2::new(6.0, 3.0), 0.02, 100);
         assert_eq!((coarse.width, coarse.height), (100, 50));
         assert!((coarse.scale - 3.0).abs() < 1e-6);
-        // A surface thinner than a texel still has one.
+        // A surface narrower than half a texel still gets one texel.
         assert_eq!(grid(Vec2::new(1e-9, 1.0), 0.01, 64).width, 1);
     }
 

@@ -147,8 +147,8 @@ mod tests {
         // 4 of 24 m² are hidden. The hidden part is smaller by a strip of one texel along the two inner edges.
         let cut = of(-1.0, &[]);
         assert!((share(&cut, TexelZone::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, TexelZone::KeepOut) == 0.0);
-        // With a margin of 0.3 m, the open part is the L shrunk by the margin, with a quarter of a disc at the inner
-        // corner.
+        // With a margin of 0.3 m, the open part is the L shrunk by the margin. Its inner corner is rounded with a
+        // radius of 0.3 m.
         let kept = of(0.3, &[]);
         let exact = 5.4 * 3.4 - (2.0 * 2.0 + std::f64::consts::FRAC_PI_4 * 0.09 - 0.09);
         assert!(

@@ -14,7 +14,8 @@ const RED: Vec3 = Vec3::new(0.80, 0.16, 0.18);
 
 /// A kind of dots: their ink, size and distribution.
 struct Ink {
-    /// Wanted darkness at a place of the picture, in `[0, 1]`.
+    /// Wanted darkness at a place of the picture: from 0 (no dots) to 1 (dots as dense as possible). Values outside
+    /// this range count as 0 or 1.
     darkness: fn(&Appearance) -> f32,
     colour: Vec3,
     /// Radius of a dot in pixels, for a picture 800 pixels wide.

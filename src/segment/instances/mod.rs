@@ -60,8 +60,8 @@ const MIN_CONTRAST: f64 = 3.0;
 /// Expected share of wrong pixels in a lamp under a stroke, and in a lamp without a stroke. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
-/// Finds the lamps under the positive strokes, and regions that look like them. The first three channels of the
-/// features are CIELAB.
+/// Finds the lamps under the positive strokes, and regions that look like them. Without positive strokes, proposes
+/// lamps ([`proposed`]). The first three channels of the features are CIELAB.
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;

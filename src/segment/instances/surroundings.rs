@@ -20,9 +20,11 @@ pub struct Surroundings {
     pub colour: [f64; 3],
 }
 
-/// Compares a node of the component tree with the ring of pixels around it. The ring leaves out the pixels that are
-/// set in `taken`, and pixels as bright as the node itself, which belong to other regions such as neighbouring panes.
-/// `None` if the ring has no pixel left.
+/// Compares a node of the component tree with the ring of pixels around it. `None` if the ring has no pixels. The ring
+/// leaves out
+/// - the pixels that are set in `taken`;
+/// - pixels at least as bright as the darkest pixel of the node: they belong to other regions, such as neighbouring
+///   panes.
 pub fn around(
     node: u32,
     tree: &Tree,
