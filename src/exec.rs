@@ -109,7 +109,7 @@ const CANCEL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Pools for short work that must not wait behind long work in the main pool. Each run has a pool to itself, with
 /// `num_threads` threads.
-pub struct QuickPools {
+pub struct ShortTaskPools {
     num_threads: usize,
     idle: Mutex<Vec<Pool>>,
 }
@@ -117,7 +117,7 @@ pub struct QuickPools {
 /// Largest number of idle pools to keep: enough for the few threads of a host that call at the same time.
 const MAX_IDLE: usize = 4;
 
-impl QuickPools {
+impl ShortTaskPools {
     pub fn new(num_threads: usize) -> Self {
         Self { num_threads, idle: Mutex::default() }
     }
@@ -278,7 +278,7 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
 
 /// Largest number of items to sort or to partition without a check for cancellation; sorting them takes a few
 /// milliseconds.
-const SERIAL_SORT: usize = 1 << 16;
+const MAX_UNCHECKED_SORT: usize = 1 << 16;
 
 /// Number of sampled items; their median is the pivot. The standard deviation of the pivot's rank is 0.5 / √1001 = 1.6
 /// % of the number of items.
@@ -287,7 +287,7 @@ const SAMPLE: usize = 1001;
 /// Sorts in parallel and checks for cancellation. After cancellation, the order is unspecified.
 pub fn sort<T: Ord + Copy + Send>(data: &mut [T], job: Job) -> Result<()> {
     job.check()?;
-    if data.len() <= SERIAL_SORT {
+    if data.len() <= MAX_UNCHECKED_SORT {
         data.sort_unstable();
         return Ok(());
     }
@@ -310,9 +310,9 @@ fn partition<T: Ord + Copy>(data: &mut [T], job: Job) -> Result<usize> {
     sample.iter_mut().enumerate().for_each(|(i, item)| *item = data[i * step]);
     let (.., pivot, _) = sample.select_nth_unstable(SAMPLE / 2);
     let mut below = 0;
-    for first in (0..data.len()).step_by(SERIAL_SORT) {
+    for first in (0..data.len()).step_by(MAX_UNCHECKED_SORT) {
         job.check()?;
-        for i in first..data.len().min(first + SERIAL_SORT) {
+        for i in first..data.len().min(first + MAX_UNCHECKED_SORT) {
             let is_below = data[i] < *pivot;
             data.swap(i, below);
             below += usize::from(is_below);
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn quick_runs_have_a_pool_each_and_few_pools_stay() {
-        let pools = QuickPools::new(2);
+        let pools = ShortTaskPools::new(2);
         let together = std::sync::Barrier::new(MAX_IDLE + 2);
         thread::scope(|scope| {
             let runs = [(); MAX_IDLE + 2].map(|()| {
@@ -392,7 +392,7 @@ mod tests {
 
     #[test]
     fn sorting_is_that_of_the_standard_library() {
-        let count = 3 * SERIAL_SORT as u64;
+        let count = 3 * MAX_UNCHECKED_SORT as u64;
         let random = |range: u64| (0..count).map(|i| crate::rng::mix(i) % range).collect::<Vec<_>>();
         // Every item that `partition` picks for its sample is 0. The pivot therefore is 0, and no item is below the
         // pivot.

@@ -2,7 +2,7 @@
 
 use super::guard::lock;
 use crate::error::{Error, ErrorKind, Result};
-use crate::exec::{Pool, QuickPools};
+use crate::exec::{Pool, ShortTaskPools};
 use crate::job::Monitor;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,7 +18,7 @@ pub(super) struct Context {
     /// Threads that run the jobs.
     pub(super) pool: Pool,
     /// Threads of synchronous calls, so that these calls never wait for a job.
-    pub(super) quick: QuickPools,
+    pub(super) quick: ShortTaskPools,
     budget: u64,
     used: AtomicU64,
     messages: Mutex<Messages>,
@@ -45,7 +45,7 @@ impl Context {
     pub(super) fn new(num_threads: usize, budget: u64) -> Result<Self> {
         Ok(Self {
             pool: Pool::new(num_threads)?,
-            quick: QuickPools::new(num_threads),
+            quick: ShortTaskPools::new(num_threads),
             budget,
             used: AtomicU64::new(0),
             messages: Mutex::default(),

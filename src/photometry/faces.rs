@@ -88,7 +88,7 @@ impl Faces {
     }
 
     /// Returns the outward normal of a triangle, scaled to the length of the triangle's area in m².
-    pub fn area(&self, triangle: usize) -> DVec3 {
+    pub fn area_vector(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|i| self.points[i as usize]);
         (b - a).cross(c - a) / 2.0
     }
@@ -265,7 +265,7 @@ mod tests {
     /// another.
     fn seen(faces: &Faces, direction: DVec3) -> f64 {
         let luminous = faces.patches.iter().filter(|patch| patch.is_luminous);
-        luminous.flat_map(|patch| patch.triangles.clone()).map(|t| faces.area(t).dot(direction).max(0.0)).sum()
+        luminous.flat_map(|patch| patch.triangles.clone()).map(|t| faces.area_vector(t).dot(direction).max(0.0)).sum()
     }
 
     fn directions() -> impl Iterator<Item = DVec3> {
@@ -304,7 +304,7 @@ mod tests {
             }
             assert!(worst < tolerance && (sum / f64::from(count)).abs() < 2e-4, "{size:?}: {worst} {sum}");
             // The triangles face outwards.
-            let is_outwards = |t: usize| faces.area(t).dot(faces.points[faces.triangles[t][0] as usize]) > 0.0;
+            let is_outwards = |t: usize| faces.area_vector(t).dot(faces.points[faces.triangles[t][0] as usize]) > 0.0;
             assert!((0..faces.triangles.len()).all(is_outwards), "{size:?}");
             assert_eq!(faces.patches.last().unwrap().triangles.end, faces.triangles.len());
             assert!(faces.points.len() < 700);
@@ -327,7 +327,7 @@ mod tests {
             let of_patch = |p: &Patch| {
                 let first = p.triangles.start;
                 let height = faces.points[faces.triangles[first][0] as usize].z;
-                assert!((height.abs() - 1e-3).abs() < 1e-12 && height * faces.area(first).z > 0.0);
+                assert!((height.abs() - 1e-3).abs() < 1e-12 && height * faces.area_vector(first).z > 0.0);
                 assert_eq!(p.is_luminous, forwards || backwards);
                 height.signum()
             };

@@ -48,7 +48,7 @@ pub struct Source {
 /// Sums over the pixels of a region, with their luminance L and solid angle ω: Σ ω, Σ L ω, and Σ L ω times the
 /// direction.
 #[derive(Clone, Copy, Default)]
-struct Patch {
+struct RegionSums {
     solid_angle: f64,
     light: f64,
     direction: DVec3,
@@ -117,14 +117,14 @@ fn sources(
         if seen[start] || !glares(start) {
             continue;
         }
-        let mut patch = Patch::default();
+        let mut region = RegionSums::default();
         seen[start] = true;
         open.push(start);
         while let Some(i) = open.pop() {
             let (direction, omega) = view.pixel(i);
-            patch.solid_angle += omega;
-            patch.light += luminance(i) * omega;
-            patch.direction += direction * (luminance(i) * omega);
+            region.solid_angle += omega;
+            region.light += luminance(i) * omega;
+            region.direction += direction * (luminance(i) * omega);
             let (x, y) = (i % width, i / width);
             let sides = [
                 (x > 0, i.wrapping_sub(1)),
@@ -140,9 +140,9 @@ fn sources(
             }
         }
         sources.push(Source {
-            luminance: patch.light / patch.solid_angle,
-            solid_angle: patch.solid_angle,
-            position: position_index(patch.direction.normalize()),
+            luminance: region.light / region.solid_angle,
+            solid_angle: region.solid_angle,
+            position: position_index(region.direction.normalize()),
         });
     }
     Ok(sources)

@@ -107,14 +107,14 @@ impl Luminaire {
     }
 
     /// Returns the angle γ in degrees beyond which the luminaire emits no light.
-    pub fn widest(&self) -> f64 {
+    pub fn max_gamma(&self) -> f64 {
         let n = self.gammas.len();
         let first_dark = (0..n).rev().take_while(|i| self.is_dark_at(*i)).last().unwrap_or(n);
         self.gammas[first_dark.min(n - 1)]
     }
 
     /// Returns the angle γ in degrees below which the luminaire emits no light.
-    pub fn narrowest(&self) -> f64 {
+    pub fn min_gamma(&self) -> f64 {
         let dark = (0..self.gammas.len()).take_while(|i| self.is_dark_at(*i)).last();
         self.gammas[dark.unwrap_or(0)]
     }
@@ -177,14 +177,14 @@ mod tests {
         // A Lambertian disc sampled every 2.5 degrees.
         let disc = Luminaire::lambertian("disc", 1000.0, [0.0; 3]);
         assert!((disc.flux() / 1000.0 - 1.0).abs() < 1e-3, "{}", disc.flux());
-        assert_eq!((disc.widest(), even.widest()), (90.0, 180.0));
-        assert_eq!((disc.narrowest(), even.narrowest()), (0.0, 0.0));
+        assert_eq!((disc.max_gamma(), even.max_gamma()), (90.0, 180.0));
+        assert_eq!((disc.min_gamma(), even.min_gamma()), (0.0, 0.0));
         let upwards = Luminaire {
             gammas: vec![0.0, 60.0, 95.0, 180.0],
             candela: vec![0.0, 0.0, 1.0, 0.0],
             ..Luminaire::lambertian("", 0.0, [0.0; 3])
         };
-        assert_eq!((upwards.narrowest(), upwards.widest()), (60.0, 180.0));
+        assert_eq!((upwards.min_gamma(), upwards.max_gamma()), (60.0, 180.0));
         assert!((disc.intensity(123.0, 60.0) - 500.0 / PI).abs() < 1e-6);
         assert_eq!(disc.intensity(0.0, 120.0), 0.0);
     }

@@ -188,9 +188,9 @@ impl Source {
 
     fn bounds(&self, patch: &Patch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
         let Faces { points, triangles, .. } = &self.shape.faces;
-        let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area(t).length()).sum();
+        let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area_vector(t).length()).sum();
         let of_triangle = |t: usize| {
-            let normal = self.shape.faces.area(t);
+            let normal = self.shape.faces.area_vector(t);
             let corners = triangles[t].map(|i| self.in_world(points[i as usize]).as_vec3());
             let direction = (self.in_world(normal) - self.position).normalize_or_zero().as_vec3();
             let peak = match intensity_bound {
@@ -212,7 +212,7 @@ impl Source {
 impl Shape {
     fn new(scene: &Scene, distribution: usize, opening: &Opening, gap: f64) -> Self {
         let luminaire = &scene.distributions[distribution];
-        let (low, high) = (luminaire.narrowest(), luminaire.widest());
+        let (low, high) = (luminaire.min_gamma(), luminaire.max_gamma());
         let is_dark = luminaire.candela.iter().all(|v| *v == 0.0);
         let emits = Emits { forwards: !is_dark && low < 90.0, backwards: !is_dark && high > 90.0 };
         let faces = Faces::new(opening, emits, gap);
@@ -245,7 +245,7 @@ impl IntensityBound {
     /// `samples` are directions with the luminance in each. The luminaire emits only at angles γ between the two
     /// `limits` in degrees.
     fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
-        let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area(t)).collect();
+        let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area_vector(t)).collect();
         let area: f64 = normals.iter().map(|n| n.length()).sum();
         let whole: DVec3 = normals.iter().sum();
         let is_flat = whole.length() > area * (1.0 - 1e-9);

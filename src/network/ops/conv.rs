@@ -51,9 +51,9 @@ impl Conv {
                 &zeros
             }
         };
-        let place = self.window.place([height, width], [rows, columns], false)?;
-        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &place, call.budget)?;
-        let [out_height, out_width] = place.out;
+        let placement = self.window.place([height, width], [rows, columns], false)?;
+        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &placement, call.budget)?;
+        let [out_height, out_width] = placement.out;
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
 
@@ -164,12 +164,13 @@ impl Padded {
         values: &[f32],
         planes: usize,
         size: [usize; 2],
-        place: &super::pool::Place,
+        placement: &super::pool::Placement,
         budget: MemoryBudget,
     ) -> Result<Self> {
         let [height, width] = size;
-        let [top, left] = place.before;
-        let (padded_height, padded_width) = (place.extent[0].max(height + top), place.extent[1].max(width + left));
+        let [top, left] = placement.before;
+        let (padded_height, padded_width) =
+            (placement.extent[0].max(height + top), placement.extent[1].max(width + left));
         let mut padded = budget.zeros(&[planes, padded_height, padded_width])?;
         for (k, row) in values.chunks_exact(width.max(1)).enumerate() {
             let (plane, y) = (k / height, k % height);

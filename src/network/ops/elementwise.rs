@@ -239,21 +239,21 @@ pub fn binary(op: Binary, call: &Call) -> Result<Tensor> {
 }
 
 fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
-    let spread = Spread::of(&[left, right])?;
+    let broadcast = Broadcast::of(&[left, right])?;
     match (&left.data, &right.data) {
         (Data::Floats(a), Data::Floats(b)) => {
             let budget = call.budget;
             macro_rules! floats {
                 ($of:expr) => {{
-                    let out = spread.zip(budget, call.job, a, b, 0.0f32, $of)?;
-                    Ok(Tensor::floats(spread.shape, out))
+                    let out = broadcast.zip(budget, call.job, a, b, 0.0f32, $of)?;
+                    Ok(Tensor::floats(broadcast.shape, out))
                 }};
             }
             macro_rules! truths {
                 ($of:expr) => {{
                     let of = $of;
-                    let out = spread.zip(budget, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
-                    Ok(Tensor::integers(spread.shape, out))
+                    let out = broadcast.zip(budget, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
+                    Ok(Tensor::integers(broadcast.shape, out))
                 }};
             }
             match op {
@@ -277,8 +277,8 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
             }
         }
         (Data::Integers(a), Data::Integers(b)) => {
-            let out = spread.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
-            Ok(Tensor::integers(spread.shape, out))
+            let out = broadcast.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
+            Ok(Tensor::integers(broadcast.shape, out))
         }
         // A float may be raised to an integer power.
         (Data::Floats(_), Data::Integers(b)) if op == Binary::Pow => {
@@ -290,13 +290,13 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
 }
 
 /// Broadcasts several tensors to a common shape.
-pub struct Spread {
+pub struct Broadcast {
     pub shape: Vec<usize>,
     /// Stride of each tensor along each axis of the common shape; 0 where the tensor repeats.
     strides: Vec<Vec<usize>>,
 }
 
-impl Spread {
+impl Broadcast {
     pub fn of(tensors: &[&Tensor]) -> Result<Self> {
         let rank = tensors.iter().map(|t| t.shape.len()).max().unwrap_or(0);
         let mut shape = vec![1; rank];
@@ -406,20 +406,20 @@ pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> 
 }
 
 /// Returns `condition ? a : b` for each element.
-pub fn choose(call: &Call) -> Result<Tensor> {
+pub fn select(call: &Call) -> Result<Tensor> {
     let (condition, a, b) = (call.input(0)?, call.input(1)?, call.input(2)?);
-    let spread = Spread::of(&[condition, a, b])?;
-    let is_true = spread.all(0, condition.as_integers()?, 0, call)?;
+    let broadcast = Broadcast::of(&[condition, a, b])?;
+    let is_true = broadcast.all(0, condition.as_integers()?, 0, call)?;
     Ok(match (&a.data, &b.data) {
         (Data::Floats(p), Data::Floats(q)) => {
-            let (mut out, q) = (spread.all(1, p, 0.0, call)?, spread.all(2, q, 0.0, call)?);
+            let (mut out, q) = (broadcast.all(1, p, 0.0, call)?, broadcast.all(2, q, 0.0, call)?);
             out.iter_mut().zip(q).zip(is_true).filter(|(_, t)| *t == 0).for_each(|((out, q), _)| *out = q);
-            Tensor::floats(spread.shape, out)
+            Tensor::floats(broadcast.shape, out)
         }
         (Data::Integers(p), Data::Integers(q)) => {
-            let (mut out, q) = (spread.all(1, p, 0, call)?, spread.all(2, q, 0, call)?);
+            let (mut out, q) = (broadcast.all(1, p, 0, call)?, broadcast.all(2, q, 0, call)?);
             out.iter_mut().zip(q).zip(is_true).filter(|(_, t)| *t == 0).for_each(|((out, q), _)| *out = q);
-            Tensor::integers(spread.shape, out)
+            Tensor::integers(broadcast.shape, out)
         }
         _ => return Err(Error::format("a choice between floats and integers")),
     })

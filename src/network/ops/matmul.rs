@@ -3,7 +3,7 @@
 
 use super::super::tensor::{Tensor, count};
 use super::call::{Call, Settings};
-use super::elementwise::Spread;
+use super::elementwise::Broadcast;
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
@@ -44,14 +44,14 @@ impl Gemm {
             product = Tensor::floats(out_shape.clone(), scaled);
         }
         let Some(bias) = call.optional(2) else { return Ok(product) };
-        let spread = Spread::of(&[&product, bias])?;
-        if spread.shape != out_shape {
+        let broadcast = Broadcast::of(&[&product, bias])?;
+        if broadcast.shape != out_shape {
             return Err(Error::format(format!(
                 "C of shape {:?} does not fit a product of shape {out_shape:?}",
                 bias.shape
             )));
         }
-        let bias = spread.all(1, bias.as_floats()?, 0.0, call)?;
+        let bias = broadcast.all(1, bias.as_floats()?, 0.0, call)?;
         let sum = try_collect(product.as_floats()?.iter().zip(bias).map(|(p, c)| p + self.beta * c))?;
         Ok(Tensor::floats(out_shape, sum))
     }
@@ -133,11 +133,11 @@ fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
     };
     let (numbers_a, numbers_b) = (numbered(a)?, numbered(b)?);
-    let spread = Spread::of(&[&numbers_a, &numbers_b])?;
-    let of_a = spread.all(0, numbers_a.as_integers()?, 0, call)?;
-    let of_b = spread.all(1, numbers_b.as_integers()?, 0, call)?;
-    let indices = if spread.shape.is_empty() { [vec![0], vec![0]] } else { [of_a, of_b] };
-    Ok((spread.shape, indices))
+    let broadcast = Broadcast::of(&[&numbers_a, &numbers_b])?;
+    let of_a = broadcast.all(0, numbers_a.as_integers()?, 0, call)?;
+    let of_b = broadcast.all(1, numbers_b.as_integers()?, 0, call)?;
+    let indices = if broadcast.shape.is_empty() { [vec![0], vec![0]] } else { [of_a, of_b] };
+    Ok((broadcast.shape, indices))
 }
 
 /// Up to four rows of the left matrix, and the whole right matrix.

@@ -155,7 +155,7 @@ impl Op {
             Self::Unary(unary) => one(elementwise::unary(*unary, call)),
             Self::Binary(binary) => one(elementwise::binary(*binary, call)),
             Self::Clip { low, high } => one(elementwise::clip(*low, *high, call)),
-            Self::Where => one(elementwise::choose(call)),
+            Self::Where => one(elementwise::select(call)),
             Self::Cast { to_float, is_bool } => one(elementwise::cast(*to_float, *is_bool, call)),
             Self::Conv(conv) => one(conv.run(call)),
             Self::ConvTranspose(conv) => one(conv.run_transposed(call)),

@@ -23,7 +23,7 @@ pub enum Padding {
 }
 
 /// The placement of windows over an image of a given size.
-pub struct Place {
+pub struct Placement {
     /// Number of rows and columns of padding before the image.
     pub before: [usize; 2],
     /// Number of rows and columns that all windows together cover, including padding.
@@ -47,8 +47,8 @@ impl Window {
         Ok(Self { strides, dilations, padding })
     }
 
-    pub fn place(&self, size: [usize; 2], kernel: [usize; 2], rounds_up: bool) -> Result<Place> {
-        let mut place = Place { before: [0; 2], extent: [0; 2], out: [0; 2] };
+    pub fn place(&self, size: [usize; 2], kernel: [usize; 2], rounds_up: bool) -> Result<Placement> {
+        let mut placement = Placement { before: [0; 2], extent: [0; 2], out: [0; 2] };
         for axis in 0..2 {
             let (stride, n) = (self.strides[axis], size[axis]);
             let extent = (kernel[axis].saturating_sub(1)).saturating_mul(self.dilations[axis]).saturating_add(1);
@@ -69,11 +69,11 @@ impl Window {
             if rounds_up && last * stride >= n + before {
                 last -= 1;
             }
-            place.before[axis] = before;
-            place.out[axis] = last + 1;
-            place.extent[axis] = last * stride + extent;
+            placement.before[axis] = before;
+            placement.out[axis] = last + 1;
+            placement.extent[axis] = last * stride + extent;
         }
-        Ok(place)
+        Ok(placement)
     }
 }
 
@@ -104,8 +104,8 @@ impl Pool {
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let x = call.input(0)?;
         let [batch, channels, height, width] = x.shape_of()?;
-        let place = self.window.place([height, width], self.kernel, self.rounds_up)?;
-        let [out_height, out_width] = place.out;
+        let placement = self.window.place([height, width], self.kernel, self.rounds_up)?;
+        let [out_height, out_width] = placement.out;
         let shape = vec![batch, channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
         let values = x.as_floats()?;
@@ -114,7 +114,7 @@ impl Pool {
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
             (0..self.kernel[axis]).filter_map(move |i| {
-                (start + i * dilations[axis]).checked_sub(place.before[axis]).filter(|p| *p < size)
+                (start + i * dilations[axis]).checked_sub(placement.before[axis]).filter(|p| *p < size)
             })
         };
         exec::for_rows(&mut out, out_width, call.job, |k, out| {

@@ -10,7 +10,7 @@ use crate::job::Job;
 
 pub struct Resize {
     pub filter: Filter,
-    pub place: Place,
+    pub transform: CoordinateTransform,
     scales: Option<Vec<f32>>,
     /// Indices of the inputs that hold the scales and the sizes.
     scales_at: usize,
@@ -35,7 +35,7 @@ pub enum Rounding {
 
 /// How an output pixel's coordinate maps to an input coordinate. The variants are named as in ONNX.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum CoordinateTransform {
     HalfPixel,
     /// Like `HalfPixel`, but if the output has a single pixel, this pixel maps to the first input pixel.
     PytorchHalfPixel,
@@ -68,13 +68,14 @@ impl Resize {
             "cubic" => Filter::Cubic(at.float("cubic_coeff_a", -0.75)),
             other => return Err(unsupported(format_args!("resizing of mode {other}"))),
         };
-        let place = match at.text("coordinate_transformation_mode", if is_old { "asymmetric" } else { "half_pixel" }) {
-            "half_pixel" => Place::HalfPixel,
-            "pytorch_half_pixel" => Place::PytorchHalfPixel,
-            "align_corners" => Place::AlignCorners,
-            "asymmetric" => Place::Asymmetric,
-            other => return Err(unsupported(format_args!("coordinate_transformation_mode {other}"))),
-        };
+        let transform =
+            match at.text("coordinate_transformation_mode", if is_old { "asymmetric" } else { "half_pixel" }) {
+                "half_pixel" => CoordinateTransform::HalfPixel,
+                "pytorch_half_pixel" => CoordinateTransform::PytorchHalfPixel,
+                "align_corners" => CoordinateTransform::AlignCorners,
+                "asymmetric" => CoordinateTransform::Asymmetric,
+                other => return Err(unsupported(format_args!("coordinate_transformation_mode {other}"))),
+            };
         at.only("exclude_outside", 0)?;
         at.only("antialias", 0)?;
         if at.integers("axes").is_some() || at.text("keep_aspect_ratio_policy", "stretch") != "stretch" {
@@ -86,7 +87,7 @@ impl Resize {
         if known.is_some_and(|tensor| tensor.as_floats().is_err()) {
             return Err(Error::format("scales must be floats"));
         }
-        Ok(Self { filter, place, scales, scales_at, sizes_at })
+        Ok(Self { filter, transform, scales, scales_at, sizes_at })
     }
 
     pub fn run(&self, call: &Call) -> Result<Tensor> {
@@ -123,7 +124,7 @@ impl Resize {
         let axis = |k: usize| Axis { from: x.shape[k], to: shape[k], scale: scales[k] };
         let axes = [axis(rank - 2), axis(rank - 1)];
         let planes: usize = x.shape[..rank - 2].iter().product();
-        let out = resample(x.as_floats()?, planes, axes, self.filter, self.place, call.budget, call.job)?;
+        let out = resample(x.as_floats()?, planes, axes, self.filter, self.transform, call.budget, call.job)?;
         Ok(Tensor::floats(shape, out))
     }
 }
@@ -134,12 +135,12 @@ pub fn resample(
     planes: usize,
     [vertical, horizontal]: [Axis; 2],
     filter: Filter,
-    place: Place,
+    transform: CoordinateTransform,
     budget: MemoryBudget,
     job: Job,
 ) -> Result<Vec<f32>> {
     // Resample along the rows first, then along the columns.
-    let taps = taps(horizontal, filter, place, budget)?;
+    let taps = taps(horizontal, filter, transform, budget)?;
     let mut wide = budget.zeros(&[planes, vertical.from, horizontal.to])?;
     exec::for_rows(&mut wide, horizontal.to, job.part(0.0, 0.5), |k, out| {
         let row = &values[k * horizontal.from..][..horizontal.from];
@@ -147,7 +148,7 @@ pub fn resample(
             *out = taps.iter().map(|&(i, w)| w * row[i]).sum();
         }
     })?;
-    let taps = self::taps(vertical, filter, place, budget)?;
+    let taps = self::taps(vertical, filter, transform, budget)?;
     let mut out = budget.zeros(&[planes, vertical.to, horizontal.to])?;
     exec::for_rows(&mut out, horizontal.to, job.part(0.5, 1.0), |k, out| {
         let plane = &wide[k / vertical.to * vertical.from * horizontal.to..];
@@ -160,29 +161,34 @@ pub fn resample(
 }
 
 /// Returns the input indices and weights of each output pixel along one axis.
-fn taps(axis: Axis, filter: Filter, place: Place, budget: MemoryBudget) -> Result<Vec<[(usize, f32); 4]>> {
+fn taps(
+    axis: Axis,
+    filter: Filter,
+    transform: CoordinateTransform,
+    budget: MemoryBudget,
+) -> Result<Vec<[(usize, f32); 4]>> {
     let mut taps = budget.vec(axis.to, [(0, 0.0); 4])?;
     let last = axis.from as i64 - 1;
     let inside = |i: i64| i.clamp(0, last) as usize;
     for (k, taps) in taps.iter_mut().enumerate() {
         let k = k as f64;
-        let x = match place {
-            Place::HalfPixel => (k + 0.5) / axis.scale - 0.5,
-            Place::PytorchHalfPixel => {
+        let x = match transform {
+            CoordinateTransform::HalfPixel => (k + 0.5) / axis.scale - 0.5,
+            CoordinateTransform::PytorchHalfPixel => {
                 if axis.to > 1 {
                     (k + 0.5) / axis.scale - 0.5
                 } else {
                     0.0
                 }
             }
-            Place::AlignCorners => {
+            CoordinateTransform::AlignCorners => {
                 if axis.to > 1 {
                     k * last as f64 / (axis.to - 1) as f64
                 } else {
                     0.0
                 }
             }
-            Place::Asymmetric => k / axis.scale,
+            CoordinateTransform::Asymmetric => k / axis.scale,
         };
         match filter {
             Filter::Nearest(rounding) => {
@@ -219,5 +225,13 @@ fn cubic(t: f32, a: f32) -> [f32; 4] {
 /// Resizes planes by cubic convolution without a low-pass filter, as OpenCV's `INTER_CUBIC` does.
 pub fn cubic_planes(values: &[f32], planes: usize, from: [usize; 2], to: [usize; 2], job: Job) -> Result<Vec<f32>> {
     let axis = |k: usize| Axis { from: from[k], to: to[k], scale: to[k] as f64 / from[k] as f64 };
-    resample(values, planes, [axis(0), axis(1)], Filter::Cubic(-0.75), Place::HalfPixel, MemoryBudget(usize::MAX), job)
+    resample(
+        values,
+        planes,
+        [axis(0), axis(1)],
+        Filter::Cubic(-0.75),
+        CoordinateTransform::HalfPixel,
+        MemoryBudget(usize::MAX),
+        job,
+    )
 }

@@ -83,7 +83,7 @@ impl Punctual {
                 let luminaire = &*distributions[distribution];
                 // Assume full intensity up to the widest angle at which the luminaire emits, plus a margin for
                 // rounding. The bounds have full intensity up to `cone_angle` - 90°, so add 90°.
-                let cone_angle = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                let cone_angle = luminaire.max_gamma().to_radians() as f32 + FRAC_PI_2 + 0.01;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
                 Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
             }
