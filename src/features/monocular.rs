@@ -167,7 +167,7 @@ mod tests {
     use crate::job::Monitor;
     use crate::network::writer::{Setting, Writer};
 
-    /// A network that outputs the mean of its input channels minus three.
+    /// A network that outputs, for each pixel, (mean of the three input channels) - 3.
     fn file(rows: i64, columns: i64) -> Vec<u8> {
         let three = Tensor::floats(vec![], vec![3.0]);
         let axis = [Setting::Is("axes", &[1])];

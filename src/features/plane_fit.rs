@@ -117,7 +117,7 @@ widest! {
 }
 
 widest! {
-    /// Makes the row offsets `j` relative to the next row.
+    /// Updates the sums for the next row, from which each row offset `j` becomes `j - 1`.
     fn move_down(columns: &mut Columns) {
         let width = columns.n.len();
         let (n, w) = (&columns.n[..width], &columns.w[..width]);

@@ -32,9 +32,9 @@ pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
         }
     })?;
 
-    // In each row, with the column distances f: the squared distance at x is min over v of (x - v)² + f[v], the lower
-    // envelope of one parabola per column v. `hull` holds the parabolas of the envelope from left to right: v, and the
-    // x from which this parabola is the lowest.
+    // In each row, let f[v] be the squared distance found in column v. The squared distance at x is then the minimum
+    // over v of (x - v)² + f[v], the lower envelope of one parabola per column. `hull` lists the parabolas of the
+    // envelope from left to right: v, and the x from which this parabola is the lowest.
     let mut out = Image::new(width, height, 1)?;
     exec::for_rows(&mut out.data, width, job.part(0.5, 1.0), |y, row| {
         let f: Vec<f64> = (0..width).map(|x| f64::from(columns.data[x * height + y])).collect();

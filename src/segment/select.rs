@@ -24,8 +24,8 @@ const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 /// [origin not recorded]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// A fit ends with the step whose expected decrease of the mean log loss is below this value. `CV_PRECISION` applies
-/// to fits that only compare models, `PRECISION` to the final fit. [origin not recorded]
+/// A fit ends with the step whose expected decrease of the objective (see `logistic::fit`) is below this value.
+/// `CV_PRECISION` applies to fits that only compare models, `PRECISION` to the final fit. [origin not recorded]
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 

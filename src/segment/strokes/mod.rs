@@ -84,7 +84,7 @@ impl StrokeSet {
 
     /// Returns the examples for the second phase, which finds the lights: the light strokes, and the plane strokes as
     /// negative examples. Plane strokes lose the pixels that a light stroke also covers. Positive plane strokes also
-    /// lose their pixels that are as bright as the light strokes, because the stroke runs over a lamp there. The first
+    /// lose their pixels that are as bright as lamps (see `LIT`), because the stroke runs over a lamp there. The first
     /// channel of `features` is L*.
     pub fn light_examples(&self, features: &Image) -> Result<Vec<Stroke>> {
         let mut of_lights = try_collect(self.lights.iter().flat_map(|s| s.pixels.iter().copied()))?;

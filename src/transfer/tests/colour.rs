@@ -55,7 +55,7 @@ fn a_clipped_channel_follows_from_the_others() {
 }
 
 /// Recovers the known warm light of a room from a photo in which red and green are clipped on parts of the ceiling.
-/// Without estimates for the clipped pixels, the light must not be recovered.
+/// Without estimates for the clipped pixels, the error must be more than three times as large.
 #[test]
 fn known_light_is_recovered_from_a_clipped_photo() {
     let (size, high) = (4.0, 2.5);
