@@ -174,8 +174,9 @@ widest! {
     }
 }
 
-/// Returns the coefficients of a window's fit: `a = (Σ + ε 1)⁻¹ cov(I, p)` (3 values) and `b = p̄ - a · Ī`. Σ is the
-/// covariance matrix of the colours I, p̄ and Ī are the means in the window, and ε is the squared tolerance.
+/// Returns the coefficients of a window's fit: `a = (Σ + ε E)⁻¹ cov(I, p)` (3 values) and `b = p̄ - a · Ī`. Σ is the
+/// covariance matrix of the colours I, E is the identity matrix, and ε is the squared tolerance. p̄ and Ī are the means
+/// in the window.
 #[inline(always)]
 fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let per_n = 1.0 / sum[0];

@@ -211,7 +211,7 @@ impl Transfer {
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
 
-        // Unwarp the smoothed confidence of the lights by the homography of the photo.
+        // Unwarp the smoothed confidence of the lights with the same homography as the photo.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
