@@ -18,7 +18,7 @@ use std::path::Path;
 
 /// The header of a file that stores `f64` values per pixel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Head {
+pub struct FileHeader {
     /// Width and height of the whole picture, in pixels.
     pub whole: [usize; 2],
     /// Column and row in the whole picture of the window's first pixel.
@@ -28,12 +28,12 @@ pub struct Head {
     /// Number of `f64` values per pixel.
     pub numbers: usize,
     /// The text attributes: name and text of each.
-    pub notes: Vec<(String, String)>,
+    pub attributes: Vec<(String, String)>,
 }
 
-impl Head {
-    pub fn note(&self, name: &str) -> Option<&str> {
-        self.notes.iter().find(|(n, _)| n == name).map(|(_, text)| text.as_str())
+impl FileHeader {
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|(n, _)| n == name).map(|(_, text)| text.as_str())
     }
 
     fn of(headers: &[Header]) -> Result<Self> {
@@ -69,14 +69,14 @@ impl Head {
         if channels.len() < 3 || channels.len() % 2 == 0 {
             return Err(Error::format(format!("it has {} channels", channels.len())));
         }
-        let mut notes: Vec<(String, String)> = Vec::new();
+        let mut attributes: Vec<(String, String)> = Vec::new();
         for (name, value) in &header.own_attributes.other {
             if let ex::AttributeValue::Text(text) = value {
-                notes.push((utf8(name), utf8(text)));
+                attributes.push((utf8(name), utf8(text)));
             }
         }
-        notes.sort();
-        Ok(Self { whole, corner: [x, y], size, numbers, notes })
+        attributes.sort();
+        Ok(Self { whole, corner: [x, y], size, numbers, attributes })
     }
 }
 
@@ -90,24 +90,24 @@ fn name(number: usize, is_high: bool) -> String {
 }
 
 /// Reads the header of a file on disk.
-pub fn read_head(path: &Path) -> Result<Head> {
+pub fn read_header(path: &Path) -> Result<FileHeader> {
     check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
     let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken);
-    meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.context(path.display()))
+    meta.and_then(|meta| FileHeader::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
 /// Decodes a file and calls `pixel` for each pixel, with its position in the data window and its `f64` values. The
-/// header of the file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
-pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
+/// header of the file must equal `header`; otherwise the file is refused before memory is allocated for its pixels.
+pub fn decode(bytes: &[u8], header: &FileHeader, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
-    let found = Head::of(&headers)?;
-    if found != *head {
+    let found = FileHeader::of(&headers)?;
+    if found != *header {
         return Err(Error::format("its header is not what it was before"));
     }
-    let [width, height] = head.size;
+    let [width, height] = header.size;
     let layer = first_layer(bytes, &headers)?;
-    let mut halves: Vec<&[u32]> = try_with_capacity(2 * head.numbers)?;
+    let mut halves: Vec<&[u32]> = try_with_capacity(2 * header.numbers)?;
     for channel in layer.channel_data.list.iter().skip(3) {
         match &channel.sample_data {
             ex::FlatSamples::U32(samples) if samples.len() == width * height => halves.push(samples),
@@ -115,7 +115,7 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
         }
     }
     let (pairs, _) = halves.as_chunks::<2>();
-    let mut numbers = try_vec(head.numbers, 0.0)?;
+    let mut numbers = try_vec(header.numbers, 0.0)?;
     for i in 0..width * height {
         for (number, [high, low]) in numbers.iter_mut().zip(pairs) {
             *number = f64::from_bits(u64::from(high[i]) << 32 | u64::from(low[i]));
@@ -126,15 +126,15 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
 }
 
 /// Encodes a window. `picture` has three channels, and `number([x, y], k)` returns the `k`-th number of a pixel.
-pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
+pub fn encode(header: &FileHeader, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
-    let [width, height] = head.size;
+    let [width, height] = header.size;
     let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
     for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
         let samples = super::try_collect(picture.data.iter().skip(c).step_by(3).copied())?;
         list.push(ex::AnyChannel::new(text(name), ex::FlatSamples::F32(samples)));
     }
-    for k in 0..head.numbers {
+    for k in 0..header.numbers {
         for is_high in [true, false] {
             let mut samples: Vec<u32> = try_with_capacity(width * height)?;
             for i in 0..width * height {
@@ -145,18 +145,18 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         }
     }
     let mut attributes = ex::LayerAttributes::default();
-    attributes.layer_position = ex::Vec2(head.corner[0] as i32, head.corner[1] as i32);
-    for (name, note) in &head.notes {
-        attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
+    attributes.layer_position = ex::Vec2(header.corner[0] as i32, header.corner[1] as i32);
+    for (name, value) in &header.attributes {
+        attributes.other.insert(text(name), ex::AttributeValue::Text(text(value)));
     }
     let list = ex::AnyChannels::sort(list);
     // Use run-length compression, because it is fast. The stored numbers are sums over random light paths. Their low
     // digits are noise, on which stronger compression would take as long as tracing the paths.
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
-    file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
-    let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
-    let channels = 3 + 2 * head.numbers;
+    file.attributes.display_window = ex::IntegerBounds::new((0, 0), (header.whole[0], header.whole[1]));
+    let texts = header.attributes.iter().map(|(name, value)| name.len() + value.len() + 64).sum::<usize>();
+    let channels = 3 + 2 * header.numbers;
     use ex::WritableImage;
     let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
     memory::check_blocks(width, height, channels)?;
@@ -176,24 +176,24 @@ mod tests {
         [1.0 / 3.0, -0.0, f64::MAX, 1e-300, 1e9 + 1e-7][k] * (1 + at[0] + 100 * at[1]) as f64
     }
 
-    fn file() -> (Head, Image, Vec<u8>) {
-        let head = Head {
+    fn file() -> (FileHeader, Image, Vec<u8>) {
+        let header = FileHeader {
             whole: [40, 30],
             corner: [8, 5],
             size: [19, 13],
             numbers: 5,
-            notes: vec![("luxfer.one".into(), "Ä".into()), ("luxfer.two".into(), String::new())],
+            attributes: vec![("luxfer.one".into(), "Ä".into()), ("luxfer.two".into(), String::new())],
         };
         let picture = Image::from_fn(19, 13, |x, y| [x as f32, y as f32, 0.5]).unwrap();
-        let bytes = encode(&head, &picture, number).unwrap();
-        (head, picture, bytes)
+        let bytes = encode(&header, &picture, number).unwrap();
+        (header, picture, bytes)
     }
 
     #[test]
     fn doubles_are_lossless_and_other_readers_see_the_picture() {
-        let (head, picture, bytes) = file();
+        let (header, picture, bytes) = file();
         let mut seen = 0;
-        decode(&bytes, &head, |at, numbers| {
+        decode(&bytes, &header, |at, numbers| {
             assert_eq!(at, [seen % 19, seen / 19]);
             let expected: Vec<u64> = (0..5).map(|k| number(at, k).to_bits()).collect();
             assert_eq!(numbers.iter().map(|n| n.to_bits()).collect::<Vec<_>>(), expected);
@@ -203,39 +203,39 @@ mod tests {
         assert_eq!(seen, 19 * 13);
         // Decoded as a picture, the file has the size of the whole picture, with the window at its position.
         let whole = decode_picture(&bytes, Encoding::Linear).unwrap();
-        assert_eq!([whole.width, whole.height], head.whole);
+        assert_eq!([whole.width, whole.height], header.whole);
         for (x, y) in (0..13).flat_map(|y| (0..19).map(move |x| (x, y))) {
-            assert_eq!(whole.pixel(head.corner[0] + x, head.corner[1] + y), picture.pixel(x, y));
+            assert_eq!(whole.pixel(header.corner[0] + x, header.corner[1] + y), picture.pixel(x, y));
         }
         let lit = |image: &Image| image.data.iter().filter(|v| **v != 0.0).count();
         assert_eq!(lit(&whole), lit(&picture));
-        assert_eq!((head.note("luxfer.one"), head.note("three")), (Some("Ä"), None));
+        assert_eq!((header.attribute("luxfer.one"), header.attribute("three")), (Some("Ä"), None));
     }
 
     #[test]
     fn damaged_files_are_errors() {
-        let (head, picture, bytes) = file();
+        let (header, picture, bytes) = file();
         for cut in [0, 4, 100, 400, bytes.len() / 2, bytes.len() - 20] {
-            assert_eq!(decode(&bytes[..cut], &head, |_, _| ()).unwrap_err().kind, ErrorKind::Format, "cut at {cut}");
+            assert_eq!(decode(&bytes[..cut], &header, |_, _| ()).unwrap_err().kind, ErrorKind::Format, "cut at {cut}");
         }
-        let other = Head { numbers: 4, ..head.clone() };
+        let other = FileHeader { numbers: 4, ..header.clone() };
         assert_eq!(decode(&bytes, &other, |_, _| ()).unwrap_err().kind, ErrorKind::Format);
         // An OpenEXR file without `f64` values is accepted, a file with a named layer is not.
         let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
-        assert_eq!(Head::of(&headers(&plain).unwrap()).unwrap().numbers, 0);
+        assert_eq!(FileHeader::of(&headers(&plain).unwrap()).unwrap().numbers, 0);
         let layer = super::super::io::Layer { name: "deep", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
-        assert!(Head::of(&headers(&plain).unwrap()).is_err());
+        assert!(FileHeader::of(&headers(&plain).unwrap()).is_err());
         // A file that claims 16384 x 16384 pixels.
-        let bomb = Head { whole: [1 << 14, 1 << 14], size: [1 << 14, 1 << 14], corner: [0, 0], ..head.clone() };
+        let bomb = FileHeader { whole: [1 << 14, 1 << 14], size: [1 << 14, 1 << 14], corner: [0, 0], ..header.clone() };
         let mut lie = bytes.clone();
         let window = |[x, y]: [usize; 2], [w, h]: [usize; 2]| {
             [x, y, x + w - 1, y + h - 1].map(|v| (v as i32).to_le_bytes()).concat()
         };
         for (from, to) in [
-            (window(head.corner, head.size), window(bomb.corner, bomb.size)),
-            (window([0, 0], head.whole), window([0, 0], bomb.whole)),
+            (window(header.corner, header.size), window(bomb.corner, bomb.size)),
+            (window([0, 0], header.whole), window([0, 0], bomb.whole)),
         ] {
             let at = lie.windows(16).position(|bytes| bytes == from).unwrap();
             lie[at..at + 16].copy_from_slice(&to);

@@ -196,9 +196,9 @@ pub struct Layer<'a> {
 }
 
 /// Encodes layers of equal size as a single-part OpenEXR file of 32-bit floats. Channels are named `layer.channel`. The
-/// file states the chromaticities of Rec.709 if one of its channels is called `R`. `notes` are text attributes of the
-/// header, as (name, text).
-pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
+/// file states the chromaticities of Rec.709 if one of its channels is called `R`. `attributes` are text attributes of
+/// the header, as (name, text).
+pub fn encode(layers: &[Layer], attributes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
     // Store texts as UTF-8, as OpenEXR prescribes.
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
@@ -224,11 +224,11 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     if layers.iter().any(|layer| layer.channels.contains(&"R")) {
         file.attributes.chromaticities = Some(rec709());
     }
-    for (name, note) in notes {
-        file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
+    for (name, value) in attributes {
+        file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(value)));
     }
     let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
-    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
+    let texts = attributes.iter().map(|(name, value)| name.len() + value.len() + 64).sum::<usize>() + 64 * channels;
     let (width, height) = (first.width, first.height);
     let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
     memory::check_blocks(width, height, channels)?;

@@ -4,7 +4,7 @@
 use super::identity::Identity;
 use super::part::Part;
 use crate::error::{Error, Result};
-use crate::image::numbers::{self, Head};
+use crate::image::numbers::{self, FileHeader};
 use crate::image::{Image, io};
 use crate::render::film::Sums;
 use crate::render::layers::Layers;
@@ -18,7 +18,7 @@ const PREFIX: &str = "luxfer.part.";
 #[derive(Clone, Debug)]
 pub struct File {
     path: PathBuf,
-    head: Head,
+    header: FileHeader,
     pub part: Part,
     discarded: u64,
 }
@@ -26,19 +26,19 @@ pub struct File {
 impl File {
     /// Opens a file and reads its header, without the sums.
     pub fn open(path: &Path) -> Result<Self> {
-        let head = numbers::read_head(path)?;
-        let note = |name: &str| {
-            let text = head.note(&format!("{PREFIX}{name}")).and_then(|text| text.parse::<u64>().ok());
+        let header = numbers::read_header(path)?;
+        let attribute = |name: &str| {
+            let text = header.attribute(&format!("{PREFIX}{name}")).and_then(|text| text.parse::<u64>().ok());
             text.ok_or_else(|| Error::format(format!("{}: it is no part of a rendering: no {name}", path.display())))
         };
         let paths = |name: &str| {
-            let text = note(name)?;
+            let text = attribute(name)?;
             u32::try_from(text).map_err(|_| Error::format(format!("{}: its {name} is {text}", path.display())))
         };
-        let ([x, y], [width, height]) = (head.corner, head.size);
+        let ([x, y], [width, height]) = (header.corner, header.size);
         let part = Part { x, y, width, height, first: paths("first_path")?, samples: paths("paths")? };
-        let discarded = note("discarded")?;
-        Ok(Self { path: path.into(), head, part, discarded })
+        let discarded = attribute("discarded")?;
+        Ok(Self { path: path.into(), header, part, discarded })
     }
 
     /// Returns the path of the file, for error messages.
@@ -56,17 +56,17 @@ impl File {
             )))
         };
         let size = |[width, height]: [usize; 2]| format!("{width} x {height}");
-        if self.head.whole != identity.size {
-            return differs("size", &size(self.head.whole), &size(identity.size));
+        if self.header.whole != identity.size {
+            return differs("size", &size(self.header.whole), &size(identity.size));
         }
         for (what, ours) in &identity.texts {
-            let theirs = self.head.note(&format!("{PREFIX}{what}")).unwrap_or("unknown");
+            let theirs = self.header.attribute(&format!("{PREFIX}{what}")).unwrap_or("unknown");
             if theirs != ours {
                 return differs(what, &format!("{theirs:?}"), &format!("{ours:?}"));
             }
         }
-        if self.head.numbers != numbers {
-            let (theirs, ours) = (self.head.numbers, numbers);
+        if self.header.numbers != numbers {
+            let (theirs, ours) = (self.header.numbers, numbers);
             return Err(Error::format(format!("{}: it has {theirs} sums per pixel, not {ours}", self.name())));
         }
         self.part.check(params).map_err(|e| e.context(self.name()))
@@ -77,7 +77,7 @@ impl File {
         let mut sums = Sums::new(&self.part, layers)?;
         let Part { x, y, .. } = self.part;
         let bytes = io::read_file(&self.path)?;
-        numbers::decode(&bytes, &self.head, |at, numbers| {
+        numbers::decode(&bytes, &self.header, |at, numbers| {
             sums.numbers_mut([x + at[0], y + at[1]]).copy_from_slice(numbers);
         })
         .map_err(|e| e.context(self.name()))?;
@@ -93,14 +93,14 @@ pub fn save(path: &Path, sums: &Sums, identity: &Identity, picture: &Image) -> R
         ("paths", samples.to_string()),
         ("discarded", sums.discarded().to_string()),
     ];
-    let notes = identity.texts.iter().cloned().chain(paths).map(|(name, text)| (format!("{PREFIX}{name}"), text));
-    let head = Head {
+    let attributes = identity.texts.iter().cloned().chain(paths).map(|(name, text)| (format!("{PREFIX}{name}"), text));
+    let header = FileHeader {
         whole: identity.size,
         corner: [x, y],
         size: [width, height],
         numbers: sums.numbers_per_pixel(),
-        notes: notes.collect(),
+        attributes: attributes.collect(),
     };
-    let bytes = numbers::encode(&head, picture, |at, k| sums.numbers([x + at[0], y + at[1]])[k])?;
+    let bytes = numbers::encode(&header, picture, |at, k| sums.numbers([x + at[0], y + at[1]])[k])?;
     io::write_file(path, &bytes)
 }
