@@ -97,10 +97,7 @@ typedef int32_t luxfer_status;
 /** No surface, image or entry has the given name or index. */
 #define LUXFER_NOT_FOUND 12
 
-/**
- * No light can reach the target: there is no light path, all light of a channel is absorbed, or negative light would
- * be needed.
- */
+/** No solution exists: no emitted light reaches the target, or the other lights alone exceed the wanted value. */
 #define LUXFER_UNREACHABLE 13
 
 /**
@@ -225,14 +222,13 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
  * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
- * Structs: each function that fills a struct of the caller takes the size of the struct; pass sizeof. These functions
- * are the _init functions of settings and the functions that get reports. They store the size in struct_size, the
- * first field; leave this field as it is. From the size the library knows which version of the header the program was
- * built with. So a program that was built with an older header works with a newer library: settings that the program
- * does not know keep their defaults.
+ * Structs: a function that fills a struct of the caller takes sizeof the struct as an argument, and stores it in the
+ * first field, struct_size. Leave this field unchanged. It tells the library with which version of the header the
+ * program was built. A program that was built with an older header therefore works with a newer library: settings that
+ * its header lacks keep their defaults.
  *
- * Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. A released
- * handle gives LUXFER_INVALID_ARGUMENT too, unless its memory has been used again.
+ * Handles: each call checks its handles. NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT. So does a
+ * released handle, as long as its memory has not been reused; afterwards, the library cannot detect the mistake.
  *
  * Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
  * use different objects at the same time, and also the same object: calls that change an object wait for each other.
@@ -257,15 +253,15 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
 /** A context: threads, memory budget and error messages. See luxfer_context_create. */
 typedef struct luxfer_context luxfer_context;
 
-/** Settings of a context. Fill it with luxfer_context_params_init. */
+/** Settings of a context. Fill them with luxfer_context_params_init. */
 typedef struct luxfer_context_params {
     /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
     /**
      * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
      * share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
-     * call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as many sets
-     * as calls run at the same time, and keeps up to four sets for later calls.
+     * call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the same time
+     * use different sets; the context keeps up to four idle sets for later calls.
      */
     uint32_t num_threads;
     /**
@@ -320,9 +316,9 @@ luxfer_status luxfer_retain(void *handle);
  * Removes a reference to an object of any kind; NULL does nothing. Any thread.
  *
  * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
- * long as its job, which continues. Two releases take time. Releasing the last reference to a job cancels the job and
- * waits until it has ended. Releasing the last reference to a context and all objects created in it waits until the
- * worker threads have ended.
+ * long as its job, which continues. Two kinds of release take time. Releasing the last reference to a job cancels the
+ * job and waits until it has ended. Releasing the last reference to a context and all objects created in it waits
+ * until the worker threads have ended.
  * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
  */
 luxfer_status luxfer_release(void *handle);
@@ -330,9 +326,10 @@ luxfer_status luxfer_release(void *handle);
 /* ====================================================================================================================
  * Image
  *
- * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top
- * to bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels
- * in the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
+ * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. It has up to 64
+ * channels; width and height are at most 65536 pixels. Rows run from top to bottom. An image never changes after its
+ * creation, so results are shared and not copied. A view describes pixels in the caller's memory; the library never
+ * keeps a pointer to them.
  * ==================================================================================================================== */
 
 /** Flag of a view: the first row in memory is the bottom one. */
@@ -408,8 +405,8 @@ static inline luxfer_status luxfer_image_view_init(luxfer_image_view *place, siz
 #define LUXFER_COLOUR_SRGB 1
 
 /**
- * Creates an image from a copy of the caller's pixels. Integers and sRGB are decoded; NaN and infinities are kept.
- * The caller releases *image. Any thread.
+ * Creates an image from a copy of the caller's pixels. Integers are mapped to [0, 1], and sRGB is decoded to linear
+ * values; NaN and infinities are kept. The caller releases *image. Any thread.
  * LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
@@ -417,22 +414,25 @@ luxfer_status luxfer_image_create(luxfer_context *context,
                                   luxfer_image **image);
 
 /**
- * Loads an image file and rotates the picture upright by its EXIF orientation; path is UTF-8. The caller releases
+ * Loads an image file and turns the picture upright by its EXIF orientation; path is UTF-8. The caller releases
  * *image. Any thread.
  *
  * The formats are JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR and OpenEXR (its display window).
- * Grey with alpha becomes RGBA; palettes and CMYK become RGB; colours are not multiplied by alpha.
+ * Grey with alpha becomes RGBA; palettes and CMYK become RGB. Colours are not premultiplied by alpha, except in
+ * OpenEXR files, whose samples stay as stored.
  *
- * With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709 from the colour space that the file
- * states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
+ * Load pictures with LUXFER_COLOUR_SRGB. Their colours are converted to linear Rec.709 from the colour space that the
+ * file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
  * COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
- * linear; luxfer_photo_metadata.colour tells which case applied. With LUXFER_COLOUR_LINEAR, for data such as masks
- * and depth, samples are not converted.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
- * the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL,
- * raw data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither
- * R, G, B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side,
- * LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * linear. luxfer_photo_metadata.colour tells which of these cases applied.
+ *
+ * Load data such as masks and depth with LUXFER_COLOUR_LINEAR. Their samples are not converted.
+ * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged or of no known format; LUXFER_OUT_OF_MEMORY
+ * beyond the memory budget.
+ * LUXFER_UNSUPPORTED if the picture is larger than 2^28 pixels or 65536 on a side, or if the library recognises the
+ * format but does not read it. The message then names the format, such as AVIF, HEIC, JPEG XL, raw data of cameras,
+ * TIFF with JPEG compression, deep or luminance-chroma OpenEXR, or an OpenEXR layer with neither R, G, B nor a single
+ * channel.
  */
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
@@ -457,10 +457,10 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  *   used.
  *
  * All functions of this library write files as follows. An existing file is replaced only once the new one is
- * complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs and files with several hard
- * links are written in place.
- * LUXFER_INVALID_ARGUMENT if the extension is another one or the number of channels is not allowed; LUXFER_IO if the
- * file cannot be written.
+ * complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs, files with several hard links,
+ * and files in folders that accept no new files are written in place.
+ * LUXFER_INVALID_ARGUMENT if the extension is another one, the number of channels is not allowed, or exposure is out
+ * of range for a .png; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
                                 const char *path,
@@ -476,9 +476,9 @@ luxfer_status luxfer_image_get_size(luxfer_image *image,
                                     uint32_t *channels);
 
 /**
- * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
- * of the image, starting at first_channel. Integer samples are clamped to their range and rounded; NaN becomes 0 in
- * them. Any thread.
+ * Copies an image into the caller's pixels. The view must have the image's width and height. It receives
+ * view->channels channels of the image, starting at first_channel; with LUXFER_COLOUR_SRGB, the library encodes them
+ * with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN becomes 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
  */
 luxfer_status luxfer_image_read(luxfer_image *image,
@@ -525,19 +525,19 @@ typedef struct luxfer_photo_metadata {
     /** ISO speed S; 0 = unknown. */
     double iso;
     /**
-     * Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-based
-     * speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
-     * brightness keep these tags.
+     * Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), from the definition of
+     * the saturation-based speed in ISO 12232. N, t and S are the three fields above. 0 = unknown. Valid only for the
+     * image that the camera wrote: editors that change the brightness keep these tags.
      */
     double white_luminance;
     /**
-     * Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-     * standard output sensitivity and not a saturation-based speed.
+     * Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO speed is a
+     * standard output sensitivity (ISO 12232) instead of a saturation-based speed.
      */
     double white_luminance_low;
     /**
-     * Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
-     * recommended exposure index.
+     * Upper bound of white_luminance: twice white_luminance. It allows for an ISO speed that is a recommended exposure
+     * index (ISO 12232), with which the manufacturer chooses the luminance at which the camera clips.
      */
     double white_luminance_high;
     /** How the colours of the file were interpreted: a LUXFER_FILE_COLOUR_ value. */
@@ -561,9 +561,9 @@ typedef struct luxfer_photo_metadata {
 #define LUXFER_FILE_COLOUR_CONVERTED 3
 
 /**
- * The file states a colour space that the library cannot convert, such as a damaged profile, or has the inks of CMYK
- * without a profile. The colours were read as if the file stated none, so saturated colours may be wrong. Warn the
- * user, and ask for an export of the photo as sRGB.
+ * The library cannot convert the colours of the file, for example because its profile is damaged, or because it is in
+ * CMYK without a profile. The colours were read as if the file stated no colour space, so saturated colours may be
+ * wrong. Warn the user, and ask for an export of the photo as sRGB.
  */
 #define LUXFER_FILE_COLOUR_UNCONVERTED 4
 
@@ -637,7 +637,8 @@ luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
  * Adds the strokes of a text in UTF-8. Each line has a class, a radius in pixels, and x and y of the points in
  * pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a
  * comment. Any thread.
- * LUXFER_FORMAT, naming the line, if the text is malformed.
+ * LUXFER_FORMAT if the text is malformed, LUXFER_INVALID_ARGUMENT if a radius or a coordinate is out of range: the
+ * message names the line.
  */
 luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
                                       const char *description);
@@ -649,23 +650,23 @@ luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
  * Job
  *
  * Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
- * runs on threads of the library. It works on the inputs as they are at the start: changing or releasing them later
- * does not affect the job. While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION).
- * Read the results from the object after the job has succeeded. Releasing the last reference to a running job cancels
- * the job and waits until it has ended.
+ * runs on threads of the library. The job works on the inputs as they are at its start: changing or releasing them
+ * later does not affect the job. While a job runs, its object refuses changes and further jobs
+ * (LUXFER_INVALID_OPERATION). Read the results from the object after the job has succeeded. Releasing the last
+ * reference to a running job cancels the job and waits until it has ended.
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
- * waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
+ * waiting job at once. Of all other calls, only luxfer_job_wait and the release of a running job wait for jobs.
  * ==================================================================================================================== */
 
 /** A job: work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
 
 /**
- * Receives the progress of a job: fraction starts at 0 and never falls. The fraction is exactly 1 only once: in the
- * last call, after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait
- * calls the function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer
- * function. The function must not throw an exception or leave by longjmp.
+ * Receives the progress of a job: fraction is in [0, 1] and never falls. It is 1 only in the last call, after the job
+ * has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
+ * times a second, on the waiting thread and with no lock held, so it may call any luxfer function. The function must
+ * not throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
@@ -674,10 +675,10 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
  * thread; several threads may wait for one job.
  *
- * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
- * message of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the
- * other job also cancels this job.
- * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
+ * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the message
+ * of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other
+ * job also cancels this job.
+ * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY if the wait timed out (the job continues);
  * LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
@@ -696,8 +697,8 @@ luxfer_status luxfer_job_get_progress(luxfer_job *job,
                                       luxfer_status *outcome);
 
 /**
- * Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
- * request after the end has no effect. Any thread.
+ * Asks a job to end early and returns at once; the job ends within about 100 ms. A request cannot be withdrawn. A
+ * request after the end of the job has no effect. Any thread.
  */
 luxfer_status luxfer_job_cancel(luxfer_job *job);
 
@@ -717,13 +718,14 @@ typedef int32_t (*luxfer_work_fn)(void *user);
 
 /**
  * Starts a job that runs work, a function of the caller, on a thread of its own with 4 MiB of stack. The function
- * receives the pointer user, and may call any function of the library. The progress of its calls in this context, and
- * of the jobs that it waits for, is the progress of this job, which never falls. The caller releases *job. Any
- * thread.
+ * receives the pointer user, and may call any function of the library. The job reports the progress of the calls that
+ * the function makes in this context, and of the jobs that it waits for; the reported progress never falls. The caller
+ * releases *job. Any thread.
  *
- * A cancel request to this job makes the function's calls in this context end with LUXFER_CANCELLED; a call that
- * loads a file ends between two meshes or pictures. The request also cancels the jobs that the function waits for. If
- * the function returns an error, the job gets the message of the last call that failed on its thread.
+ * A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
+ * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture. If the
+ * function returns an error, the message of the job is that of the last call that failed on its thread. If it returns
+ * LUXFER_NOT_READY, the job ends with LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY says that a job runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

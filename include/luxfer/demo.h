@@ -16,7 +16,7 @@ extern "C" {
 /* ====================================================================================================================
  * Demonstration
  *
- * Scenes and artworks for examples and tests. The library generates them without any files, and every call gives
+ * Scenes and artworks for examples and tests. The library generates them without any files. Repeated calls give
  * results that are equal to the bit.
  * ==================================================================================================================== */
 
@@ -32,12 +32,14 @@ typedef int32_t luxfer_artwork;
 /** An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0. */
 #define LUXFER_DEMO_EXEMPLAR_ROOM 1
 
-/** A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation. */
+/**
+ * A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a picture.
+ */
 #define LUXFER_DEMO_SPHERE_ON_TABLE 2
 
 /**
- * A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a
- * stylisation.
+ * A vase, a ring and two balls, on the same table and under the same lamp as in LUXFER_DEMO_SPHERE_ON_TABLE: a target
+ * scene for a stylisation.
  */
 #define LUXFER_DEMO_STILL_LIFE 3
 
@@ -52,7 +54,7 @@ typedef int32_t luxfer_artwork;
 
 /**
  * Generates the scene that a LUXFER_DEMO_ value selects. The caller releases *scene. Any thread.
- * LUXFER_INVALID_ARGUMENT for any other value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * LUXFER_INVALID_ARGUMENT if kind is another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_demo_create_scene(luxfer_context *context, luxfer_demo kind, luxfer_scene **scene);
 
@@ -70,8 +72,8 @@ luxfer_status luxfer_demo_create_artwork(luxfer_guides *guides,
 /* ====================================================================================================================
  * Demonstration photo
  *
- * Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user
- * would paint them. They are the input of a lighting transfer without files.
+ * Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user would
+ * paint them. Examples and tests pass both to a lighting transfer, so that they need no files.
  * ==================================================================================================================== */
 
 /** A generator of the demonstration photo. See luxfer_demo_photo_create. */

@@ -74,9 +74,9 @@ luxfer_status luxfer_render_split(luxfer_render *render,
  * Starts a job that renders a part, or the whole image if part is NULL, and writes it into a file. path is UTF-8, and
  * an existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this
  * part alone. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
- * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if the settings have an
- * error target or a time budget, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+ * and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if the settings
+ * have an error target or a time budget, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        const luxfer_render_params *params,
@@ -85,7 +85,7 @@ luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        luxfer_job **job);
 
 /**
- * Adds a file to the list of files to merge; luxfer_render_start_part has written it. path is UTF-8. The call reads
+ * Adds a file that luxfer_render_start_part has written to the list of files to merge. path is UTF-8. The call reads
  * only the header of the file; the merge reads the rest. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION
  * while a job runs.
@@ -102,10 +102,10 @@ luxfer_status luxfer_render_clear_parts(luxfer_render *render);
 /**
  * Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has the same images and
  * layers as after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
- * such camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene,
- * if parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be
- * read.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+ * and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or
+ * another scene, if parts overlap, or if paths are missing: the message names the first gap; LUXFER_IO or
+ * LUXFER_FORMAT if a file cannot be read.
  */
 luxfer_status luxfer_render_start_merge(luxfer_render *render,
                                         const luxfer_render_params *params,

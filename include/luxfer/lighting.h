@@ -16,8 +16,9 @@ extern "C" {
 /* ====================================================================================================================
  * Illuminance
  *
- * Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. An image gives the
- * standard error of each point, and a report gives the mean, the minimum and the maximum.
+ * Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. The results are an
+ * image of the illuminances, an image of their standard errors, and a report with the mean, the minimum and the
+ * maximum.
  * ==================================================================================================================== */
 
 /** A calculation of illuminance. See luxfer_illuminance_create. */
@@ -73,7 +74,10 @@ typedef int32_t luxfer_illuminance_image;
 typedef struct luxfer_illuminance_report {
     /** sizeof(luxfer_illuminance_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of points; on a mesh, the texels that the surface covers. */
+    /**
+     * Number of points with a value: on a mesh, the number of texels that the mesh covers. If it is 0, the other
+     * values are 0.
+     */
     uint32_t points;
     /** Smallest illuminance. The uniformity U0 is minimum / mean. */
     double minimum;
@@ -88,7 +92,7 @@ typedef struct luxfer_illuminance_report {
 /** Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover. */
 #define LUXFER_ILLUMINANCE_LUX 0
 
-/** Standard error of each value, in lux; 1 channel. */
+/** Standard error of each illuminance, in lux; 1 channel; NaN in texels that the mesh does not cover. */
 #define LUXFER_ILLUMINANCE_ERROR 1
 
 /** Creates an object that computes illuminance. It has no inputs yet. The caller releases *illuminance. Any thread. */
@@ -102,7 +106,7 @@ luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxf
  * Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
  * releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
- * LUXFER_INVALID_ARGUMENT if the scene is not valid, the grid has no normal, or a setting is out of range.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, the normal of the grid is 0, or a setting is out of range.
  */
 luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             const luxfer_illuminance_grid *grid,
@@ -110,12 +114,13 @@ luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             luxfer_job **job);
 
 /**
- * Starts a job that computes the illuminance on a mesh at columns x rows texels, which divide u and v of its first
- * set of texture coordinates. back is 0 for the front side of the triangles (by their winding) and 1 for the back
- * side. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that computes the illuminance on a mesh. The first set of texture coordinates maps the mesh to an image
+ * of columns x rows texels: columns divide u, rows divide v. Each texel gets the illuminance at the surface point of
+ * its centre. back is 0 for the front side of the triangles, from which they wind counter-clockwise, and 1 for the
+ * back side. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
- * LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or
- * if a setting is out of range.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if
+ * a setting is out of range.
  */
 luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
                                             uint32_t mesh,
@@ -143,17 +148,17 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
 /* ====================================================================================================================
  * Lamps
  *
- * Finds powers for the lamps of an emission, within bounds, with which a scene comes nearest to several goals. A goal
- * is a surface or a calculation grid that should receive a given light. One set of paths per goal measures the light
- * from all lamps at once, even from thousands.
+ * Finds the powers of the lamps of an emission with which a scene comes nearest to several goals. The power of a lamp
+ * is a factor for its emission, within bounds. A goal is a surface or a calculation grid that should receive a given
+ * light. One set of paths per goal measures the light from all lamps at once, even from thousands.
  * ==================================================================================================================== */
 
 /** A solver for the powers of lamps. See luxfer_lamps_create. */
 typedef struct luxfer_lamps luxfer_lamps;
 
 /**
- * Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture,
- * or a connected piece of the meshes if the emission has no texture.
+ * Groups of lamps that share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture; a
+ * connected piece of the meshes if the emission has no texture; or a punctual light if the material is LUXFER_NONE.
  */
 typedef int32_t luxfer_group;
 
@@ -164,32 +169,35 @@ typedef struct luxfer_lamps_params {
     /** Lamps that share one power: a LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
     luxfer_group group;
     /**
-     * Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
-     * coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
+     * Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of the
+     * coordinates by which the lamps are grouped, in metres or as a texture coordinate, >= 0; default 0.01. A larger
+     * gap starts a new row.
      */
     float row_tolerance;
     /**
-     * 1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
-     * luxfer_lamps_add_mesh. 0, the default: solve for the power only.
+     * 1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
+     * luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour.
      */
     uint32_t free_colour;
-    /** Largest factor for the emission of a group, >= 0; default infinity. */
+    /** Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity. */
     double max_scale;
     /**
-     * Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
-     * met, with large values the powers are nearly equal.
+     * Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
+     * small weight the goals are met, with a large weight the powers are nearly equal.
      */
     double regularisation;
     /**
-     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the goal's
-     * light; default 0.01.
+     * Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target by at
+     * most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence interval of the
+     * light.
      */
     double tolerance;
     /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light from
-     * all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
+     * Stop tracing when, for every goal, the light from all lamps together is known to this relative error, in [0, 1];
+     * default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 % confidence interval
+     * divided by the mean, in the worst channel.
      */
     float target_error;
     /** Stop tracing after this number of milliseconds; default 0: no limit. */
@@ -212,23 +220,26 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 #define LUXFER_GROUP_EACH 1
 
 /**
- * Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of the
- * meshes.
+ * Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the emission has a
+ * texture, the texture coordinate u takes the place of x.
  */
 #define LUXFER_GROUP_BY_X 2
 
 /**
- * Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of the
- * meshes.
+ * Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the emission has a
+ * texture, the texture coordinate v takes the place of y.
  */
 #define LUXFER_GROUP_BY_Y 3
 
-/** Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes. */
+/**
+ * Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
+ * texture, all lamps form one group.
+ */
 #define LUXFER_GROUP_BY_Z 4
 
 /**
- * Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot lights
- * form another, and luminaires with the same distribution form one group for each distribution.
+ * Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+ * and luminaires with the same distribution form one group for each distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
 
@@ -236,9 +247,9 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene, and the emitting material whose lamps are solved for. The solution is a factor for the emission
- * that each lamp has in the scene. If material is LUXFER_NONE, the lamps are the scene's punctual lights, numbered by
- * the indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
+ * Sets the scene, and the material whose lamps are solved for. The solution is a factor for the emission that each
+ * lamp has in the scene. If material is LUXFER_NONE, the lamps are the punctual lights of the scene, numbered by the
+ * indices of luxfer_scene_add_light and luxfer_scene_add_luminaire. The call removes all goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
@@ -246,12 +257,13 @@ luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
                                      uint32_t material);
 
 /**
- * Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
- * with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
- * Any thread.
+ * Starts a job that measures how much light each lamp sends to each goal, and solves for the powers. If the goals
+ * cannot be met, the job succeeds with the powers that come nearest within the bounds. params may be NULL for the
+ * defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job is already running. The job may end with
- * LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
- * emission has no lamp, there are more than 64 goals, goals times lamps exceed 2^20, or a setting is out of range.
+ * LUXFER_UNREACHABLE if no goal receives light from any lamp; LUXFER_DEGENERATE if the surface of a goal has no area;
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, there are more than 64 goals, goals
+ * times lamps exceed 2^20, or a setting is out of range.
  */
 luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
                                  const luxfer_lamps_params *params,
@@ -260,8 +272,8 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
 /* ====================================================================================================================
  * Goals of lamps
  *
- * Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit. Also
- * the dimming levels of the lamps' drivers.
+ * A goal is a surface or a calculation grid that should receive a given light, exactly or as a limit. The dimming
+ * levels of the lamps' drivers are set here too.
  * ==================================================================================================================== */
 
 /**
@@ -303,8 +315,9 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
 /**
  * Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
  * and >= 0, in any order; at most 4096 factors are allowed. The solution then gives each group one of these levels,
- * chosen for all groups together so that the goals are met best, and the half-widths of the powers include the
- * distance from the level to the power without steps. If count is 0, the drivers have no steps. Any thread.
+ * chosen for all groups together so that the goals are met best. The difference between the level and the power that a
+ * stepless driver would have is added to the half-width of the power. If count is 0, the drivers have no steps. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many levels.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
@@ -317,8 +330,8 @@ luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
 /* ====================================================================================================================
  * Results of lamps
  *
- * The powers that the solver has found, the light that each goal receives, and the contribution of each lamp to each
- * goal.
+ * The functions of this section return the powers that the solver has found, the light that each goal receives, and
+ * the contribution of each lamp to each goal.
  * ==================================================================================================================== */
 
 /** Summary of the solution for lamps. */
@@ -333,7 +346,7 @@ typedef struct luxfer_lamps_report {
     uint32_t goals;
     /** Number of paths traced for each goal. */
     uint32_t paths;
-    /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason. */
+    /** 1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason. */
     uint32_t all_goals_met;
 } luxfer_lamps_report;
 
@@ -344,8 +357,8 @@ typedef struct luxfer_lamp {
     /** Index of the group that the lamp belongs to. */
     uint32_t group;
     /**
-     * Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
-     * metres.
+     * Centre of the lamp: (u, v, 0) in texture coordinates if the emission has a texture, else the position in metres;
+     * 0 for directional lights.
      */
     double centre[3];
     /** Factor for the lamp's emission, per channel, >= 0. */
@@ -361,8 +374,8 @@ typedef struct luxfer_lamps_goal {
     /** LUXFER_OUTCOME_ value of each channel. */
     luxfer_outcome outcome[3];
     /**
-     * Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid, illuminance /
-     * pi.
+     * Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
+     * wanted illuminance divided by pi.
      */
     double target[3];
     /** Mean radiance of the goal's surface with the powers found, in cd/m² per channel. */
@@ -379,8 +392,8 @@ typedef struct luxfer_lamps_goal {
     /** Illuminance with the powers found, in lux. */
     double achieved_lux;
     /**
-     * Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if the
-     * errors of all channels have the same sign.
+     * Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, computed as if the
+     * errors of all channels had the same sign.
      */
     double half_width_lux;
     /** Illuminance from all light but the lamps, in lux. */
@@ -436,8 +449,8 @@ luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
 
 /**
  * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
- * the zero. The text is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text
- * needs. Any thread.
+ * the zero. The text is empty if all goals of positive weight are met. *needed, unless NULL, receives the capacity
+ * that the whole text needs. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
@@ -477,8 +490,9 @@ typedef struct luxfer_importance_params {
     /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when the relative half-width of the 95 % confidence interval of the light that the target would receive
-     * from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason.
+     * Stop when the light that the target would receive from a uniform emission is known to this relative error, in
+     * [0, 1]; default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 % confidence
+     * interval divided by the mean, in the worst channel.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
@@ -505,8 +519,8 @@ typedef struct luxfer_importance_report {
     /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * Change of the field response, noise included, if the map's cells had twice the width and height. The error that
-     * comes from the size of the cells is about a third of this change.
+     * The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
+     * that comes from the size of the cells is about a third of this difference, which also contains noise.
      */
     double band_error[3];
 } luxfer_importance_report;
@@ -525,11 +539,11 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
                                           uint32_t mesh);
 
 /**
- * Starts a job that traces the map. The new map replaces the earlier one and the placement that was found with it.
+ * Starts a job that traces the map. The new map replaces the earlier map and the placement that was found with it.
  * params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
- * range.
+ * range; LUXFER_DEGENERATE if the target has no area.
  */
 luxfer_status luxfer_importance_start(luxfer_importance *importance,
                                       const luxfer_importance_params *params,
@@ -545,9 +559,9 @@ luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
 
 /**
  * Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
- * is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
- * row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
- * thread.
+ * is a 3 x 3 matrix M, row by row, with the last row 0 0 1: M (u, v, 1) is the point of the texture that lies at the
+ * texture coordinates (u, v) of the surface. NULL is the identity. The call takes a few milliseconds. size is sizeof
+ * *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -558,9 +572,10 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
 
 /**
  * Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
- * blue) in cd/m², each in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and
- * placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
+ * blue) in cd/m², each in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new
+ * paths. texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture reaches the target, or
+ * the other lights alone exceed (red, green, blue).
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       luxfer_image *texture,
@@ -575,7 +590,8 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
  * Placement
  *
  * Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
- * a given radiance. The search is a gradient descent on the map of luxfer_importance and traces no more paths.
+ * a given radiance. The search is a gradient descent on the map that a luxfer_importance has traced; it traces no
+ * paths itself.
  * ==================================================================================================================== */
 
 /** Objective of a placement: a LUXFER_AIM_ value. */
@@ -595,20 +611,23 @@ typedef struct luxfer_placement_params {
      * 0.
      */
     float radiance[3];
-    /** Number of placements at which the search starts, in [1, 4096]; default 64. */
+    /**
+     * Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the best of
+     * them.
+     */
     uint32_t starts;
     /** Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5. */
     double min_offset[2];
     /**
-     * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and max_offset
-     * fix the offset; likewise for the fields below.
+     * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
+     * allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the fields below.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
     double min_scale[2];
     /** Largest number of repetitions along u and v, in [1/64, 64]; default 1. */
     double max_scale[2];
-    /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
+    /** Smallest rotation of the texture coordinates from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double min_rotation;
     /** Largest rotation in radians, in [-2 pi, 2 pi]; default 0. */
     double max_rotation;
@@ -642,8 +661,9 @@ typedef struct luxfer_placement {
     /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * Change of the field response, noise included, if the map's cells had twice the width and height. The error that
-     * comes from the size of the cells is about a third of this change.
+     * The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The error
+     * of response that comes from the size of the cells is about a third of this difference, which also contains
+     * noise.
      */
     double band_error[3];
 } luxfer_placement;
@@ -654,7 +674,10 @@ typedef struct luxfer_placement {
 /** Make the luminance of the target as small as possible. */
 #define LUXFER_AIM_MIN_LUMINANCE 1
 
-/** Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance. */
+/**
+ * Bring the mean radiance of the target, under the texture and all other light, nearest to
+ * luxfer_placement_params.radiance.
+ */
 #define LUXFER_AIM_RADIANCE 2
 
 /**
@@ -690,11 +713,14 @@ typedef struct luxfer_glare_report {
     /** Number of glare sources. */
     uint32_t sources;
     /**
-     * Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity without
-     * sources.
+     * Unified glare rating (CIE 117): below 10 the glare causes no discomfort; 19 is the limit for offices; -infinity
+     * without sources.
      */
     double ugr;
-    /** Luminance of the background in cd/m². */
+    /**
+     * Background luminance of the rating in cd/m²: the mean over the pixels that are not glare sources, weighted by
+     * their contribution to the illuminance at the eye.
+     */
     double background;
     /** The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources. */
     double threshold;
@@ -737,9 +763,10 @@ luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
 
 /**
  * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
- * level camera whose vertical angle of view is fov_y in radians. Glare sources are the connected patches with a
- * luminance of at least threshold in cd/m²; 0: five times the mean luminance. A wider angle of view gives a better
- * estimate of the background luminance. size is sizeof *report. Any thread.
+ * level camera whose vertical angle of view is fov_y in radians, in [0.001, pi - 0.001]. Glare sources are the
+ * connected regions of pixels with a luminance of at least threshold, in cd/m², in [0, 1e12]. If threshold is 0, five
+ * times the mean luminance of the image is used. A wider angle of view gives a better estimate of the background
+ * luminance. size is sizeof *report. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
 luxfer_status luxfer_image_get_glare(luxfer_image *image,
@@ -752,23 +779,35 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
  * Glare of observers
  *
  * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
- * scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening
- * as seen from the eye.
+ * scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as
+ * seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose opening the eye sees
+ * edge-on, have no such area and are not rated.
  * ==================================================================================================================== */
 
-/** An observer: an eye that looks in a direction. An element of arrays, so this struct never changes. */
+/**
+ * An observer: an eye that looks in a direction. Callers pass arrays of this struct, so its size and fields never
+ * change in later versions.
+ */
 typedef struct luxfer_observer {
     /** Position of the eye, in metres. */
     float position[3];
-    /** Line of sight; any length but 0, and not vertical. */
+    /**
+     * Line of sight; any length but 0. It must not be vertical: its horizontal part must be at least 2 % of its
+     * length.
+     */
     float direction[3];
 } luxfer_observer;
 
-/** The glare that an observer experiences. An element of arrays, so this struct never changes. */
+/**
+ * The glare that an observer experiences. Callers pass arrays of this struct, so its size and fields never change in
+ * later versions.
+ */
 typedef struct luxfer_observer_glare {
     /**
-     * Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire is in
-     * view; infinity if a luminaire is in view and the background is black.
+     * Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view, with
+     * their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible;
+     * 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is in view and the
+     * background is black.
      */
     double ugr;
     /** Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi. */
@@ -776,8 +815,8 @@ typedef struct luxfer_observer_glare {
     /** Standard error of the field background, in cd/m². */
     double background_error;
     /**
-     * Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional lights,
-     * emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no dimensions.
+     * Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are not
+     * rated, point, spot and directional lights, emissive surfaces, and the environment.
      */
     double unrated_lux;
     /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
@@ -791,10 +830,11 @@ typedef struct luxfer_observer_glare {
 /**
  * Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
  * samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
- * 4096 suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to count *
- * samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
+ * 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
+ * count times samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
- * straight up or down, or is inside a luminaire: the message names the observer. In these cases no rating is written.
+ * straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
  */
 luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      const luxfer_observer *observers,
@@ -806,8 +846,8 @@ luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
 /* ====================================================================================================================
  * False colour
  *
- * Shows a luminance or illuminance image in false colours, which become brighter as the value rises, with a scale
- * bar.
+ * Shows a luminance or illuminance image in false colours, with a scale bar. The colours become lighter as the value
+ * rises.
  * ==================================================================================================================== */
 
 /** The scale that maps values to colours: a LUXFER_SCALE_ value. */
@@ -830,11 +870,14 @@ typedef struct luxfer_false_colour_params {
     /** 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar. */
     uint32_t bar;
     /**
-     * Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of the
+     * Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale, 0 stands for a thousandth of the
      * value that gets the lightest colour.
      */
     double minimum;
-    /** Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the image. */
+    /**
+     * Value that gets the lightest colour, greater than minimum; 0, the default: the largest finite value of the
+     * image.
+     */
     double maximum;
 } luxfer_false_colour_params;
 
@@ -856,10 +899,10 @@ static inline luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_
 #define LUXFER_UNIT_ILLUMINANCE 1
 
 /**
- * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: an image in linear RGB,
- * grey where a value is NaN. params may be NULL for the defaults. The call takes a few milliseconds per megapixel.
- * The caller releases *shown. Any thread.
- * LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is
+ * Converts an image to false colours: an image in linear RGB. A source of 1 channel is shown by its values, a linear
+ * RGB source by its luminance. Values beyond the range get the colour of its nearer end; NaN becomes grey. params may
+ * be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller releases *shown. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the range is empty: maximum is not greater than minimum, or maximum is 0 and the image is
  * black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_image_false_colour(luxfer_image *image,
@@ -869,9 +912,9 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
 /* ====================================================================================================================
  * Lighting design
  *
- * Helps to realise a solved light with real luminaires: the drive levels of LED primaries that mix a colour, the
- * blackbody light that is nearest to a target, and the requirements of a standard. These calls are synchronous: they
- * do their work before they return.
+ * Helps to realise a computed light with real luminaires. The functions find the drive levels at which LEDs mix a
+ * given colour, and the blackbody light that brings a target nearest to a wanted radiance. They also list requirements
+ * of the standard EN 12464-1. These calls are synchronous: they do their work before they return.
  * ==================================================================================================================== */
 
 /** A colour mixed from LED primaries: the result of luxfer_mix_primaries. */
@@ -883,7 +926,7 @@ typedef struct luxfer_mixture {
      * mixture.
      */
     uint32_t in_gamut;
-    /** Linear RGB colour of the mixture. */
+    /** Linear RGB colour of the mixture, in the unit of the primaries. */
     double colour[3];
     /**
      * CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
@@ -904,7 +947,7 @@ typedef struct luxfer_temperature_fit {
      * for a white emission of 1 cd/m².
      */
     double luminance;
-    /** Mean radiance of the target from this light and all other lights together, in cd/m². */
+    /** Mean radiance of the target from this light and all other lights together, in cd/m² per channel. */
     double achieved[3];
     /**
      * CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the wanted
@@ -937,11 +980,14 @@ typedef struct luxfer_preset {
 } luxfer_preset;
 
 /**
- * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. The array
- * primaries holds the linear RGB of each of count LEDs at drive level 1; a channel of an LED outside the gamut of
- * Rec.709 may be negative. count is in [1, 64]. The array drives receives count drive levels in [0, max_drive];
- * max_drive is >= 0 and may be infinite. If several mixtures give the colour, the result is the mixture with the
- * smallest sum of squared drive levels. size is sizeof *mixture. Any thread.
+ * Mixes a colour from the LEDs of a luminaire. colour holds linear RGB: three numbers that are finite and >= 0. The
+ * array primaries holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These
+ * numbers may be negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
+ *
+ * The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
+ * infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
+ * RGB. If several mixtures have the colour, the result is the one with the smallest sum of squared drive levels. size
+ * is sizeof *mixture. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -954,11 +1000,12 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    size_t size);
 
 /**
- * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest
- * to a wanted radiance. Each array holds three channels, linear RGB: response is the mean radiance of the target from
- * a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is the target's
- * mean radiance from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
- * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
+ * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
+ * a wanted radiance, by least squares over the channels. Each array holds linear RGB: response is the mean radiance of
+ * the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is
+ * the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
+ * thread.
+ * LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      const double *response,
@@ -995,9 +1042,10 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
  * Pendants
  *
  * Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
- * axis: a globe, a drum, a cone, or any other profile. The body follows from the outline of the lamp in a mask and
- * from the camera. Its size follows only if a length is known besides the distance of the ceiling, because a lamp of
- * twice the size at twice the distance looks alike.
+ * axis: a globe, a drum, a cone, or any other profile. The shape of the body is computed from the camera and the
+ * outline of the lamp in a mask. The size is not: a lamp of twice the size at twice the distance has the same outline.
+ * The size requires the height of the ceiling and one more length, or the point of the photo where the suspension (the
+ * cable or rod on which the lamp hangs) meets the ceiling.
  * ==================================================================================================================== */
 
 /** No length determines the size: drop, diameter and height hold only bounds. */
@@ -1007,17 +1055,21 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
 #define LUXFER_DOUBT_KIND 2
 
 /**
- * The photo clips more than a tenth of the lamp's pixels: it may be brighter, and its glare may enlarge the outline.
+ * The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its glare may
+ * enlarge the outline.
  */
 #define LUXFER_DOUBT_CLIPPED 4
 
 /** The border of the photo cuts off a part of the outline. */
 #define LUXFER_DOUBT_CUT 8
 
-/** The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the diameter. */
+/**
+ * The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of the largest
+ * diameter.
+ */
 #define LUXFER_DOUBT_HIDDEN 16
 
-/** Largest number of lamps that luxfer_pendants_find finds, and of suspensions. */
+/** Largest number of lamps, and of suspensions, that luxfer_pendants_find accepts. */
 #define LUXFER_MAX_PENDANTS 16
 
 /** The length that determines the size of lamps: a LUXFER_KNOWN_ value. */
@@ -1029,11 +1081,11 @@ typedef struct luxfer_pendants_params {
     uint32_t struct_size;
     /** 1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own. */
     uint32_t alike;
-    /** 1: all lamps hang equally high, which needs alike = 1; 0, the default: each hangs at its own height. */
+    /** 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height. */
     uint32_t level;
     /**
-     * 1, the default: the outline is moved to the place where the photo's luminance is half of the way from the lamp
-     * to its surroundings; 0: the outline is that of the mask.
+     * 1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the luminances
+     * inside and outside the lamp; 0: the outline is that of the mask.
      */
     uint32_t refine;
     /** Meaning of known_length: a LUXFER_KNOWN_ value; default LUXFER_KNOWN_NOTHING. */
@@ -1041,34 +1093,37 @@ typedef struct luxfer_pendants_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * The known length in metres, in [1e-4, 1e4], a drop in [0, 1e4]; not used with LUXFER_KNOWN_NOTHING, and then 0,
-     * the default.
+     * The known length in metres: in [0, 1e4] for LUXFER_KNOWN_DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
+     * be 0, the default, with LUXFER_KNOWN_NOTHING.
      */
     double known_length;
     /**
-     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: lengths are then multiples of
-     * this height.
+     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in multiples
+     * of the true height.
      */
     double ceiling;
     /** Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1. */
     double suspension_error;
-    /** The camera, if no rectification is given: its focal length in pixels, > 0; default 0. */
+    /**
+     * Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
+     * a rectification.
+     */
     double focal;
     /**
-     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the error of
-     * a focal length that was assumed or read from metadata is used if this is 0.
+     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a rectification
+     * is given, the rectification's own error is used if its focal length was assumed or read from metadata.
      */
     double focal_error;
     /**
-     * Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5]; default 0.
-     * Not used with a rectification, which has its own.
+     * Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
+     * 0. Not used with a rectification, which has its own value.
      */
     double axes_error;
-    /** Principal point in pixels; NaN, the default: the photo's centre. */
+    /** Principal point in pixels; NaN, the default: the photo's centre. Not used with a rectification. */
     double principal[2];
     /**
      * Room axes as unit vectors in camera space, as in luxfer_rectify_report.axes: axis 1 points down. Default: a
-     * camera that looks along a level axis, without roll.
+     * camera that looks horizontally, without roll. Not used with a rectification.
      */
     double axes[3][3];
 } luxfer_pendants_params;
@@ -1082,9 +1137,9 @@ static inline luxfer_status luxfer_pendants_params_init(luxfer_pendants_params *
 typedef int32_t luxfer_body;
 
 /**
- * A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value, the lower
- * end and the upper end of the 95 % interval. If the photo does not determine a value, the value is NaN and the
- * interval holds what is known; its ends may be infinite.
+ * A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value, and the
+ * lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are the known
+ * bounds, which may be 0 and infinity. A value without an estimate is NaN.
  */
 typedef struct luxfer_pendant {
     /** sizeof(luxfer_pendant), set by the function that fills the struct. */
@@ -1106,12 +1161,12 @@ typedef struct luxfer_pendant {
     /** Interval of the distance in metres of the body's top below the ceiling. */
     double drop[3];
     /**
-     * Intervals of the place of the body's middle relative to the camera: along room axes 0 and 2, which are
-     * horizontal, and upwards. In metres; with LUXFER_DOUBT_SIZE in multiples of the distance of the first lamp's
-     * middle.
+     * Intervals of the position of the body's middle relative to the camera: along the horizontal room axes 0 and 2,
+     * and upwards. The unit is the metre; with LUXFER_DOUBT_SIZE it is the distance of the first lamp's middle from
+     * the camera.
      */
     double centre[3][3];
-    /** Median distance in pixels between the outline and the fitted body. */
+    /** Median distance in pixels between the outline of the lamp and that of the fitted body. */
     double residual;
     /** Share of the outline that the photo's border cuts off, in [0, 0.3]. */
     double cut;
@@ -1119,12 +1174,18 @@ typedef struct luxfer_pendant {
     double clipped;
     /**
      * Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the largest
-     * diameter. The rest is 0.
+     * diameter. Elements from profile_count on are 0.
      */
     float profile[65][2];
-    /** Half of the 95 % interval of each radius of the profile. It is large where the body hides its own profile. */
+    /**
+     * Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is large where
+     * the body hides its own profile.
+     */
     float profile_error[65];
-    /** Mean radiance of the lamp in 16 bands of equal height, from bottom to top, in the units of the photo. */
+    /**
+     * Mean radiance of the lamp in 16 bands of equal height, from bottom to top: linear RGB in the units of the photo.
+     * Where the photo is clipped, it is only a lower bound.
+     */
     float radiance[16][3];
     /** Outline of the fitted body in the photo, a closed polygon: x and y in pixels. */
     float contour[180][2];
@@ -1156,7 +1217,7 @@ typedef struct luxfer_pendant {
 /** Any other body of revolution, such as a bell. */
 #define LUXFER_BODY_OTHER 7
 
-/** Only suspensions, if any are given. */
+/** No length is known; suspensions determine the size if any are given. */
 #define LUXFER_KNOWN_NOTHING 0
 
 /** The distance of the first lamp's top below the ceiling. */
@@ -1170,16 +1231,18 @@ typedef struct luxfer_pendant {
 
 /**
  * Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
- * 1 to 16 lamps, without their suspensions; each connected region is a lamp, numbered from the top. view is a
- * rectification of the photo whose job has succeeded; NULL: the camera is that of params. suspensions has the
- * coordinates x and y in pixels of suspension_count places where suspensions meet the ceiling, each for the lamp
- * whose axis passes nearest; NULL if there are none. params may be NULL for the defaults. pendants is an array of
- * capacity structs; size is sizeof one of them. *count receives the number of lamps; those beyond the capacity are
- * left out. The call takes about 0.2 seconds for a lamp, and more for many lamps that are alike; luxfer_job_start runs
- * it as a job. Any thread.
- * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not
- * that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has
- * succeeded; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp; lamps are numbered in the
+ * order of their topmost pixels. view is a rectification of the photo whose job has succeeded; NULL: the camera is
+ * that of params. params may be NULL for the defaults.
+ *
+ * suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
+ * there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp may have one point.
+ * pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps, even if
+ * it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp, and
+ * more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+ * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
+ * of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
+ * LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
  */
 luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *photo,
@@ -1197,9 +1260,9 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
  * Adds count meshes, 1 to 1024, to a scene, each with the body of a lamp that luxfer_pendants_find has found. places
  * has the coordinates x, y and z in metres of the middle of each body's upper end. diameter is the largest diameter in
  * metres, in [0.001, 1e4]; 0: the diameter found. The meshes share a new material, which emits light with the photo's
- * colours along the height of the body; where the photo is clipped, they are too dark. luminance is the luminance in
- * cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of
- * the first new mesh and that of the material; each pointer may be NULL. Any thread.
+ * colours along the height of the body. Where the photo clips the lamp, this emission is too dark. luminance is the
+ * luminance in cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive
+ * the index of the first new mesh and that of the material; each pointer may be NULL. Any thread.
  * LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */

@@ -82,8 +82,8 @@ luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
  * and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
  * releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
- * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
- * such camera.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+ * and the scene has none.
  */
 luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_render *render,
@@ -120,9 +120,10 @@ luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
  * Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
  * has chosen. size is sizeof *params. Any thread.
  *
- * If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan sets the number
- * of paths, so every run gives an equal picture; it also sets time_budget_ms to a quarter more than these paths
- * should take, which ends the rendering early only if the machine becomes slower.
+ * If the goal is an error, rendering stops when it reaches the error; if few paths suffice, the plan sets a fixed
+ * number of paths instead. If the goal is a time, the plan sets the number of paths, so that repeated renderings give
+ * equal pictures. It also sets time_budget_ms to 1.25 times the predicted time. This limit ends a rendering early only
+ * if the machine becomes slower.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
@@ -142,8 +143,8 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
  * Planning of stylisations
  *
  * Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
- * actual input at reduced resolution. This takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
- * target, the smaller the part.
+ * actual input at reduced resolution. These trials take a small share of the time of a stylisation with
+ * LUXFER_STYLIZE_FULL; the share falls with the size of the target.
  * ==================================================================================================================== */
 
 /**

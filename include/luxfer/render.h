@@ -92,8 +92,8 @@ typedef struct luxfer_render_report {
     /** Number of paths that were discarded because their radiance was not finite. */
     uint64_t discarded;
     /**
-     * Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x 8
-     * pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview.
+     * Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root mean
+     * square over all blocks, divided by the image's mean. 0 without a preview.
      */
     double preview_bias;
     /**
@@ -104,8 +104,8 @@ typedef struct luxfer_render_report {
     double relative_error;
     /**
      * Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
-     * divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a pixel has
-     * fewer than four paths; 0 without a preview.
+     * divided by the image's mean. Compare it with the field error, which is that of the unfiltered image. Infinite
+     * while a pixel has fewer than four paths; 0 without a preview.
      */
     double preview_error;
 } luxfer_render_report;
@@ -114,9 +114,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_BEAUTY 0
 
 /**
- * Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a block and
- * share the results of their paths, so their errors are correlated: the variance of a sum over pixels is up to eight
- * times the sum of their variances.
+ * Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Infinite where a pixel has fewer than two
+ * paths. Blocks of eight neighbouring pixels share parts of their paths, so the errors of these pixels are correlated:
+ * the variance of a sum over pixels is up to eight times the sum of their variances.
  */
 #define LUXFER_RENDER_VARIANCE 1
 
@@ -130,17 +130,19 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is combined with
- * neighbours whose difference its noise explains, or stays as it is where this is estimated to be more accurate. Details
- * that come from the light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates
- * the remaining error. The image exists only if luxfer_render_params.preview is not 0.
+ * The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined with those
+ * neighbours that differ from it by no more than the noise explains. It stays as it is where that is estimated to be
+ * more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+ * luxfer_render_report.preview_error estimates the remaining error. The image exists only if
+ * luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
 /**
  * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
  * bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
- * it may hold only 86 % of the pixels. The image exists only if luxfer_render_params.preview is not 0.
+ * it may contain the true value of only 86 % of the pixels. The image exists only if luxfer_render_params.preview is
+ * not 0.
  */
 #define LUXFER_RENDER_PREVIEW_INTERVAL 5
 
@@ -159,8 +161,9 @@ luxfer_status luxfer_render_set_camera(luxfer_render *render,
 
 /**
  * Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
- * such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
+ * and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
+ * of range.
  */
 luxfer_status luxfer_render_start(luxfer_render *render,
                                   const luxfer_render_params *params,
@@ -178,8 +181,8 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
 
 /**
  * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
- * lamps of the scene cannot be reached from the surfaces that the image shows, directly or by reflection. The
- * rendering learns this from its first paths; later paths hardly ever sample these lamps, which does not change the
+ * lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
+ * rendering learns this from its first paths. Later paths hardly ever sample these lamps, which does not change the
  * expected image. Any thread.
  *
  * The text has one sentence per line and is zero-terminated UTF-8, truncated to capacity bytes including the zero.
@@ -205,25 +208,28 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  * Additional images (layers) from the same paths as the main image: light that light path expressions select, and
  * properties of the visible surfaces (AOVs). Request layers before luxfer_render_start, and read them while the job
  * runs or afterwards. The layers of expressions come first, in the order in which they were added, then the AOVs in
- * the order of their flags. The main image is equal to the bit with and without layers.
+ * the order of their flags. Layers do not change the main image by a single bit.
+ *
+ * AOVs describe the first surface that a path from the camera meets; clear panes and mirrors count as surfaces. Depth,
+ * distance, position and normals are means over the samples of the pixel that meet a surface.
  *
  * A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
  * | ( ) have their usual meaning. It has one of two forms.
  *
- * From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". D is a diffuse event, S
- * is every other event.
+ * From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is any light, D is a
+ * diffuse event, S is every other scattering event.
  *
  * From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
- * has a type and a scattering mode. The types are R (reflection), T (transmission) and V (volume, never occurs here).
- * The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see
- * luxfer_emitter_as.
+ * has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such as G, matches any event with
+ * this type or mode. The types are R (reflection), T (transmission) and V (volume, never occurs here). The modes are D
+ * (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as.
  *
- * A label in quotes is a name: the name of a mesh or of its material; Name#0, Name#1, ... for the patches of its
- * emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for the scene's punctual lights in
- * their order; environment for the scene's environment.
+ * A label in quotes restricts an event to an object or a light. It is the name of a mesh or of its material; Name#0,
+ * Name#1, ... for the patches of its emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for
+ * the scene's punctual lights in their order; environment for the scene's environment.
  *
- * Arnold's built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each
- * alone or with _direct or _indirect.
+ * Arnold's built-in names work too: beauty, direct, indirect, emission, background, and diffuse, specular,
+ * transmission, each alone or with _direct or _indirect.
  * ==================================================================================================================== */
 
 /** Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z. */
@@ -232,7 +238,7 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 /** Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z. */
 #define LUXFER_AOV_DISTANCE 2
 
-/** Position in world space, in metres. Layer Position, channels X Y Z. */
+/** Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z. */
 #define LUXFER_AOV_POSITION 4
 
 /** Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X Y Z. */
@@ -244,18 +250,23 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  */
 #define LUXFER_AOV_GEOMETRIC_NORMAL 16
 
-/** Albedo at normal incidence. Layer Albedo, channels R G B. */
+/**
+ * Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo, channels R
+ * G B.
+ */
 #define LUXFER_AOV_ALBEDO 32
 
 /**
- * Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer IndexOB, channel
- * X.
+ * Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of any mesh
+ * that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights have
+ * the number of meshes plus i plus 1. Layer IndexOB, channel X.
  */
 #define LUXFER_AOV_OBJECT 64
 
 /**
- * Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer IndexMA,
- * channel X.
+ * Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority, of any
+ * material that was hit. 0 where there is no surface. The faces of luminaires have the number of materials plus 1.
+ * Layer IndexMA, channel X.
  */
 #define LUXFER_AOV_MATERIAL 128
 
@@ -285,7 +296,8 @@ typedef int32_t luxfer_emitter_as;
 
 /**
  * Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
- * without dots, quotes or control characters, and different from the names of the other layers. Any thread.
+ * without dots, quotes or control characters. It must differ from the names of the other layers and of all AOVs, and
+ * from Combined and Variance. Any thread.
  * LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
  * LUXFER_INVALID_OPERATION while a job runs. The rendering's job ends with LUXFER_NOT_FOUND if no object of the scene
  * has a label that the expression names, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.

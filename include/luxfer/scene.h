@@ -52,7 +52,10 @@ typedef struct luxfer_scene_counts {
     uint64_t triangles;
 } luxfer_scene_counts;
 
-/** A planar surface of a scene: triangles in one plane, and their bounding rectangle. */
+/**
+ * A planar surface of a scene: triangles in one plane, and their bounding rectangle. Seen from the room, u runs to the
+ * right and v runs down, as in an image.
+ */
 typedef struct luxfer_surface {
     /** sizeof(luxfer_surface), set by the function that fills the struct. */
     uint32_t struct_size;
@@ -102,11 +105,11 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
                                       size_t size);
 
 /**
- * Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, the
- * radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the
- * radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is
- * towards -z, its top towards +y, the centre of its right half towards +x. The renderer samples the image in
- * proportion to its brightness. The image is copied. Any thread.
+ * Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
+ * the radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise
+ * the radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image
+ * is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn
+ * in proportion to the brightness of the image. The image is copied. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -129,7 +132,8 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
 
 /**
  * Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
- * object or material, in UTF-8. size is sizeof *found. Any thread.
+ * object or material, in UTF-8. If no name is equal to it, a name that differs only in upper and lower case is taken;
+ * if there is none, the only name that contains it. size is sizeof *found. Any thread.
  * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
  * there is no planar surface.
  */
@@ -140,10 +144,11 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
 
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
- * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material, which
- * emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the new
- * mesh and material; each pointer may be NULL. Any thread.
- * Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
+ * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
+ * side towards the room, this copy emits texture * (red, green, blue) in cd/m², each factor in [0, 1e15]. *mesh and
+ * *material receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
+ * Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
+ * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           const char *name,
@@ -182,7 +187,7 @@ typedef struct luxfer_scene_load_params {
     /**
      * 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
      * relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
-     * origin of the file, and rounding to floats moves them.
+     * origin of the file; far from it, the rounding of coordinates to floats moves them.
      */
     uint32_t keep_origin;
     /**
@@ -199,9 +204,9 @@ static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_para
 
 /**
  * A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
- * a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in each direction, the
- * intensity divided by the projected area of the faces. So the light is right at any distance, and renderings show
- * the faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
+ * a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the same luminance: the intensity
+ * divided by the projected area of the faces. The light is therefore right at any distance, and renderings show the
+ * faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
  */
 #define LUXFER_LUMINAIRE_FACES 0
 
@@ -226,9 +231,9 @@ luxfer_status luxfer_scene_load(luxfer_context *context,
                                 luxfer_scene **scene);
 
 /**
- * Loads a scene from a GLB or glTF file in memory of size bytes at data. If this file names other files, they are
- * read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others. Settings, ownership,
- * threads and errors are as for luxfer_scene_load.
+ * Loads a scene from a GLB or glTF file in memory, which has size bytes and starts at data. If this file names other
+ * files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others.
+ * Settings, ownership, threads and errors are as for luxfer_scene_load.
  */
 luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
@@ -264,7 +269,10 @@ typedef int32_t luxfer_alpha_mode;
 typedef struct luxfer_material_params {
     /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
     uint32_t struct_size;
-    /** 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. */
+    /**
+     * 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block light in
+     * both cases.
+     */
     uint32_t double_sided;
     /** Name in UTF-8, copied; NULL, the default: no name. */
     const char *name;
@@ -277,10 +285,11 @@ typedef struct luxfer_material_params {
     /** Emission per channel in cd/m², each in [0, 1e15]; default 0. */
     float emission[3];
     /**
-     * Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
+     * Share of the light entering the surface that passes straight through it, instead of being reflected diffusely,
+     * in [0, 1]; default 0.
      */
     float transmission;
-    /** Index of refraction in [1, 4]; default 1.5. */
+    /** Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly. */
     float ior;
     /** Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1. */
     float alpha;
@@ -446,7 +455,7 @@ typedef struct luxfer_mesh_params {
     const void *positions;
     /** Bytes from one position to the next; at least 12, or 0, the default: packed. */
     size_t position_stride;
-    /** Normals: three floats per vertex, finite; NULL, the default: faces are flat. */
+    /** Normals: three floats per vertex, finite; NULL, the default: triangles are shaded flat. */
     const void *normals;
     /** Bytes from one normal to the next; at least 12, or 0, the default: packed. */
     size_t normal_stride;
@@ -541,8 +550,9 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
 /* ====================================================================================================================
  * Luminous intensity distributions
  *
- * The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
- * calls are synchronous: they do their work before they return.
+ * A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63) or
+ * EULUMDAT files, and can be written to both formats. These calls are synchronous: they do their work before they
+ * return.
  * ==================================================================================================================== */
 
 /** A luminous intensity distribution. See luxfer_distribution_load. */
@@ -555,7 +565,10 @@ typedef int32_t luxfer_distribution_format;
 typedef struct luxfer_distribution_report {
     /** sizeof(luxfer_distribution_report), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of C planes, the half-planes through the axis in which the intensities are given. */
+    /**
+     * Number of C planes, the half-planes through the axis in which the intensities are given. Planes that the file
+     * leaves out because of symmetry are included. A single plane holds for all directions around the axis.
+     */
     uint32_t planes;
     /** Number of vertical angles gamma in each C plane. */
     uint32_t angles;
@@ -568,9 +581,9 @@ typedef struct luxfer_distribution_report {
     /** Electric power in watts; 0 if unknown. */
     double watts;
     /**
-     * Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
-     * for a round opening, as in IES: its absolute value is the diameter. IES files name the three values length,
-     * width and height; EULUMDAT files name them width, length and height.
+     * Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
+     * negative values stand for a round opening: the absolute value is the diameter. IES files name the three values
+     * length, width and height; EULUMDAT files name them width, length and height.
      */
     double size[3];
 } luxfer_distribution_report;
@@ -583,8 +596,8 @@ typedef struct luxfer_distribution_report {
 
 /**
  * Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
- * LUXFER_UNSUPPORTED for IES photometry of types A and B, LUXFER_INVALID_ARGUMENT if the path has another extension.
+ * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
+ * LUXFER_UNSUPPORTED for IES photometry of types A and B; LUXFER_INVALID_ARGUMENT if the path has another extension.
  */
 luxfer_status luxfer_distribution_load(luxfer_context *context,
                                        const char *path,
@@ -624,7 +637,9 @@ luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
 
 /**
  * Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
- * the C plane around the axis, and gamma is the angle from straight down (0) to straight up (180). Any thread.
+ * the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
+ * (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
+ * thread.
  */
 luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
                                                 double c,
@@ -682,8 +697,8 @@ typedef struct luxfer_luminaire_params {
     /** Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution. */
     double flux;
     /**
-     * Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0). A
-     * flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not hidden.
+     * Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0, 0, 0).
+     * Flat faces are moved outwards by at least 0.2 mm, so that a ceiling in the same plane does not hide them.
      */
     float position[3];
     /** Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
@@ -726,9 +741,9 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
 /**
  * Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
  * distribution. *index, unless NULL, receives its index among the punctual lights. It shines from the faces of its
- * luminous opening, which are black where they do not emit: they block light and reflect none. If its file states no
- * size, or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may
- * be NULL for the defaults. Any thread.
+ * luminous opening. Faces that do not emit are black: they block light and reflect none. If its file states no size,
+ * or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be
+ * NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
@@ -808,13 +823,13 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /** At least one surface is partly transparent because of its alpha. */
 #define LUXFER_SCATTERING_ALPHA 16
 
-/** At least one surface emits. */
+/** At least one surface emits; the faces of luminaires count. */
 #define LUXFER_LIGHTS_SURFACE 1
 
 /** At least one surface has an emission texture. */
 #define LUXFER_LIGHTS_TEXTURE 2
 
-/** At least one point light has an intensity above 0. */
+/** At least one point light, or luminaire that shines from a point, has an intensity above 0. */
 #define LUXFER_LIGHTS_POINT 4
 
 /** At least one spot light has an intensity above 0. */
@@ -837,16 +852,17 @@ typedef struct luxfer_requirements {
     /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light with
-     * more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For information
+     * Number n of bounces that matter: light with more than n bounces is at most the share error of all scattered
+     * light, where error is the argument of luxfer_scene_get_requirements. n is the smallest positive integer with a^n
+     * <= error, where a is the largest channel of the field albedo. 0 if there is no such number. For information
      * only: no rendering ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
     uint32_t brightest_material;
     /**
-     * Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects and
-     * transmits.
+     * Upper bound of the albedo of all surfaces, per channel, in [0, 1]. The albedo is the share of the received light
+     * that a surface reflects or transmits.
      */
     float albedo[3];
     /** Number of triangles with zero area, which are skipped. */
@@ -880,7 +896,7 @@ luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
  * Scene read-back
  *
  * Reads the meshes of a scene back. With luxfer_scene_get_counts and the functions that read materials, textures and
- * cameras, a host can copy a whole scene.
+ * cameras, a host can copy these parts of a scene. Lights and the environment cannot be read back.
  * ==================================================================================================================== */
 
 /** Sizes and attributes of a mesh. */
@@ -893,7 +909,7 @@ typedef struct luxfer_mesh_info {
     size_t vertex_count;
     /** Number of triangles. */
     size_t triangle_count;
-    /** 1 if each vertex has a normal, 0 if the faces are flat. */
+    /** 1 if each vertex has a normal, 0 if triangles are shaded flat. */
     uint32_t has_normals;
     /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
     uint32_t uv_sets;
@@ -968,7 +984,7 @@ luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
  * Candidates for the ceiling
  *
  * Lists the objects and the materials of a scene with their area, height and direction, sorted so that the likeliest
- * ceiling comes first. A host can show this list to let the user choose the surface that receives the lights. Pass
+ * ceiling comes first. A host can show this list to let the user choose the surface that will carry the lights. Pass
  * the name of the chosen candidate to luxfer_scene_find_surface or luxfer_transfer_set_scene. A list is a copy: later
  * changes of the scene do not change it.
  * ==================================================================================================================== */
@@ -1011,9 +1027,9 @@ typedef struct luxfer_candidate {
      */
     float normal[3];
     /**
-     * Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the scene's
-     * bounding box), and the square of (height above the scene's lowest point) / (height of the scene). Each of the
-     * three ratios is at most 1. A name such as "ceiling" raises the score.
+     * Resemblance to a ceiling: s = (level_area / area) * min(1, level_area / F) * h², in [0, 1]. F is the floor area
+     * of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the scene). A name with
+     * a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2, unless level_area is 0.
      */
     float score;
     /** Reserved; always 0. */

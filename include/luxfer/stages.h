@@ -22,10 +22,10 @@ extern "C" {
  * ==================================================================================================================== */
 
 /**
- * Computes the homography that maps four points to four other points. The array from holds x and y of the four
- * points, 8 doubles; the array to holds x and y of the points to which they are mapped. homography receives the nine
- * entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
- * LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
+ * Computes the homography that maps four points to four other points. The array from holds x and y of the four points,
+ * 8 doubles; the array to holds x and y of the points to which they are mapped, in the same order. homography receives
+ * the nine entries of the matrix, row by row, scaled to unit Frobenius norm. Any thread.
+ * LUXFER_DEGENERATE if three points of one array lie on one line or two coincide, or if a coordinate is not finite.
  */
 luxfer_status luxfer_homography_from_corners(luxfer_context *context,
                                              const double *from,
@@ -33,10 +33,11 @@ luxfer_status luxfer_homography_from_corners(luxfer_context *context,
                                              double *homography);
 
 /**
- * Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. The pixel at p takes
- * the value of the source at to_source(p); to_source holds the nine entries of the matrix. Pixels that lie outside
- * the source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint
- * where it is minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+ * Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]. to_source is the
+ * homography from points of the new image to points of the source: nine matrix entries, row by row. Each pixel of the
+ * new image takes the value of the source at the point to which its centre is mapped, or 0 if that point lies outside
+ * the source. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it is
+ * minified. The call takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
  * LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -51,8 +52,9 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
  *
  * Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
  * that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
- * is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1
- * is vertical. Camera space is x to the right, y down, z forward.
+ * is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1 is
+ * vertical. Camera space is x to the right, y down, z forward. "The paper" is "Single-Exemplar Lighting Style Transfer
+ * via Emissive Texture Synthesis and Optimization".
  * ==================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
@@ -101,8 +103,9 @@ typedef struct luxfer_rectify_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane with a
-     * larger magnification, which lie far from the camera, are cut off.
+     * Largest magnification in the unwarped image, relative to the part of the plane that the photo shows largest, in
+     * (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the camera, are cut
+     * off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -133,7 +136,10 @@ typedef struct luxfer_rectify_report {
     double vanishing_points[3][3];
     /** Standard deviations of the directions of the vanishing points in camera space, in radians. */
     double vanishing_errors[3];
-    /** Number of segments that agree with each vanishing point; 0: the point is derived from the other two. */
+    /**
+     * Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
+     * others, or from the assumption that the camera is upright.
+     */
     uint32_t vanishing_support[3];
     /** Source of the focal length: a LUXFER_FOCAL_ value. */
     luxfer_focal_source focal_source;
@@ -155,7 +161,10 @@ typedef struct luxfer_rectify_report {
     double corner_errors[4];
     /** Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane. */
     double pixel_size;
-    /** Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed. */
+    /**
+     * Confidence of the aspect ratio, 1 / (1 + (s / 0.1)²), where s is its relative standard deviation; in [0, 1]. It
+     * is low if the focal length was assumed.
+     */
     double aspect_confidence;
     /**
      * Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
@@ -166,8 +175,8 @@ typedef struct luxfer_rectify_report {
     /** Standard deviation of the field distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these axes is
-     * estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or the
+     * For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two axes is
+     * estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not square or the
      * principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
      * orthogonal.
      */
@@ -176,18 +185,24 @@ typedef struct luxfer_rectify_report {
     double squareness_errors[3];
 } luxfer_rectify_report;
 
-/** Fits segments with sub-pixel end points to regions of similar gradient direction. */
+/**
+ * Fits segments with sub-pixel end points to regions of similar gradient direction (LSD, Grompone von Gioi et al.
+ * 2010).
+ */
 #define LUXFER_LINES_REGIONS 0
 
-/** The paper's method: gradient-restricted Hough transform of Canny edges. */
+/**
+ * The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for lines
+ * nearly perpendicular to its gradient.
+ */
 #define LUXFER_LINES_HOUGH 1
 
-/** Finds three orthogonal directions and the focal length together, then refines each direction by itself. */
+/** Finds three orthogonal directions and the focal length together, then refines each direction with its own lines. */
 #define LUXFER_SEARCH_MANHATTAN 0
 
 /**
  * The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
- * earlier one.
+ * earlier vanishing point.
  */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
@@ -197,24 +212,27 @@ typedef struct luxfer_rectify_report {
  */
 #define LUXFER_METRIC_SEGMENT 0
 
-/**
- * The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected segment.
- */
+/** The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected segment. */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
 /** Set by the caller. */
 #define LUXFER_FOCAL_GIVEN 0
 
-/** Estimated from vanishing points of orthogonal directions. */
+/** Estimated, mainly from the vanishing points of orthogonal directions. */
 #define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
 
-/** Assumed: 0.85 times the width of the photo. */
+/**
+ * Mainly assumed: a usual value, 0.85 times the width of the photo, has a greater weight than the estimate from
+ * vanishing points.
+ */
 #define LUXFER_FOCAL_ASSUMED 2
 
 /** Mainly from the metadata of the photo's file; see luxfer_image_get_metadata. */
 #define LUXFER_FOCAL_FROM_METADATA 3
 
-/** Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer only). */
+/**
+ * Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting transfer only).
+ */
 #define LUXFER_FOCAL_FROM_LAMPS 4
 
 /** The plane in frontal view, linear RGB. */
@@ -240,8 +258,8 @@ luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
  * Starts a job that finds lines, vanishing points and the camera, and unwarps the plane if its mask is set. If an
  * earlier job with equal settings has found the camera of this photo, the job uses that camera. params may be NULL
  * for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
- * LUXFER_DEGENERATE if there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with LUXFER_DEGENERATE
+ * if there are no lines, the mask is empty or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
  * setting is out of range.
  */
 luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
@@ -278,11 +296,10 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
 /* ====================================================================================================================
  * Features
  *
- * Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
- * position x, y, z and normal x, y, z. The depth comes from one of four sources: a depth map that the caller
- * supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found
- * by a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the
- * photo.
+ * Computes ten values for each pixel of a photo, its features, by which segmentation compares pixels: colour, depth,
+ * position and normal. The depth comes from the first source that is available: (1) a depth map of the caller; (2) a
+ * network in an ONNX file; (3) a box-shaped room, which is fitted to the lines that a luxfer_rectify has found and to
+ * strokes on one plane of the room; (4) a fixed default that does not depend on the photo.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -292,8 +309,8 @@ typedef struct luxfer_features luxfer_features;
 typedef int32_t luxfer_depth_kind;
 
 /**
- * How the photo's colours are normalised for a network: a LUXFER_NORMALISATION_ value. An ONNX file does not state
- * it.
+ * How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
+ * does not state it.
  */
 typedef int32_t luxfer_normalisation;
 
@@ -302,8 +319,9 @@ typedef struct luxfer_features_params {
     /** sizeof(luxfer_features_params), set by luxfer_features_params_init. */
     uint32_t struct_size;
     /**
-     * Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
-     * unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this plane.
+     * Distance of the near plane, where the depth channel is 0, in [1e-3, 1e3]; default 1. All depths are multiplied
+     * by one factor, so that the nearest part of the photo (the 2 % quantile of its depths) lies on this plane. The
+     * unit of length is therefore arbitrary.
      */
     float near_plane;
     /**
@@ -312,8 +330,8 @@ typedef struct luxfer_features_params {
      */
     float far_plane;
     /**
-     * Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in [0, 64];
-     * default 0: chosen by the photo's size.
+     * Half the width, in pixels, of the square window around a pixel in which a plane is fitted to find the normal of
+     * the pixel; in [0, 64]. 0, the default: 1 % of the photo's width, but at least 2 and at most 64.
      */
     uint32_t normal_radius;
 } luxfer_features_params;
@@ -350,15 +368,21 @@ typedef struct luxfer_features_report {
 /** Distance along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
-/** The ten channels of the features; luxfer_image_read reads up to four of them at a time. */
+/**
+ * The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
+ * the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
+ * near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
+ * those of the camera or, after luxfer_features_set_view, those of the room. luxfer_image_read reads up to four
+ * channels at a time.
+ */
 #define LUXFER_FEATURES_CHANNELS 0
 
 /** Confidence of the depth of each pixel, in [0, 1]; 1 channel. */
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
 /**
- * The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1 channel. Set it
- * as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
+ * The distance along the viewing axis that a network has estimated, in [near_plane, far_plane]; 1 channel. Set it as
+ * the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
  */
 #define LUXFER_FEATURES_NETWORK_DEPTH 2
 
@@ -405,12 +429,12 @@ luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_depth_kind kind);
 
 /**
- * Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
- * input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096. Its first output is a map of
- * relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on near_plane
- * and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
- * The call reads the file, which is not needed afterwards. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
+ * Sets a network in an ONNX file, which estimates the depth if there is no depth map; path is UTF-8. The network has
+ * one input: the photo as a float tensor [1, 3, rows, columns], with up to 4096 rows and columns. Its first output is
+ * a map of relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on
+ * near_plane and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no
+ * network. The call reads the file, which is not needed afterwards. Any thread.
+ * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged; LUXFER_UNSUPPORTED if it needs an operator
  * that the library does not support, or if the library was built without the Cargo feature onnx.
  */
 luxfer_status luxfer_features_set_network(luxfer_features *features,
@@ -427,10 +451,10 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
 
 /**
  * Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
- * prefers a room in which one surface, such as the ceiling, contains all positive strokes, those of
- * LUXFER_PHASE_PLANE and of LUXFER_PHASE_LIGHTS, and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes
- * have no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes;
- * NULL removes them. Any thread.
+ * prefers rooms in which one surface, such as the ceiling, contains all positive strokes (of both phases,
+ * LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes have
+ * no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL
+ * removes them. Any thread.
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
@@ -481,13 +505,17 @@ typedef int32_t luxfer_subject;
 typedef struct luxfer_segment_params {
     /** sizeof(luxfer_segment_params), set by luxfer_segment_params_init. */
     uint32_t struct_size;
-    /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
+    /**
+     * Maximum number of pixels that are drawn as samples from the strokes of each class, in [1, 1000000]; default
+     * 1000.
+     */
     uint32_t samples_per_class;
     /**
      * Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
      * tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
-     * smallest error on held-out strokes. With another number of channels, 0 uses all channels. For lights use 7,
-     * colour only, since lights and plane have one geometry.
+     * smallest error on held-out strokes. Sets with position are left out if the mask will be restricted to a wall,
+     * floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. For
+     * lights use 7, colour only, since lights and their plane have the same geometry.
      */
     uint32_t channels;
     /**
@@ -548,8 +576,8 @@ typedef struct luxfer_segment_report {
 #define LUXFER_SEGMENT_CONFIDENCE 1
 
 /**
- * The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is high, another
- * stroke helps.
+ * How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions that resemble
+ * the painted lamps but not closely enough for the mask, else 0. Where it is high, another stroke helps.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
@@ -560,9 +588,10 @@ typedef struct luxfer_segment_report {
 #define LUXFER_SUBJECT_AUTO 0
 
 /**
- * A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
- * restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of
- * these, the mask is restricted to its connected parts that positive strokes touch.
+ * A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
+ * of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
+ * ceiling that the positive strokes lie on. If they lie on more than one of these, it is restricted to the connected
+ * parts of the mask that positive strokes touch.
  */
 #define LUXFER_SUBJECT_SURFACE 1
 
@@ -641,24 +670,24 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
 typedef int32_t luxfer_emission_law;
 
 /**
- * The law that predicts the lamps of the photo best. LUXFER_LAW_CORRELATION is used unless another law is clearly
- * better.
+ * In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
+ * unless another law predicts the lamps clearly better.
  */
 #define LUXFER_LAW_BEST 0
 
 /**
- * The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a shift by
- * this period is at least min_regularity of luxfer_emission_params.
+ * In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the correlation
+ * after a shift by this period is at least the setting min_regularity.
  */
 #define LUXFER_LAW_CORRELATION 1
 
 /** The lamps form a lattice with two periods. */
 #define LUXFER_LAW_LATTICE 2
 
-/** The lamps form a row with one period; the extent of the exemplar serves as the other period. */
+/** The lamps form a row with one period. Across the row, the strip that the exemplar shows is repeated edge to edge. */
 #define LUXFER_LAW_ROW 3
 
-/** The exemplar repeats as a whole, edge to edge. */
+/** The exemplar repeats as a whole, edge to edge, in both directions. */
 #define LUXFER_LAW_WHOLE 4
 
 /** The lights have no period: patches of the exemplar are placed anywhere in the texture. */
@@ -671,7 +700,7 @@ typedef int32_t luxfer_emission_law;
  * Emission
  *
  * Synthesises an emissive texture of any size and lists its luminaires. The texture continues the light pattern of an
- * exemplar, which is an unwarped photo of a plane with lamps.
+ * exemplar: an unwarped photo of a plane with lamps, as luxfer_rectify makes it.
  * ==================================================================================================================== */
 
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
@@ -686,11 +715,11 @@ typedef struct luxfer_emission_params {
     /** Height of the texture in texels, in [1, 65536]; default 1024. */
     uint32_t height;
     /**
-     * Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its reduction to
-     * working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights.
+     * Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from the
+     * spacing of the lights. It is in pixels of the exemplar after its reduction to working_side.
      */
     uint32_t block;
-    /** Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
+    /** Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1. */
     double scale;
     /**
      * Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
@@ -699,15 +728,15 @@ typedef struct luxfer_emission_params {
     uint32_t working_side;
     /**
      * Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
-     * in [0, 1e3]; default 1; 0 is plain image quilting.
+     * in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting.
      */
     float metadata_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
      * The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
-     * 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
-     * anywhere.
+     * 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and patches
+     * may lie anywhere.
      */
     float min_regularity;
     /** 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps. */
@@ -728,8 +757,8 @@ typedef struct luxfer_emission_params {
     uint32_t even_lamps;
     /**
      * 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
-     * edge. A lattice is stretched until whole periods fit, by less than half a period over the whole texture. Needs
-     * whole_lamps. Default 0.
+     * edge. A lattice is stretched so that a whole number of periods fits; the width and the height of the pattern
+     * change by less than half a period. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
@@ -738,8 +767,9 @@ typedef struct luxfer_emission_params {
      */
     uint32_t centred;
     /**
-     * Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
-     * lattice, in [1, 65536]; default 192.
+     * Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if the
+     * lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are compared
+     * in addition.
      */
     uint32_t candidates;
     /** Must be 0. */
@@ -750,15 +780,16 @@ typedef struct luxfer_emission_params {
      */
     luxfer_emission_law law;
     /**
-     * 1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same outline,
-     * which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the photo and
-     * whole_lamps. 0: each lamp has the outline that the mask gives.
+     * 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses are
+     * drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on their lattice.
+     * This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
      */
     uint32_t clean_lamps;
     /**
-     * Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left out,
-     * as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of unwarped
-     * pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar.
+     * Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left out, as
+     * if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant parts of the
+     * plane: the magnification is the number of unwarped pixels per photo pixel, along one side, divided by its
+     * smallest value in the exemplar.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -772,8 +803,9 @@ static inline luxfer_status luxfer_emission_params_init(luxfer_emission_params *
 typedef int32_t luxfer_emission_image;
 
 /**
- * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality.
- * For a plan (luxfer_emission_start_plan), only the fields that need no texels are set.
+ * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
+ * plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error is 0. If there are
+ * several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
  */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
@@ -781,41 +813,49 @@ typedef struct luxfer_emission_report {
     /** Number of luminaires in the texture; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area
-     * of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
-     * exemplar_lamps is small. NaN for a plan, which has no texels yet.
+     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
+     * whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %. It means
+     * little if exemplar_lamps is small. NaN for a plan.
      */
     double error;
     /**
-     * Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
+     * Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two periods the
+     * lower value. 0 if the lights have no period, or if the period was found from the distances between lamps.
      */
     double regularity;
     /**
-     * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts
-     * many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they are
-     * completed to rectangles if clean_lamps is 1.
+     * Number of whole lamps in the exemplars. If it is below six, the statistics in the field error are unreliable,
+     * because the border then cuts a large share of the lamps. If there is no whole lamp, the texture is made from the
+     * lamps that the border cuts; with clean_lamps, they are completed to rectangles unless the photo contradicts
+     * this.
      */
     uint32_t exemplar_lamps;
     /**
      * Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-     * ceiling: the root mean square difference of the statistics between the whole texture and parts of it that are
-     * as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0 for
-     * LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for blended exemplars, and for a plan.
+     * ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
+     * of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
+     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a plan, and if
+     * the texture is hardly larger than the exemplar.
      */
     float sampling_error;
     /** The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value. */
     luxfer_emission_law law;
-    /** The law with the best score among all laws that were not chosen: a LUXFER_LAW_ value. */
+    /**
+     * The law with the best score among the laws that were not chosen: a LUXFER_LAW_ value. It equals the field law if
+     * the two laws differ only in their periods, or if no other law was compared.
+     */
     luxfer_emission_law runner_up;
     /**
-     * Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps. Lamps
-     * weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example because too
-     * few of the lights are whole lamps.
+     * Score of the chosen law, in [0, 1]: how well it predicts the position of each lamp of the photo from the other
+     * lamps. Lamps weigh in proportion to their pixels in the photo. LUXFER_LAW_WHOLE and LUXFER_LAW_FREE predict
+     * nothing and have a fixed score. NaN if no score was computed, for example because too few of the lights are
+     * whole lamps.
      */
     double law_score;
     /**
-     * law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores slightly
-     * better.
+     * law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen although
+     * runner_up scores slightly better: LUXFER_LAW_BEST prefers the law of LUXFER_LAW_CORRELATION, and lattices along
+     * the axes of the room.
      */
     double margin;
 } luxfer_emission_report;
@@ -828,13 +868,13 @@ typedef struct luxfer_luminaire {
     uint32_t corners;
     /** Centre in texels, x and y. */
     double centre[2];
-    /** Lengths of the principal axes in texels, the longer first. */
+    /** Extents of the lamp along its two principal axes, in texels, the longer one first. */
     double size[2];
-    /** Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]. */
+    /** Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2]. */
     double orientation;
-    /** Area in square texels; texels at the edge count with the share that the lamp covers. */
+    /** Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers. */
     double area;
-    /** Share of the luminous flux of all lamps of the texture, in [0, 1]. */
+    /** This lamp's share of the luminous flux of all lamps of the texture, in [0, 1]. */
     double flux_share;
     /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
@@ -852,15 +892,17 @@ typedef struct luxfer_luminaire {
 #define LUXFER_EMISSION_MASK 1
 
 /**
- * The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a pixel
- * shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3 channels, at the
- * resolution that working_side gives.
+ * The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
+ * resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
+ * the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
+ * and clamped to [-1, 1]. L is the side of a patch or, if the lights have periods, half the longer period if that is
+ * shorter.
  */
 #define LUXFER_EMISSION_EXEMPLAR_METADATA 2
 
 /**
- * The guide channels of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch in the
- * same way as the colours of the texture.
+ * The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
+ * copied with the patches that give the texture its colours.
  */
 #define LUXFER_EMISSION_METADATA 3
 
@@ -869,9 +911,9 @@ luxfer_status luxfer_emission_create(luxfer_context *context,
                                      luxfer_emission **emission);
 
 /**
- * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
- * (1 channel, in [0, 1]) and the mask of the pixels where both images are valid (1 channel, 1 or 0).
- * luxfer_emission_add_style adds more exemplars. Any thread.
+ * Sets the exemplar: three images of one size. unwarped is the unwarped photo (linear RGB). light is the unwarped mask
+ * of the lights: the confidence that a pixel shows a light (1 channel, in [0, 1]). valid is 1 at the pixels where both
+ * other images are valid, else 0 (1 channel). luxfer_emission_add_style adds more exemplars. Any thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -891,24 +933,24 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
  * Starts a job that makes the whole texture in memory. For textures that are too large for that, use
  * luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
- * LUXFER_DEGENERATE if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
- * range.
+ * LUXFER_DEGENERATE if the exemplar has no lights, or not the lattice or row that the setting law asks for;
+ * LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
                                     luxfer_job **job);
 
 /**
- * Gets the image of the texture that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
+ * Gets the image that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later plan has replaced its texture.
  */
 luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_emission_image kind,
                                         luxfer_image **image);
 
 /**
- * Gets the quality of the texture. For a plan (luxfer_emission_start_plan), only the fields that need no texels are
- * set. size is sizeof *report. Any thread.
+ * Gets the description of the texture, or of the plan after luxfer_emission_start_plan. size is sizeof *report. Any
+ * thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
@@ -916,10 +958,11 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          size_t size);
 
 /**
- * Describes a luminaire of the texture; index starts at 0. After luxfer_emission_start_plan there are no texels yet,
- * so a luminaire is described as it appears in the exemplar, cut at the edges of the texture; only lights that run
- * through the whole exemplar, such as light bands, are described as the texture will show them. size is sizeof
- * *luminaire. Any thread.
+ * Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
+ *
+ * A plan (luxfer_emission_start_plan) has no texels yet. Its luminaires are measured in the exemplar, and cut at the
+ * edges of the texture. Only lights that are copied patch by patch are measured as the texture will show them: lights
+ * that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -931,11 +974,11 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
  * Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
  *
  * The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
- * the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels are
- * larger than texels, these figures are in unwarped pixels.
+ * the sides of the outline are accurate to a quarter of a texel, and its corners to 0.71 texels. If unwarped pixels
+ * are larger than texels, these figures are in unwarped pixels.
  *
- * In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only
- * 0 and 1, and for lights of a plan that run through the whole exemplar.
+ * In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
+ * and 1, and for lights of a plan that are copied patch by patch (see luxfer_emission_get_luminaire).
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
@@ -947,9 +990,10 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
 /* ====================================================================================================================
  * Styles and tiles
  *
- * Textures from several exemplars, and textures that are too large to make as a whole. For such large textures,
- * luxfer_emission_start_plan decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of
- * the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
+ * luxfer_emission_add_style adds exemplars, whose lights are then mixed in one texture. Textures that are too large to
+ * make as a whole are made in tiles: luxfer_emission_start_plan decides where every lamp lies, and
+ * luxfer_emission_render_tile renders any rectangle of the texture. A plan holds the exemplars, the place of each lamp
+ * and the outlines of the patches, but no texels.
  * ==================================================================================================================== */
 
 /**
@@ -960,9 +1004,12 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
  *
  * The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
  * added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
- * gets the remaining weight. Each lamp of the texture comes from one exemplar, chosen at random with the weights as
- * probabilities, so that the light per area blends linearly. The lattice of each exemplar keeps its own period and
- * phase.
+ * gets the remaining weight.
+ *
+ * Each lamp of the texture comes from one exemplar, chosen at random with the weights at the lamp's centre as
+ * probabilities. On average, the light per area is therefore the weighted mean of the exemplars. Lights that run
+ * beyond the border of their exemplar are not chosen at random; they are dimmed by their exemplar's weight instead.
+ * The lattice of each exemplar keeps its own period and phase.
  */
 luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
                                         luxfer_image *unwarped,
@@ -978,20 +1025,20 @@ luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 
 /**
  * Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
- * texture that luxfer_emission_start has made. params, and the statuses of the call and the job, are as for
- * luxfer_emission_start. luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan.
- * The caller releases *job. Any thread.
+ * texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
+ * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the plan and its lamps. The caller releases
+ * *job. Any thread.
  */
 luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
                                          const luxfer_emission_params *params,
                                          luxfer_job **job);
 
 /**
- * Renders a rectangle of a planned texture: width x height texels, of which the top-left one is texel (x, y) of the
- * texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the
- * bit to the texture and mask of luxfer_emission_start, whatever the sizes of the tiles and the order in which they
- * are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads
- * may render tiles at the same time.
+ * Renders a rectangle (a tile) of a planned texture: width x height texels, of which the top-left one is texel (x, y)
+ * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
+ * the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
+ * they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
+ * threads may render tiles at the same time.
  * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
  * is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -1080,19 +1127,23 @@ typedef struct luxfer_relight_report {
     double delta_e;
 } luxfer_relight_report;
 
-/** Light that the target surface reflects, its albedo included: the radiance that a photo shows. */
+/**
+ * Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of a matt
+ * surface.
+ */
 #define LUXFER_QUANTITY_OUTGOING 0
 
 /** Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
-/** By the mean over the target surface. */
+/** The mean of the light over the target surface should equal the target value. */
 #define LUXFER_FIT_MEAN 0
 
 /**
- * At every point of the target surface, by least squares, as gradient descent on texels does. Bright points count
- * more, so the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor
- * 1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it receives.
+ * The sum, over all points of the target surface, of the squared difference between light and target value should be
+ * smallest. A gradient descent on the texels of the emission has this aim too. Bright points count more, so the
+ * emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
+ * the coefficient of variation of the light over the target surface.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
@@ -1111,22 +1162,30 @@ typedef struct luxfer_relight_report {
 /** The target is met. */
 #define LUXFER_OUTCOME_MET 0
 
-/** The other lights alone exceed the target: the emission is 0 in this channel. */
+/**
+ * The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals
+ * contradict each other.
+ */
 #define LUXFER_OUTCOME_TOO_BRIGHT 1
 
-/** No light of this channel reaches the target: the emission uses the mean scale of the other channels. */
+/**
+ * No light of this channel reaches the target: the channel gets the mean scale of the channels that meet the target.
+ */
 #define LUXFER_OUTCOME_DARK 2
 
-/** All lamps at their largest power are too weak, or two goals contradict each other. */
+/**
+ * All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps.
+ */
 #define LUXFER_OUTCOME_TOO_DIM 3
 
 /** Creates a relighting. It has no inputs yet. The caller releases *relight. Any thread. */
 luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);
 
 /**
- * Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. The
- * solution is a factor for the emission that the material has in the scene. luxfer_scene_place_emission returns the
- * index of such a material, and the index of a mesh that can serve as the target. Any thread.
+ * Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match. Points of
+ * the mesh that emit light are left out. The solution is a factor for the emission that the material has in the scene.
+ * luxfer_scene_place_emission returns the index of such a material, and the index of a mesh that can serve as the
+ * target. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
@@ -1159,8 +1218,8 @@ luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
  * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
  * caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
- * LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
- * setting is out of range.
+ * LUXFER_UNREACHABLE if no emitted light reaches the target or the other lights alone exceed it, LUXFER_DEGENERATE if
+ * the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,

@@ -50,34 +50,44 @@ static inline luxfer_status luxfer_guides_params_init(luxfer_guides_params *plac
     return luxfer_init(LUXFER_STRUCT_GUIDES_PARAMS, place, size);
 }
 
-/** A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m². */
+/**
+ * A guide image: a LUXFER_GUIDES_ value. Guide images of light are linear RGB in cd/m². The expressions in parentheses
+ * describe their light paths: L is a light, D a diffuse reflection, S a reflection or transmission at a glossy
+ * surface, mirror or clear pane, E the camera.
+ */
 typedef int32_t luxfer_guides_image;
 
-/** All light, reflected any number of times. */
+/** All light (L.*E): lights that are seen directly, and light that is reflected or transmitted any number of times. */
 #define LUXFER_GUIDES_FULL 0
 
 /** Light reflected once, by a diffuse surface (LDE). */
 #define LUXFER_GUIDES_DIRECT 1
 
-/** Light that comes by way of one glossy surface, mirror or clear pane (LSE). */
+/** Light reflected or transmitted once, at a glossy surface, mirror or clear pane (LSE). */
 #define LUXFER_GUIDES_SPECULAR 2
 
 /** Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding. */
 #define LUXFER_GUIDES_INDIRECT 3
 
-/** Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows. */
+/** Light reflected once or twice, by diffuse surfaces (LD{1,2}E): unlike direct light, it shows detail in shadows. */
 #define LUXFER_GUIDES_TWO_BOUNCES 4
 
-/** Normals in camera space: x right, y up, z towards the camera; 3 channels. */
+/** Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3 channels. */
 #define LUXFER_GUIDES_NORMALS 5
 
-/** Edges of shapes, in [0, 1]; 1 channel. */
+/** Edges of shapes: 1 on an edge, 0 away from edges; 1 channel. */
 #define LUXFER_GUIDES_EDGES 6
 
-/** A colour code for each material, derived from its name; 3 channels. */
+/**
+ * A colour for each material, derived from its name, so that materials of equal name match in all scenes; black where
+ * there is no surface; 3 channels.
+ */
 #define LUXFER_GUIDES_MATERIALS 7
 
-/** Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes (LS+DE). */
+/**
+ * Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces, mirrors or clear
+ * panes (LS+DE).
+ */
 #define LUXFER_GUIDES_CAUSTICS 8
 
 /** Creates an object that renders guides. It has no inputs yet. The caller releases *guides. Any thread. */
@@ -104,16 +114,16 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
                                       luxfer_image **image);
 
 /**
- * Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides is
- * the current frame; the parameter previous is the frame before it. For each pixel of the current frame, the image motion
- * holds the offset, x and y in pixels, to the position of the pixel's surface point in the previous frame; NaN where
- * the previous frame does not show the point. The caller releases *motion. Any thread.
+ * Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides
+ * holds the current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the
+ * current frame, the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the
+ * previous frame. It is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
  *
- * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes of
- * equal name and with equal triangle indices count as one object; if several meshes share name and triangles, they
- * correspond in their order. If an object has no counterpart in the previous frame, its motion is NaN, and
- * luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane itself,
- * not of the objects that are seen in it.
+ * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
+ * the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and
+ * both frames have the same number of them, they correspond in their order. If an object has no counterpart in the
+ * previous frame, its motion is NaN, and luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has
+ * the motion of the mirror or pane itself, not of the objects that are seen in it.
  * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
@@ -123,8 +133,8 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
 /* ====================================================================================================================
  * Settings of a stylisation
  *
- * Presets and settings. The defaults were chosen from the curves of quality against time that benches/stylit.rs
- * draws.
+ * Presets and settings. "The paper" is Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based Stylization of 3D
+ * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ==================================================================================================================== */
 
 /** How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value. */
@@ -154,7 +164,10 @@ typedef struct luxfer_stylize_params {
      * 1e6]; default 2.
      */
     float guide_weight;
-    /** Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. */
+    /**
+     * Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The coarsest
+     * level is at least 5 patches wide and high.
+     */
     uint32_t levels;
     /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
     uint32_t iterations;
@@ -183,8 +196,9 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t settle;
     /**
-     * Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It applies
-     * to the sweeps after each matching; see settle.
+     * Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between two
+     * neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the sweeps
+     * after each matching; see settle.
      */
     float seam;
     /**
@@ -226,10 +240,11 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t coarse_iterations;
     /**
-     * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; 0
-     * is LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a
-     * patch of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
-     * differences of channels in [0, 1] (Eq. 1).
+     * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
+     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty
+     * is added to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over
+     * the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
+     * lambda.
      */
     float occurrence;
     /** Must be 0. */
@@ -265,7 +280,10 @@ typedef int32_t luxfer_stylize_preset;
 /** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
 #define LUXFER_STYLIZE_MODE_NEAREST 2
 
-/** Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread. */
+/**
+ * One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour (Hertzmann
+ * et al. 2001); runs on one thread.
+ */
 #define LUXFER_STYLIZE_MODE_GREEDY 3
 
 /**
@@ -280,7 +298,7 @@ typedef int32_t luxfer_stylize_preset;
  */
 #define LUXFER_STYLIZE_MODE_OCCURRENCE 5
 
-/** PatchMatch, the default. */
+/** PatchMatch (Barnes et al. 2009), the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
 
 /** A k-d tree over the mean colours and guides of patches. */
@@ -305,10 +323,10 @@ typedef int32_t luxfer_stylize_preset;
 #define LUXFER_STYLIZE_VOTE_MOST 3
 
 /**
- * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST, in the proportion that gives each place of the
- * picture as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
- * transitions in smooth paint, and edges as sharp as in the artwork. luxfer_stylize_report.whole is the share of whole
- * pixels.
+ * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST. The proportion varies, so that each place of the
+ * picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
+ * pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
+ * luxfer_stylize_report.whole is the share of whole pixels.
  */
 #define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 
@@ -357,7 +375,10 @@ typedef struct luxfer_stylize luxfer_stylize;
 /** How the values of a guide are compared: a LUXFER_GUIDE_ value. */
 typedef int32_t luxfer_guide_range;
 
-/** Linear light >= 0, such as a rendering; its values are compared as they would look on a screen. */
+/**
+ * Linear light >= 0, such as a rendering. Its values are clipped at white (1) and compared in the sRGB encoding. If
+ * the 99.9th percentile of source and target together exceeds 1, all values are divided by this percentile first.
+ */
 #define LUXFER_GUIDE_LIGHT 0
 
 /**
@@ -400,10 +421,10 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
  * Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
  * paint. Any thread.
  *
- * The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure,
- * under the names "full", "direct", "specular", "indirect" and "two bounces", each with weight 1. For each of the
- * LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics", "normals", "edges" or "materials", each with
- * weight extra_weight, in [0, 1e6].
+ * The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure:
+ * the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",
+ * "indirect" and "two bounces", and each has weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the
+ * guide "caustics", "normals", "edges" or "materials", each with weight extra_weight, in [0, 1e6].
  * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
  * range.
  */
@@ -434,8 +455,8 @@ luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
                                              luxfer_image *known);
 
 /**
- * Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame
- * moves with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. It is found anew where the
+ * Makes each job start from the previous result, for the frames of an animation. The paint of the previous frame moves
+ * with the surfaces and stays where it fits; see luxfer_stylize_params.coherence. The paint is found anew where the
  * light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
  *
  * The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
@@ -479,9 +500,9 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  *
  * The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
  * the inverse mask and the artwork. The painted pixels stay as they are. The new paint continues strokes across the
- * border of the painted part and joins it almost without a step, and hardly any patch of the artwork is used more than
- * 100 times as often as the mean. If the painted part lacks light that the rest shows, the result has the warning
- * LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
+ * border of the painted part, and at this border its colours change hardly more abruptly than elsewhere. Hardly any
+ * patch of the artwork is used more than 100 times as often as the mean. If the painted part lacks light that the rest
+ * shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */
@@ -516,8 +537,9 @@ typedef struct luxfer_stylize_report {
     /** Number of uses of the exemplar patch that was used most often. */
     uint32_t max_uses;
     /**
-     * Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All channels
-     * of the artwork together have the weight 1, all guides together have the weight guide_weight.
+     * Mean squared difference of matched patches after the last round (Fiser et al. 2016, Eq. 3), with channels in [0,
+     * 1]. All channels of the artwork together have the weight 1. All guides together have the weight guide_weight;
+     * before the finest level is finished, they have guide_weight * coarse_guides.
      */
     double energy;
     /** Share of the exemplar patches that were used, in [0, 1]. */
@@ -543,7 +565,10 @@ typedef struct luxfer_stylize_round {
     uint32_t struct_size;
     /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
     uint32_t passes;
-    /** Energy after this round, defined as for luxfer_stylize_report.energy. */
+    /**
+     * Energy after this round, as luxfer_stylize_report.energy. On all levels but the finest, all guides together have
+     * the weight guide_weight * coarse_guides.
+     */
     double energy;
 } luxfer_stylize_round;
 
@@ -571,8 +596,8 @@ typedef struct luxfer_stylize_pass {
 #define LUXFER_STYLIZE_IMAGE_PICTURE 0
 
 /**
- * Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from which the
- * pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
+ * Weighted root mean square difference, in [0, 1], between the guides at a pixel and the guides at the place in the
+ * exemplar from which the pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
  */
 #define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
 
@@ -683,7 +708,7 @@ typedef struct luxfer_sheet_report {
      * predicts for them. If it is more than one or two pixels, the paper is not flat or the lens distorts.
      */
     double residual;
-    /** Expected alignment error in pixels of the picture. */
+    /** Expected alignment error in pixels of the picture, from the residual and the number of marks. */
     double error;
     /** Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row. */
     double to_photo[9];

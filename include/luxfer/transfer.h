@@ -17,7 +17,8 @@ extern "C" {
 /* ====================================================================================================================
  * Pattern
  *
- * Places the light pattern of a transfer on the surface: its size, rotation and offset, and the areas without lamps.
+ * Settings for the layout of a transfer's light pattern on the surface: its size, rotation and offset, and the areas
+ * without lamps.
  * ==================================================================================================================== */
 
 /** Choice of the length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value. */
@@ -38,21 +39,22 @@ typedef struct luxfer_pattern_params {
      */
     double length;
     /**
-     * Side of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, but not so fine that the
-     * texture exceeds max_texels of luxfer_transfer_params.
+     * Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or a
+     * larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. A size with which the
+     * texture exceeds max_texels is an error.
      */
     double texel_size;
     /** Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double rotation;
     /**
-     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only:
-     * lamps without a lattice have no fixed places and are not shifted.
+     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice have
+     * no fixed places: for them, a shift other than 0 is an error unless the texture is tileable.
      */
     double offset[2];
     /**
      * Minimum distance in metres of lamps from the edge of the surface and from the zones of
      * luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the
-     * default -1, lamps at the edge of the surface are kept, and the edge cuts them.
+     * default -1, only lamps that touch a zone are left out, and the edge of the surface cuts lamps.
      */
     double margin;
 } luxfer_pattern_params;
@@ -68,12 +70,16 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
  */
 #define LUXFER_PATTERN_DISTANCE 0
 
-/** The length of the lamps: on the surface, luxfer_pattern_params.length is the median of their longer sides. */
+/**
+ * The length of the lamps: the pattern is scaled until the median of their longer sides is
+ * luxfer_pattern_params.length.
+ */
 #define LUXFER_PATTERN_LAMP 1
 
 /**
- * The spacing of the lamps: on the surface, luxfer_pattern_params.length is the shorter period of their lattice or,
- * without a lattice, the median distance from a lamp to its nearest neighbour.
+ * The spacing of the lamps: the pattern is scaled until this spacing is luxfer_pattern_params.length. The spacing is
+ * the shorter period of the lamps' lattice or, without a lattice, the median distance from a lamp to its nearest
+ * neighbour.
  */
 #define LUXFER_PATTERN_SPACING 2
 
@@ -104,15 +110,15 @@ typedef struct luxfer_transfer_params {
     /** Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048. */
     uint32_t max_texels;
     /**
-     * Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]; it sets the scale of
-     * the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles.
-     * luxfer_transfer_report states the distance and its error.
+     * Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]. With
+     * LUXFER_PATTERN_DISTANCE, it sets the scale of the pattern. 0, the default: estimated from the size of the lamps,
+     * which are mostly made to fit ceiling tiles. luxfer_transfer_report states the distance and its error.
      */
     double plane_distance;
     /**
-     * Luminance in cd/m² of the photo's white, in [1e-6, 1e9]; default 100, the luminance of matt white paper in 314
-     * lux. The strength of the lamps is proportional to it. A photo alone does not determine this luminance: see
-     * proposed_white of luxfer_transfer_report.
+     * Luminance in cd/m² of the photo's white (value 1), in [1e-6, 1e9]; default 100, the luminance of matt white
+     * paper in 314 lux. The strength of the lamps is proportional to it. A photo alone does not determine this
+     * luminance: see proposed_white of luxfer_transfer_report.
      */
     float white_luminance;
     /** Part of the photo whose mean colour is matched: a LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
@@ -237,8 +243,8 @@ luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
 
 /**
  * Sets the strokes on the photo, for the mask of the plane and the mask of the lights. Strokes on lights count as
- * strokes on the plane too. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no
- * strokes. Any thread.
+ * strokes on the plane too. Strokes for the plane serve as negative strokes for the lights, except where they cross
+ * lights. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
  */
 luxfer_status luxfer_transfer_set_strokes(luxfer_transfer *transfer,
@@ -287,12 +293,14 @@ luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
                                        luxfer_image *mask);
 
 /**
- * Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included. All
- * stages before these must have results. Stages that have ended keep their results even if the job fails. params may
- * be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that runs all stages from the stage first to the stage last, LUXFER_STAGE_ values, both included.
+ * Results of earlier stages that these stages use must exist, from an earlier job or from a luxfer_transfer_use_
+ * function. Stages that have ended keep their results even if the job fails. params may be NULL for the defaults. The
+ * caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
  * LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with any status with which a stage
- * may end; the message names the stage. The job ends at once if the scene does not have the surface.
+ * may end; the message names the stage. If EMISSION is one of the stages and the scene lacks the surface, the job ends
+ * before the first stage.
  */
 luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     luxfer_stage first,
@@ -322,7 +330,7 @@ typedef struct luxfer_transfer_report {
      * ended.
      */
     uint32_t fixtures;
-    /** Duration of each stage's last run in seconds; the index is the LUXFER_STAGE_ value. */
+    /** Duration of each stage's last run in seconds, 0 without a run; the index is the LUXFER_STAGE_ value. */
     double seconds[8];
     /** Largest standard deviation of the directions of the vanishing points, in radians. */
     double view_error;
@@ -350,8 +358,9 @@ typedef struct luxfer_transfer_report {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as they
-     * are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the texture.
+     * Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo are as
+     * large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the caller gave
+     * the texture.
      */
     double plane_distance;
     /**
@@ -393,7 +402,7 @@ typedef struct luxfer_fixture {
     float normal[3];
     /** Unit vector along the lamp's long axis. */
     float axis[3];
-    /** Mean luminance of the lamp per channel in cd/m². */
+    /** Mean emission of the lamp: linear RGB in cd/m². */
     float radiance[3];
     /** Number of the lamp's kind, as in luxfer_luminaire. */
     uint32_t kind;
@@ -401,7 +410,7 @@ typedef struct luxfer_fixture {
     double size[2];
     /** Area in m². */
     double area;
-    /** Luminous flux in lumens. */
+    /** Luminous flux in lumens: pi * luminance * area, since the lamp is Lambertian. */
     double flux;
     /** Correlated colour temperature of the light in kelvin; 0 for a lamp that is off. */
     double cct;
@@ -448,13 +457,16 @@ typedef struct luxfer_fixture {
  */
 #define LUXFER_TRANSFER_RENDER_PREVIEW 11
 
-/** The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor. */
+/**
+ * The scene with the emission before the stage RELIGHT solves for its factor: the texture times white_luminance of
+ * luxfer_transfer_params, as bright as the lamps in the photo.
+ */
 #define LUXFER_SCENE_UNSOLVED 0
 
 /** The scene with the solved emission: the result. */
 #define LUXFER_SCENE_LIT 1
 
-/** The scene LUXFER_SCENE_LIT with white light of equal luminance. */
+/** The scene LUXFER_SCENE_LIT with white instead of coloured emission of equal luminance, for comparison. */
 #define LUXFER_SCENE_WHITE 2
 
 /**
@@ -486,8 +498,8 @@ luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer,
                                          size_t size);
 
 /**
- * Gets the camera that was found from the lines of the photo, and the unwarping of the plane. size is sizeof *view.
- * Any thread.
+ * Gets the camera of the photo, and the unwarping of the plane. The camera was found from the lines and the lamps of
+ * the photo, or set by luxfer_transfer_use_rectify. size is sizeof *view. Any thread.
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
 luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer,
@@ -549,7 +561,7 @@ typedef struct luxfer_warning {
      * LUXFER_STAGE_STYLIZE.
      */
     luxfer_stage stage;
-    /** 1 if the warning has a place in the photo, else 0. */
+    /** 1 if the warning points to a place, else 0. */
     uint32_t has_place;
     /**
      * The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
@@ -561,7 +573,10 @@ typedef struct luxfer_warning {
      * that the severity is below the limit.
      */
     double limit;
-    /** The place in the photo, x and y in pixels; 0 if the warning has no place. */
+    /**
+     * The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the target or,
+     * where the comment of the LUXFER_WARNING_ value says so, of the artwork. 0 if the warning has no place.
+     */
     double place[2];
     /**
      * The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
@@ -573,8 +588,8 @@ typedef struct luxfer_warning {
 } luxfer_warning;
 
 /**
- * The vanishing points do not determine the focal length, so it was assumed; the severity is the relative standard
- * deviation of the focal length.
+ * The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
+ * standard deviation of the focal length.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
 
@@ -585,8 +600,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_LENS_DISTORTION 3
 
 /**
- * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in
- * radians.
+ * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation of an
+ * angle between two room axes from a right angle, in radians.
  */
 #define LUXFER_WARNING_NOT_SQUARE 4
 
@@ -651,15 +666,19 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_FEW_LAMPS 16
 
-/** No lattice was found on which the lamps lie; the severity is luxfer_emission_report.error. */
+/**
+ * No lattice was found on which the lamps lie, and the texture differs from the photo; the severity is
+ * luxfer_emission_report.error.
+ */
 #define LUXFER_WARNING_NO_LATTICE 17
 
 /** Colour channels do not meet their target; the severity is the number of these channels. */
 #define LUXFER_WARNING_UNREACHABLE 18
 
 /**
- * The photo clips channels of the target colour, so the values of these channels are only lower bounds; the severity
- * is the number of these channels.
+ * Channels of the target colour are only lower bounds (LUXFER_CONSTRAINT_AT_LEAST). A transfer sets such a bound if
+ * the photo clips the channel in most pixels that the target colour is computed from. The severity is the number of
+ * these channels.
  */
 #define LUXFER_WARNING_TARGET_CLIPPED 19
 
@@ -709,33 +728,32 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_IN_PICTURE 26
 
 /**
- * The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their motion is
- * unknown: it is NaN. The severity is the share of the picture that shows these objects; the message names them. The
- * warning points to a pixel of the largest one.
+ * Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles there. Their
+ * motion is unknown and therefore NaN. The severity is the share of the picture that shows these objects; the message
+ * names them. The warning points to a pixel of the largest one.
  */
 #define LUXFER_WARNING_NO_COUNTERPART 27
 
 /**
- * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows
- * another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with
- * the exact motion of their scenes; otherwise the guides of data, such as object codes, normals or positions, are
- * compared along the motion, except in a preview, and guides of light alone find no error. The severity is the
- * share of these pixels among the pixels that were compared. The warning points to the pixel with the largest
- * error.
+ * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
+ * surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
+ * motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
+ * the motion; without such guides, or in a preview, no error is found. The severity is the share of pixels with wrong
+ * motion among the pixels that were compared. The warning points to the pixel with the largest error.
  */
 #define LUXFER_WARNING_MOTION_DISAGREES 28
 
 /**
- * The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow beside which
- * the artist of a half-painted picture has not painted yet. The new paint there is a guess. The severity is the
- * share of these pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to
- * the place of the target where most of them lie.
+ * The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
+ * painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of these
+ * pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
+ * the target where most of them lie.
  */
 #define LUXFER_WARNING_LIGHT_NOT_PAINTED 29
 
 /**
- * Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The severity is the
- * share of the exemplar with such light. The warning points to a place of the artwork with such light.
+ * Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
+ * the share of the exemplar with such light. The warning points to a place of the artwork with such light.
  */
 #define LUXFER_WARNING_AMBIGUOUS_PAINT 30
 
@@ -780,7 +798,7 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_emission: about the texture; a plan has no warnings;
  * - a luxfer_relight;
  * - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
- * - a luxfer_stylize: about the motion of its latest result;
+ * - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;
  * - a luxfer_scene: an implausible size, a place far from the origin, luminaires that are invisible in renderings,
  *   and features of its file that are not rendered.
  *

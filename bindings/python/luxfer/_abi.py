@@ -485,7 +485,8 @@ class luxfer_scene_counts(Structure):
 
 
 class luxfer_surface(Structure):
-    """A planar surface of a scene: triangles in one plane, and their bounding rectangle."""
+    """A planar surface of a scene: triangles in one plane, and their bounding rectangle. Seen from the room, u
+    runs to the right and v runs down, as in an image."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -890,7 +891,9 @@ class luxfer_emission_params(Structure):
 
 class luxfer_emission_report(Structure):
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. For a plan (luxfer_emission_start_plan), only the fields that need no texels are set."""
+    quality. A plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error
+    is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
+    the first one."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1271,7 +1274,8 @@ class luxfer_glare_report(Structure):
 
 
 class luxfer_observer(Structure):
-    """An observer: an eye that looks in a direction. An element of arrays, so this struct never changes."""
+    """An observer: an eye that looks in a direction. Callers pass arrays of this struct, so its size and fields
+    never change in later versions."""
 
     _fields_ = [
         ("position", c_float * 3),
@@ -1281,7 +1285,8 @@ class luxfer_observer(Structure):
 
 
 class luxfer_observer_glare(Structure):
-    """The glare that an observer experiences. An element of arrays, so this struct never changes."""
+    """The glare that an observer experiences. Callers pass arrays of this struct, so its size and fields never
+    change in later versions."""
 
     _fields_ = [
         ("ugr", c_double),
@@ -1377,9 +1382,9 @@ class luxfer_pendants_params(Structure):
 
 
 class luxfer_pendant(Structure):
-    """A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value,
-    the lower end and the upper end of the 95 % interval. If the photo does not determine a value, the value is
-    NaN and the interval holds what is known; its ends may be infinite."""
+    """A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value,
+    and the lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are
+    the known bounds, which may be 0 and infinity. A value without an estimate is NaN."""
 
     _fields_ = [
         ("struct_size", c_uint32),

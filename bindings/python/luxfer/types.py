@@ -42,8 +42,8 @@ class Status(IntEnum):
     NOT_FOUND = 12
     """No surface, image or entry has the given name or index."""
     UNREACHABLE = 13
-    """No light can reach the target: there is no light path, all light of a channel is absorbed, or negative
-    light would be needed."""
+    """No solution exists: no emitted light reaches the target, or the other lights alone exceed the wanted
+    value."""
 
 
 class Sample(IntEnum):
@@ -81,9 +81,9 @@ class FileColour(IntEnum):
     CONVERTED = 3
     """The file states another colour space. The colours were converted to linear Rec.709."""
     UNCONVERTED = 4
-    """The file states a colour space that the library cannot convert, such as a damaged profile, or has the
-    inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may
-    be wrong. Warn the user, and ask for an export of the photo as sRGB."""
+    """The library cannot convert the colours of the file, for example because its profile is damaged, or
+    because it is in CMYK without a profile. The colours were read as if the file stated no colour space, so
+    saturated colours may be wrong. Warn the user, and ask for an export of the photo as sRGB."""
     DATA = 5
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
@@ -104,10 +104,10 @@ class LuminaireShape(IntEnum):
 
     FACES = 0
     """A luminaire shines from the faces of its luminous opening, with the size that its file states: a
-    rectangle, a disc, a box, a cylinder or an ellipsoid. All points of the faces have the same luminance: in
-    each direction, the intensity divided by the projected area of the faces. So the light is right at any
-    distance, and renderings show the faces. A luminaire whose file states no size, or one below 1 mm², shines
-    from a point."""
+    rectangle, a disc, a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the
+    same luminance: the intensity divided by the projected area of the faces. The light is therefore right at
+    any distance, and renderings show the faces. A luminaire whose file states no size, or one below 1 mm²,
+    shines from a point."""
     POINT = 1
     """A luminaire shines from its position as from a point, and is invisible in renderings. The light is right
     only at distances of at least five times its size."""
@@ -201,25 +201,25 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Eight neighbouring pixels form a
-    block and share the results of their paths, so their errors are correlated: the variance of a sum over
-    pixels is up to eight times the sum of their variances."""
+    """Variance of the mean radiance of each pixel; 3 channels, in (cd/m²)². Infinite where a pixel has fewer
+    than two paths. Blocks of eight neighbouring pixels share parts of their paths, so the errors of these
+    pixels are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3
     """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
     where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty image after a noise filter that follows the edges of the visible surfaces. Each pixel is
-    combined with neighbours whose difference its noise explains, or stays as it is where this is estimated to
-    be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
-    RenderReport.preview_error estimates the remaining error. The image exists only if RenderParams.preview is
-    not 0."""
+    """The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined
+    with those neighbours that differ from it by no more than the noise explains. It stays as it is where that
+    is estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be
+    blurred; RenderReport.preview_error estimates the remaining error. The image exists only if
+    RenderParams.preview is not 0."""
     PREVIEW_INTERVAL = 5
     """Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It
     includes the bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too
-    narrow: with 8 paths it may hold only 86 % of the pixels. The image exists only if RenderParams.preview is
-    not 0."""
+    narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image exists only if
+    RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
@@ -239,20 +239,22 @@ class Lines(IntEnum):
     """The detector of lines."""
 
     REGIONS = 0
-    """Fits segments with sub-pixel end points to regions of similar gradient direction."""
+    """Fits segments with sub-pixel end points to regions of similar gradient direction (LSD, Grompone von Gioi
+    et al. 2010)."""
     HOUGH = 1
-    """The paper's method: gradient-restricted Hough transform of Canny edges."""
+    """The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for
+    lines nearly perpendicular to its gradient."""
 
 
 class Search(IntEnum):
     """The search for vanishing points."""
 
     MANHATTAN = 0
-    """Finds three orthogonal directions and the focal length together, then refines each direction by
-    itself."""
+    """Finds three orthogonal directions and the focal length together, then refines each direction with its own
+    lines."""
     SUCCESSIVE = 1
     """The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not
-    run to an earlier one."""
+    run to an earlier vanishing point."""
 
 
 class Metric(IntEnum):
@@ -262,7 +264,7 @@ class Metric(IntEnum):
     """The distance of the detected segment's end points from the line through its midpoint and the vanishing
     point; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """The distance as printed in the paper (Eq. 2), measured for the whole visible line instead of the detected
+    """The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected
     segment."""
 
 
@@ -281,14 +283,15 @@ class FocalSource(IntEnum):
     GIVEN = 0
     """Set by the caller."""
     FROM_VANISHING_POINTS = 1
-    """Estimated from vanishing points of orthogonal directions."""
+    """Estimated, mainly from the vanishing points of orthogonal directions."""
     ASSUMED = 2
-    """Assumed: 0.85 times the width of the photo."""
+    """Mainly assumed: a usual value, 0.85 times the width of the photo, has a greater weight than the estimate
+    from vanishing points."""
     FROM_METADATA = 3
     """Mainly from the metadata of the photo's file; see luxfer_image_get_metadata."""
     FROM_LAMPS = 4
-    """Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer
-    only)."""
+    """Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting
+    transfer only)."""
 
 
 class DepthKind(IntEnum):
@@ -301,7 +304,7 @@ class DepthKind(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """How the photo's colours are normalised for a network."""
+    """How a network expects the photo's colours, which are sRGB in [0, 1]."""
 
     BY_SIZE = 0
     """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
@@ -318,13 +321,16 @@ class FeaturesImage(IntEnum):
     """An image of the features."""
 
     CHANNELS = 0
-    """The ten channels of the features; luxfer_image_read reads up to four of them at a time."""
+    """The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y,
+    z, towards the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the
+    viewing axis, near is near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are
+    x right, y down, z forward: those of the camera or, after luxfer_features_set_view, those of the room.
+    luxfer_image_read reads up to four channels at a time."""
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
-    """The depth along z that a network has estimated, from near_plane to far_plane and in their unit; 1
-    channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network
-    again."""
+    """The distance along the viewing axis that a network has estimated, in [near_plane, far_plane]; 1 channel.
+    Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again."""
 
 
 class DepthSource(IntEnum):
@@ -347,9 +353,10 @@ class Subject(IntEnum):
     """Chooses the subject: lamps if luxfer_segment_set_region gave a mask and the features have ten channels,
     as luxfer_features makes them; else a surface."""
     SURFACE = 1
-    """A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask
-    is restricted to the wall, the floor or the ceiling that the positive strokes lie on. If they lie on more
-    than one of these, the mask is restricted to its connected parts that positive strokes touch."""
+    """A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the
+    ten channels of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the
+    wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of these, it
+    is restricted to the connected parts of the mask that positive strokes touch."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
     one lamp or more. Regions without a stroke that resemble the marked lamps and lie in the mask of
@@ -365,25 +372,27 @@ class SegmentImage(IntEnum):
     CONFIDENCE = 1
     """The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
     UNSEEN = 2
-    """The extent to which a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. Where it is
-    high, another stroke helps."""
+    """How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions
+    that resemble the painted lamps but not closely enough for the mask, else 0. Where it is high, another
+    stroke helps."""
 
 
 class EmissionLaw(IntEnum):
     """The law, that is, the rule by which a texture continues the lights of its exemplar."""
 
     BEST = 0
-    """The law that predicts the lamps of the photo best. EmissionLaw.CORRELATION is used unless another law is
-    clearly better."""
+    """In settings only: the law that predicts the lamps of the photo best. The law of EmissionLaw.CORRELATION
+    is kept unless another law predicts the lamps clearly better."""
     CORRELATION = 1
-    """The law that the autocorrelation of the lights suggests. A period counts only if the correlation after a
-    shift by this period is at least min_regularity of EmissionParams."""
+    """In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the
+    correlation after a shift by this period is at least the setting min_regularity."""
     LATTICE = 2
     """The lamps form a lattice with two periods."""
     ROW = 3
-    """The lamps form a row with one period; the extent of the exemplar serves as the other period."""
+    """The lamps form a row with one period. Across the row, the strip that the exemplar shows is repeated edge
+    to edge."""
     WHOLE = 4
-    """The exemplar repeats as a whole, edge to edge."""
+    """The exemplar repeats as a whole, edge to edge, in both directions."""
     FREE = 5
     """The lights have no period: patches of the exemplar are placed anywhere in the texture."""
     COPY = 6
@@ -398,12 +407,14 @@ class EmissionImage(IntEnum):
     MASK = 1
     """The mask of the texture: 1 on lamps, else 0; 1 channel."""
     EXEMPLAR_METADATA = 2
-    """The exemplar's guide channels, by which patches are compared in addition to colour: the confidence that a
-    pixel shows a light, and the signed x and y distances to the nearest light in pixels of this image. 3
-    channels, at the resolution that working_side gives."""
+    """The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at
+    the reduced resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light.
+    Channels 1 and 2 are the x and y distances from the pixel to the nearest lit pixel, positive to the right
+    and down, divided by a length L and clamped to [-1, 1]. L is the side of a patch or, if the lights have
+    periods, half the longer period if that is shorter."""
     METADATA = 3
-    """The guide channels of the texture: the channels of EmissionImage.EXEMPLAR_METADATA, copied patch by patch
-    in the same way as the colours of the texture."""
+    """The guide channels of the texture, at the same reduced resolution: pixels of
+    EmissionImage.EXEMPLAR_METADATA, copied with the patches that give the texture its colours."""
 
 
 class Constraint(IntEnum):
@@ -422,7 +433,8 @@ class Quantity(IntEnum):
     """The quantity of the target surface that should match the photo."""
 
     OUTGOING = 0
-    """Light that the target surface reflects, its albedo included: the radiance that a photo shows."""
+    """Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of
+    a matt surface."""
     INCIDENT = 1
     """Light that arrives at the target surface, expressed as the radiance that the surface would have if it
     were white."""
@@ -432,12 +444,12 @@ class Fit(IntEnum):
     """How the light of the target surface is compared with its target value."""
 
     MEAN = 0
-    """By the mean over the target surface."""
+    """The mean of the light over the target surface should equal the target value."""
     LEAST_SQUARES = 1
-    """At every point of the target surface, by least squares, as gradient descent on texels does. Bright points
-    count more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
-    1/(1+CV²), where CV is the coefficient of variation, over the target surface, of the light that it
-    receives."""
+    """The sum, over all points of the target surface, of the squared difference between light and target value
+    should be smallest. A gradient descent on the texels of the emission has this aim too. Bright points count
+    more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
+    1/(1+CV²), where CV is the coefficient of variation of the light over the target surface."""
 
 
 class Outcome(IntEnum):
@@ -446,11 +458,14 @@ class Outcome(IntEnum):
     MET = 0
     """The target is met."""
     TOO_BRIGHT = 1
-    """The other lights alone exceed the target: the emission is 0 in this channel."""
+    """The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps,
+    two goals contradict each other."""
     DARK = 2
-    """No light of this channel reaches the target: the emission uses the mean scale of the other channels."""
+    """No light of this channel reaches the target: the channel gets the mean scale of the channels that meet
+    the target."""
     TOO_DIM = 3
-    """All lamps at their largest power are too weak, or two goals contradict each other."""
+    """All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a
+    luxfer_lamps."""
 
 
 class PatternScale(IntEnum):
@@ -460,10 +475,12 @@ class PatternScale(IntEnum):
     """The distance of the photo's camera from the plane with the lights. It is plane_distance of
     TransferParams, or if that is 0, an estimate from the size of the lamps."""
     LAMP = 1
-    """The length of the lamps: on the surface, PatternParams.length is the median of their longer sides."""
+    """The length of the lamps: the pattern is scaled until the median of their longer sides is
+    PatternParams.length."""
     SPACING = 2
-    """The spacing of the lamps: on the surface, PatternParams.length is the shorter period of their lattice or,
-    without a lattice, the median distance from a lamp to its nearest neighbour."""
+    """The spacing of the lamps: the pattern is scaled until this spacing is PatternParams.length. The spacing
+    is the shorter period of the lamps' lattice or, without a lattice, the median distance from a lamp to its
+    nearest neighbour."""
     ACROSS = 3
     """The width of the surface: as many lamps lie side by side on it as on the plane in the photo."""
 
@@ -536,19 +553,21 @@ class TransferScene(IntEnum):
     """A scene that the transfer has made."""
 
     UNSOLVED = 0
-    """The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor."""
+    """The scene with the emission before the stage RELIGHT solves for its factor: the texture times
+    white_luminance of TransferParams, as bright as the lamps in the photo."""
     LIT = 1
     """The scene with the solved emission: the result."""
     WHITE = 2
-    """The scene TransferScene.LIT with white light of equal luminance."""
+    """The scene TransferScene.LIT with white instead of coloured emission of equal luminance, for
+    comparison."""
 
 
 class WarningCode(IntEnum):
     """The code of a warning."""
 
     FOCAL_ASSUMED = 1
-    """The vanishing points do not determine the focal length, so it was assumed; the severity is the relative
-    standard deviation of the focal length."""
+    """The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the
+    relative standard deviation of the focal length."""
     VIEW_UNCERTAIN = 2
     """The directions of the room axes are uncertain; the severity is the largest standard deviation in
     radians."""
@@ -556,7 +575,7 @@ class WarningCode(IntEnum):
     """The lens bends straight lines; the severity is the distortion of RectifyReport without its sign."""
     NOT_SQUARE = 4
     """The walls do not meet at right angles, or the pixels are not square; the severity is the largest
-    deviation in radians."""
+    deviation of an angle between two room axes from a right angle, in radians."""
     LAYOUT_UNCERTAIN = 5
     """There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity
     is the confidence of the fit, which is below the limit."""
@@ -592,12 +611,14 @@ class WarningCode(IntEnum):
     """The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is
     below the limit."""
     NO_LATTICE = 17
-    """No lattice was found on which the lamps lie; the severity is EmissionReport.error."""
+    """No lattice was found on which the lamps lie, and the texture differs from the photo; the severity is
+    EmissionReport.error."""
     UNREACHABLE = 18
     """Colour channels do not meet their target; the severity is the number of these channels."""
     TARGET_CLIPPED = 19
-    """The photo clips channels of the target colour, so the values of these channels are only lower bounds; the
-    severity is the number of these channels."""
+    """Channels of the target colour are only lower bounds (Constraint.AT_LEAST). A transfer sets such a bound
+    if the photo clips the channel in most pixels that the target colour is computed from. The severity is the
+    number of these channels."""
     IMPLAUSIBLE_SIZE = 20
     """A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the
     implausible height or width in metres. For a scene that is too small, it is the larger of the two, and is
@@ -625,23 +646,23 @@ class WarningCode(IntEnum):
     luxfer_image_get_glare does not rate them. The severity is their number; the message lists the first ones
     with their positions."""
     NO_COUNTERPART = 27
-    """The previous frame of a sequence lacks objects of the frame, or has them with other triangles, so their
-    motion is unknown: it is NaN. The severity is the share of the picture that shows these objects; the message
-    names them. The warning points to a pixel of the largest one."""
+    """Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles
+    there. Their motion is unknown and therefore NaN. The severity is the share of the picture that shows these
+    objects; the message names them. The warning points to a pixel of the largest one."""
     MOTION_DISAGREES = 28
     """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
     shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
-    compared with the exact motion of their scenes; otherwise the guides of data, such as object codes, normals
-    or positions, are compared along the motion, except in a preview, and guides of light alone find no error.
-    The severity is the share of these pixels among the pixels that were compared. The warning points to the
-    pixel with the largest error."""
+    compared with the exact motion of their scenes. Otherwise the GuideRange.DATA guides, such as object codes
+    or normals, are compared along the motion; without such guides, or in a preview, no error is found. The
+    severity is the share of pixels with wrong motion among the pixels that were compared. The warning points to
+    the pixel with the largest error."""
     LIGHT_NOT_PAINTED = 29
-    """The target of a stylisation shows light that no usable place of the exemplar shows, such as a shadow
-    beside which the artist of a half-painted picture has not painted yet. The new paint there is a guess. The
-    severity is the share of these pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The
-    warning points to the place of the target where most of them lie."""
+    """The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast
+    shadow if the painted part of a half-painted picture has none. The new paint there is a guess. The severity
+    is the share of these pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The warning
+    points to the place of the target where most of them lie."""
     AMBIGUOUS_PAINT = 30
-    """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes these. The
+    """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The
     severity is the share of the exemplar with such light. The warning points to a place of the artwork with
     such light."""
     BLEMISH = 31
@@ -656,7 +677,7 @@ class IlluminanceImage(IntEnum):
     LUX = 0
     """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
     ERROR = 1
-    """Standard error of each value, in lux; 1 channel."""
+    """Standard error of each illuminance, in lux; 1 channel; NaN in texels that the mesh does not cover."""
 
 
 class Group(IntEnum):
@@ -667,16 +688,17 @@ class Group(IntEnum):
     EACH = 1
     """Each lamp is a group of its own."""
     BY_X = 2
-    """Lamps in one row form a group: their centres agree, within row_tolerance, in u of the texture or in x of
-    the meshes."""
+    """Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the
+    emission has a texture, the texture coordinate u takes the place of x."""
     BY_Y = 3
-    """Lamps in one row form a group: their centres agree, within row_tolerance, in v of the texture or in y of
-    the meshes."""
+    """Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the
+    emission has a texture, the texture coordinate v takes the place of y."""
     BY_Z = 4
-    """Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes."""
+    """Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the
+    emission has a texture, all lamps form one group."""
     BY_TYPE = 5
-    """Lamps of about equal area form a group. Among punctual lights, all point lights form one group, all spot
-    lights form another, and luminaires with the same distribution form one group for each distribution."""
+    """Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms
+    one group, and luminaires with the same distribution form one group for each distribution."""
 
 
 class Aim(IntEnum):
@@ -687,7 +709,8 @@ class Aim(IntEnum):
     MIN_LUMINANCE = 1
     """Make the luminance of the target as small as possible."""
     RADIANCE = 2
-    """Bring the mean radiance of the target, all other light included, nearest to PlacementParams.radiance."""
+    """Bring the mean radiance of the target, under the texture and all other light, nearest to
+    PlacementParams.radiance."""
 
 
 class Scale(IntEnum):
@@ -712,7 +735,7 @@ class Known(IntEnum):
     """The length that determines the size of lamps."""
 
     NOTHING = 0
-    """Only suspensions, if any are given."""
+    """No length is known; suspensions determine the size if any are given."""
     DROP = 1
     """The distance of the first lamp's top below the ceiling."""
     DIAMETER = 2
@@ -746,24 +769,28 @@ class GuidesImage(IntEnum):
     """A guide image."""
 
     FULL = 0
-    """All light, reflected any number of times."""
+    """All light (L.*E): lights that are seen directly, and light that is reflected or transmitted any number of
+    times."""
     DIRECT = 1
     """Light reflected once, by a diffuse surface (LDE)."""
     SPECULAR = 2
-    """Light that comes by way of one glossy surface, mirror or clear pane (LSE)."""
+    """Light reflected or transmitted once, at a glossy surface, mirror or clear pane (LSE)."""
     INDIRECT = 3
     """Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding."""
     TWO_BOUNCES = 4
-    """Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows."""
+    """Light reflected once or twice, by diffuse surfaces (LD{1,2}E): unlike direct light, it shows detail in
+    shadows."""
     NORMALS = 5
-    """Normals in camera space: x right, y up, z towards the camera; 3 channels."""
+    """Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3
+    channels."""
     EDGES = 6
-    """Edges of shapes, in [0, 1]; 1 channel."""
+    """Edges of shapes: 1 on an edge, 0 away from edges; 1 channel."""
     MATERIALS = 7
-    """A colour code for each material, derived from its name; 3 channels."""
+    """A colour for each material, derived from its name, so that materials of equal name match in all scenes;
+    black where there is no surface; 3 channels."""
     CAUSTICS = 8
-    """Caustics: light that reaches a diffuse surface by way of glossy surfaces, mirrors or clear panes
-    (LS+DE)."""
+    """Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces,
+    mirrors or clear panes (LS+DE)."""
 
 
 class StylizeMode(IntEnum):
@@ -777,7 +804,8 @@ class StylizeMode(IntEnum):
     NEAREST = 2
     """Each target patch takes its nearest exemplar patch (Wexler et al. 2007)."""
     GREEDY = 3
-    """Patches are assigned in one pass in scan order (Hertzmann et al. 2001); runs on one thread."""
+    """One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour
+    (Hertzmann et al. 2001); runs on one thread."""
     LIT_SPHERE = 4
     """Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit
     Sphere (Sloan et al. 2001)."""
@@ -790,7 +818,7 @@ class StylizeSearch(IntEnum):
     """The search for nearest patches."""
 
     PATCHMATCH = 0
-    """PatchMatch, the default."""
+    """PatchMatch (Barnes et al. 2009), the default."""
     TABLE = 1
     """A k-d tree over the mean colours and guides of patches."""
 
@@ -809,10 +837,10 @@ class StylizeVote(IntEnum):
     """The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork
     meet, each stays whole up to the seam."""
     ADAPTIVE = 4
-    """A blend of StylizeVote.PLAIN and StylizeVote.MOST, in the proportion that gives each place of the picture
-    as much fine detail as the artwork has where the paint comes from: whole pixels in rough paint, soft
-    transitions in smooth paint, and edges as sharp as in the artwork. StylizeReport.whole is the share of whole
-    pixels."""
+    """A blend of StylizeVote.PLAIN and StylizeVote.MOST. The proportion varies, so that each place of the
+    picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has
+    whole pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
+    StylizeReport.whole is the share of whole pixels."""
 
 
 class StylizePreset(IntEnum):
@@ -832,7 +860,9 @@ class GuideRange(IntEnum):
     """How the values of a guide are compared."""
 
     LIGHT = 0
-    """Linear light >= 0, such as a rendering; its values are compared as they would look on a screen."""
+    """Linear light >= 0, such as a rendering. Its values are clipped at white (1) and compared in the sRGB
+    encoding. If the 99.9th percentile of source and target together exceeds 1, all values are divided by this
+    percentile first."""
     DATA = 1
     """Data, such as normals, object codes and edges. The range of values that source and target have together
     is scaled to [0, 1]."""
@@ -846,8 +876,9 @@ class StylizeImage(IntEnum):
     cancel it is smaller than the target: the target's sides are halved StylizeReport.halvings times, rounded
     down."""
     GUIDE_ERROR = 1
-    """Difference, in [0, 1], between the guides at a pixel and the guides at the place in the exemplar from
-    which the pixel was painted; 1 channel. It is high where nothing in the exemplar fits."""
+    """Weighted root mean square difference, in [0, 1], between the guides at a pixel and the guides at the
+    place in the exemplar from which the pixel was painted; 1 channel. It is high where nothing in the exemplar
+    fits."""
     SOURCES = 2
     """Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was
     painted; 2 channels."""
@@ -861,10 +892,11 @@ class Demo(IntEnum):
     EXEMPLAR_ROOM = 1
     """An office under a grid of luminaires; luxfer_demo_photo takes its photo with camera 0."""
     SPHERE_ON_TABLE = 2
-    """A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation."""
+    """A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a
+    picture."""
     STILL_LIFE = 3
-    """A vase, a ring and two balls on the table of Demo.SPHERE_ON_TABLE under its lamp: a target for a
-    stylisation."""
+    """A vase, a ring and two balls, on the same table and under the same lamp as in Demo.SPHERE_ON_TABLE: a
+    target scene for a stylisation."""
 
 
 class Artwork(IntEnum):
@@ -896,7 +928,7 @@ class Aov(IntFlag):
     DISTANCE = 2
     """Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z."""
     POSITION = 4
-    """Position in world space, in metres. Layer Position, channels X Y Z."""
+    """Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z."""
     NORMAL = 8
     """Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X
     Y Z."""
@@ -904,13 +936,16 @@ class Aov(IntFlag):
     """Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer
     GeometricNormal, channels X Y Z."""
     ALBEDO = 32
-    """Albedo at normal incidence. Layer Albedo, channels R G B."""
+    """Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo,
+    channels R G B."""
     OBJECT = 64
-    """Index, plus 1, of the mesh that most samples of the pixel hit; 0 where there is no surface. Layer
-    IndexOB, channel X."""
+    """Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of
+    any mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the
+    punctual lights have the number of meshes plus i plus 1. Layer IndexOB, channel X."""
     MATERIAL = 128
-    """Index, plus 1, of the material that most samples of the pixel hit; 0 where there is no surface. Layer
-    IndexMA, channel X."""
+    """Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority,
+    of any material that was hit. 0 where there is no surface. The faces of luminaires have the number of
+    materials plus 1. Layer IndexMA, channel X."""
     ALPHA = 256
     """Share of the pixel that surfaces cover. Layer Alpha, channel A."""
     LUMINANCE = 512
@@ -925,13 +960,13 @@ class Doubt(IntFlag):
     KIND = 2
     """The probability of the kind is below 0.9."""
     CLIPPED = 4
-    """The photo clips more than a tenth of the lamp's pixels: it may be brighter, and its glare may enlarge the
-    outline."""
+    """The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its
+    glare may enlarge the outline."""
     CUT = 8
     """The border of the photo cuts off a part of the outline."""
     HIDDEN = 16
-    """The body hides a part of its own profile: a radius is uncertain by more than a twentieth of the
-    diameter."""
+    """The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of
+    the largest diameter."""
 
 
 class GuidesWith(IntFlag):
@@ -953,11 +988,11 @@ class Lights(IntFlag):
     """Lights, to be combined with |."""
 
     SURFACE = 1
-    """At least one surface emits."""
+    """At least one surface emits; the faces of luminaires count."""
     TEXTURE = 2
     """At least one surface has an emission texture."""
     POINT = 4
-    """At least one point light has an intensity above 0."""
+    """At least one point light, or luminaire that shines from a point, has an intensity above 0."""
     SPOT = 8
     """At least one spot light has an intensity above 0."""
     DIRECTIONAL = 16
@@ -994,8 +1029,8 @@ class ContextParams(TypedDict, total=False):
     num_threads: int
     """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All
     jobs share these threads. Synchronous calls, which do their work before they return, never wait for a job:
-    such a call runs on the calling thread, or on a set of num_threads threads of its own. The context starts as
-    many sets as calls run at the same time, and keeps up to four sets for later calls."""
+    such a call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the
+    same time use different sets; the context keeps up to four idle sets for later calls."""
     memory_budget_mib: int
     """Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0,
     the default: no limit. A call that would exceed the limit returns Status.OUT_OF_MEMORY. While a picture file
@@ -1049,15 +1084,15 @@ class PhotoMetadata:
     iso: float
     """ISO speed S; 0 = unknown."""
     white_luminance: float
-    """Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-
-    based speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change
-    the brightness keep these tags."""
+    """Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), from the
+    definition of the saturation-based speed in ISO 12232. N, t and S are the three fields above. 0 = unknown.
+    Valid only for the image that the camera wrote: editors that change the brightness keep these tags."""
     white_luminance_low: float
-    """Lower bound of white_luminance: 0.71 times white_luminance. It is the right value if the ISO speed is a
-    standard output sensitivity and not a saturation-based speed."""
+    """Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO
+    speed is a standard output sensitivity (ISO 12232) instead of a saturation-based speed."""
     white_luminance_high: float
-    """Upper bound of white_luminance: one stop above white_luminance. It allows for an ISO speed that is a
-    recommended exposure index."""
+    """Upper bound of white_luminance: twice white_luminance. It allows for an ISO speed that is a recommended
+    exposure index (ISO 12232), with which the manufacturer chooses the luminance at which the camera clips."""
     colour: FileColour
     """How the colours of the file were interpreted: FileColour."""
 
@@ -1082,7 +1117,8 @@ class SceneCounts:
 
 @dataclass(frozen=True)
 class Surface:
-    """A planar surface of a scene: triangles in one plane, and their bounding rectangle."""
+    """A planar surface of a scene: triangles in one plane, and their bounding rectangle. Seen from the room, u
+    runs to the right and v runs down, as in an image."""
 
     triangles: int
     """Number of triangles in the plane."""
@@ -1116,7 +1152,7 @@ class SceneLoadParams(TypedDict, total=False):
     keep_origin: int
     """0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
     made relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative
-    to the origin of the file, and rounding to floats moves them."""
+    to the origin of the file; far from it, the rounding of coordinates to floats moves them."""
     luminaire_shape: LuminaireShape | str | int
     """From where the luminaires of the file (EXT_lights_ies) shine: LuminaireShape; default
     LuminaireShape.FACES."""
@@ -1126,7 +1162,8 @@ class MaterialParams(TypedDict, total=False):
     """A metallic-roughness material, as in glTF 2.0."""
 
     double_sided: int
-    """1, the default: back faces reflect and emit as front faces do; 0: only front faces do."""
+    """1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block
+    light in both cases."""
     name: str
     """Name in UTF-8, copied; None, the default: no name."""
     base_color: Sequence[float]
@@ -1138,10 +1175,10 @@ class MaterialParams(TypedDict, total=False):
     emission: Sequence[float]
     """Emission per channel in cd/m², each in [0, 1e15]; default 0."""
     transmission: float
-    """Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1];
-    default 0."""
+    """Share of the light entering the surface that passes straight through it, instead of being reflected
+    diffusely, in [0, 1]; default 0."""
     ior: float
-    """Index of refraction in [1, 4]; default 1.5."""
+    """Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly."""
     alpha: float
     """Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1."""
     alpha_mode: AlphaMode | str | int
@@ -1185,7 +1222,7 @@ class MeshParams(TypedDict, total=False):
     position_stride: int
     """Bytes from one position to the next; at least 12, or 0, the default: packed."""
     normals: int
-    """Normals: three floats per vertex, finite; None, the default: faces are flat."""
+    """Normals: three floats per vertex, finite; None, the default: triangles are shaded flat."""
     normal_stride: int
     """Bytes from one normal to the next; at least 12, or 0, the default: packed."""
     uvs: int
@@ -1226,7 +1263,9 @@ class DistributionReport:
     """Summary of a luminous intensity distribution."""
 
     planes: int
-    """Number of C planes, the half-planes through the axis in which the intensities are given."""
+    """Number of C planes, the half-planes through the axis in which the intensities are given. Planes that the
+    file leaves out because of symmetry are included. A single plane holds for all directions around the
+    axis."""
     angles: int
     """Number of vertical angles gamma in each C plane."""
     flux: float
@@ -1236,9 +1275,9 @@ class DistributionReport:
     watts: float
     """Electric power in watts; 0 if unknown."""
     size: tuple[float, float, float]
-    """Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value
-    stands for a round opening, as in IES: its absolute value is the diameter. IES files name the three values
-    length, width and height; EULUMDAT files name them width, length and height."""
+    """Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
+    negative values stand for a round opening: the absolute value is the diameter. IES files name the three
+    values length, width and height; EULUMDAT files name them width, length and height."""
 
 
 class LightParams(TypedDict, total=False):
@@ -1270,8 +1309,8 @@ class LuminaireParams(TypedDict, total=False):
     """Luminous flux in lumens, finite and >= 0; 0, the default: the flux of the distribution."""
     position: Sequence[float]
     """Position of the centre of the luminous opening in metres, each coordinate in [-1e15, 1e15]; default (0,
-    0, 0). A flat face lies at least 0.2 mm before its plane, so that a panel in the plane of a ceiling is not
-    hidden."""
+    0, 0). Flat faces are moved outwards by at least 0.2 mm, so that a ceiling in the same plane does not hide
+    them."""
     axis: Sequence[float]
     """Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): it shines
     down."""
@@ -1324,14 +1363,15 @@ class Requirements:
     textures: int
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """Number of bounces that matter. The argument error of luxfer_scene_get_requirements limits the rest: light
-    with more bounces is at most this share of all scattered light. 0 if the albedos give no such bound. For
-    information only: no rendering ends paths at this number."""
+    """Number n of bounces that matter: light with more than n bounces is at most the share error of all
+    scattered light, where error is the argument of luxfer_scene_get_requirements. n is the smallest positive
+    integer with a^n <= error, where a is the largest channel of the field albedo. 0 if there is no such number.
+    For information only: no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
-    """Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects
-    and transmits."""
+    """Upper bound of the albedo of all surfaces, per channel, in [0, 1]. The albedo is the share of the
+    received light that a surface reflects or transmits."""
     flat_triangles: int
     """Number of triangles with zero area, which are skipped."""
 
@@ -1347,7 +1387,7 @@ class MeshInfo:
     triangle_count: int
     """Number of triangles."""
     has_normals: int
-    """1 if each vertex has a normal, 0 if the faces are flat."""
+    """1 if each vertex has a normal, 0 if triangles are shaded flat."""
     uv_sets: int
     """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second."""
     has_colours: int
@@ -1380,9 +1420,10 @@ class Candidate:
     """Mean normal of the front sides of all triangles, weighted by area: a unit vector, or 0 if the normals
     cancel, as for a closed box."""
     score: float
-    """Resemblance to a ceiling, in [0, 1]: the product of level_area / area, level_area / (floor area of the
-    scene's bounding box), and the square of (height above the scene's lowest point) / (height of the scene).
-    Each of the three ratios is at most 1. A name such as "ceiling" raises the score."""
+    """Resemblance to a ceiling: s = (level_area / area) * min(1, level_area / F) * h², in [0, 1]. F is the
+    floor area of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the
+    scene). A name with a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2,
+    unless level_area is 0."""
     name: str
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
@@ -1435,16 +1476,16 @@ class RenderReport:
     discarded: int
     """Number of paths that were discarded because their radiance was not finite."""
     preview_bias: float
-    """Estimated bias of the preview: the difference between the expected and the true mean of each block of 8 x
-    8 pixels, as root mean square over the blocks, divided by the image's mean. 0 without a preview."""
+    """Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root
+    mean square over all blocks, divided by the image's mean. 0 without a preview."""
     relative_error: float
     """Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the
     mean of the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer
     than two paths. With few paths this estimate is too high: with 8 paths by about a quarter."""
     preview_error: float
     """Estimated error of the preview, remaining noise and bias together: root mean square over pixels and
-    channels, divided by the image's mean. Compare it with error, that of the unfiltered image. Infinite while a
-    pixel has fewer than four paths; 0 without a preview."""
+    channels, divided by the image's mean. Compare it with the field error, which is that of the unfiltered
+    image. Infinite while a pixel has fewer than four paths; 0 without a preview."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -1471,8 +1512,9 @@ class RectifyParams(TypedDict, total=False):
     """Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The
     image is smaller if the resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane
-    with a larger magnification, which lie far from the camera, are cut off."""
+    """Largest magnification in the unwarped image, relative to the part of the plane that the photo shows
+    largest, in (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the
+    camera, are cut off."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -1489,7 +1531,8 @@ class RectifyReport:
     vanishing_errors: tuple[float, float, float]
     """Standard deviations of the directions of the vanishing points in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
-    """Number of segments that agree with each vanishing point; 0: the point is derived from the other two."""
+    """Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from
+    the others, or from the assumption that the camera is upright."""
     focal_source: FocalSource
     """Source of the focal length: FocalSource."""
     focal: float
@@ -1509,7 +1552,8 @@ class RectifyReport:
     pixel_size: float
     """Length of an unwarped pixel's side on the plane, divided by the camera's distance from the plane."""
     aspect_confidence: float
-    """Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed."""
+    """Confidence of the aspect ratio, 1 / (1 + (s / 0.1)²), where s is its relative standard deviation; in [0,
+    1]. It is low if the focal length was assumed."""
     distortion: float
     """Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its
     centre; below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of
@@ -1517,10 +1561,10 @@ class RectifyReport:
     distortion_error: float
     """Standard deviation of the field distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis, the angle between the two other axes minus 90 degrees, in radians, where each of these
-    axes is estimated from its own lines alone. It differs from 0 if walls are oblique, pixels are not square or
-    the principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are
-    always orthogonal."""
+    """For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two
+    axes is estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not
+    square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field
+    axes are always orthogonal."""
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
 
@@ -1529,15 +1573,15 @@ class FeaturesParams(TypedDict, total=False):
     """Settings of the features."""
 
     near_plane: float
-    """Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1.
-    Its unit is arbitrary: all depths are scaled together, so that the nearest part of the photo lies on this
-    plane."""
+    """Distance of the near plane, where the depth channel is 0, in [1e-3, 1e3]; default 1. All depths are
+    multiplied by one factor, so that the nearest part of the photo (the 2 % quantile of its depths) lies on
+    this plane. The unit of length is therefore arbitrary."""
     far_plane: float
     """Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6]
     times near_plane; default 10."""
     normal_radius: int
-    """Half the width, in pixels, of the square window in which a plane is fitted to get a pixel's normal, in
-    [0, 64]; default 0: chosen by the photo's size."""
+    """Half the width, in pixels, of the square window around a pixel in which a plane is fitted to find the
+    normal of the pixel; in [0, 64]. 0, the default: 1 % of the photo's width, but at least 2 and at most 64."""
 
 
 @dataclass(frozen=True)
@@ -1557,12 +1601,14 @@ class SegmentParams(TypedDict, total=False):
     """Settings of a segmentation."""
 
     samples_per_class: int
-    """Samples drawn from the strokes of each class, in [1, 1000000]; default 1000."""
+    """Maximum number of pixels that are drawn as samples from the strokes of each class, in [1, 1000000];
+    default 1000."""
     channels: int
     """Channels of the features to use, bit i for channel i; default 0. With the ten channels of
     luxfer_features, 0 tries four sets (colour; colour and position; colour and normal; all channels) and uses
-    the set with the smallest error on held-out strokes. With another number of channels, 0 uses all channels.
-    For lights use 7, colour only, since lights and plane have one geometry."""
+    the set with the smallest error on held-out strokes. Sets with position are left out if the mask will be
+    restricted to a wall, floor or ceiling of a room that was fitted as a box. With another number of channels,
+    0 uses all channels. For lights use 7, colour only, since lights and their plane have the same geometry."""
     refine_radius: int
     """Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no
     refinement. The refinement makes the mask follow the edges of the photo: it is a guided filter with the
@@ -1604,22 +1650,22 @@ class EmissionParams(TypedDict, total=False):
     height: int
     """Height of the texture in texels, in [1, 65536]; default 1024."""
     block: int
-    """Side of the square patches that are copied from the exemplar, in pixels of the exemplar after its
-    reduction to working_side; in [0, 65536]; 0, the default: chosen from the spacing of the lights."""
+    """Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from
+    the spacing of the lights. It is in pixels of the exemplar after its reduction to working_side."""
     scale: float
-    """Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
+    """Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1."""
     working_side: int
     """Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048];
     default 256."""
     metadata_weight: float
     """Weight of the guide channels (EmissionImage.EXEMPLAR_METADATA) relative to colour when patches are
-    compared, in [0, 1e3]; default 1; 0 is plain image quilting."""
+    compared, in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
     min_regularity: float
     """The lights count as regular if their autocorrelation after a shift by a period is at least this value, in
-    [0, 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches
-    may lie anywhere."""
+    [0, 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and
+    patches may lie anywhere."""
     whole_lamps: int
     """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
@@ -1634,62 +1680,72 @@ class EmissionParams(TypedDict, total=False):
     """1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo."""
     tileable: int
     """1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the
-    opposite edge. A lattice is stretched until whole periods fit, by less than half a period over the whole
-    texture. Needs whole_lamps. Default 0."""
+    opposite edge. A lattice is stretched so that a whole number of periods fits; the width and the height of
+    the pattern change by less than half a period. Needs whole_lamps. Default 0."""
     centred: int
     """1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's
     centre, so that the border cuts as few lamps as possible. The field offset shifts the lattice from there.
     Default 0."""
     candidates: int
-    """Maximum number of exemplar patches that are compared for each patch of the texture if the lights form no
-    lattice, in [1, 65536]; default 192."""
+    """Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if
+    the lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are
+    compared in addition."""
     law: EmissionLaw | str | int
     """The law: the rule by which the texture continues the lights of the exemplar, EmissionLaw other than
     EmissionLaw.COPY; default EmissionLaw.BEST."""
     clean_lamps: int
-    """1, the default: all lamps of one kind (of about equal size and shape) get the same size and the same
-    outline, which is exact at any resolution, and lie exactly at the sites of their lattice. This needs the
-    photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
+    """1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or
+    ellipses are drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on
+    their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
     max_magnification: float
-    """Maximum magnification of the exemplar's pixels, in [1, 1e6]; pixels with a larger magnification are left
-    out, as if the photo did not show them. 0, the default: all pixels are used. Magnification is the number of
-    unwarped pixels per photo pixel, along one side, relative to the least magnified pixel of the exemplar."""
+    """Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left
+    out, as if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant
+    parts of the plane: the magnification is the number of unwarped pixels per photo pixel, along one side,
+    divided by its smallest value in the exemplar."""
 
 
 @dataclass(frozen=True)
 class EmissionReport:
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. For a plan (luxfer_emission_start_plan), only the fields that need no texels are set."""
+    quality. A plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error
+    is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
+    the first one."""
 
     luminaires: int
     """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
     error: float
     """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
-    area of whole lamps, and the distance from a lamp to its nearest neighbour. The difference means little if
-    exemplar_lamps is small. NaN for a plan, which has no texels yet."""
+    area of whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %.
+    It means little if exemplar_lamps is small. NaN for a plan."""
     regularity: float
-    """Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a
-    lattice."""
+    """Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two
+    periods the lower value. 0 if the lights have no period, or if the period was found from the distances
+    between lamps."""
     exemplar_lamps: int
-    """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
-    cuts many of the lamps. Without a whole lamp, the texture is made from the lamps that the border cuts; they
-    are completed to rectangles if clean_lamps is 1."""
+    """Number of whole lamps in the exemplars. If it is below six, the statistics in the field error are
+    unreliable, because the border then cuts a large share of the lamps. If there is no whole lamp, the texture
+    is made from the lamps that the border cuts; with clean_lamps, they are completed to rectangles unless the
+    photo contradicts this."""
     sampling_error: float
     """Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-    ceiling: the root mean square difference of the statistics between the whole texture and parts of it that
-    are as large as the exemplar. If error is at most twice this value, it does not indicate a bad texture. 0
-    for EmissionLaw.WHOLE and EmissionLaw.COPY, for blended exemplars, and for a plan."""
+    ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with
+    those of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
+    does not indicate a bad texture. 0 for EmissionLaw.WHOLE and EmissionLaw.COPY, for several exemplars, for a
+    plan, and if the texture is hardly larger than the exemplar."""
     law: EmissionLaw
     """The law (rule) by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
-    """The law with the best score among all laws that were not chosen: EmissionLaw."""
+    """The law with the best score among the laws that were not chosen: EmissionLaw. It equals the field law if
+    the two laws differ only in their periods, or if no other law was compared."""
     law_score: float
-    """Score of the chosen law, in [0, 1]: how well it predicts each lamp of the photo from the other lamps.
-    Lamps weigh in proportion to their pixels in the photo. NaN if the laws were not compared, for example
-    because too few of the lights are whole lamps."""
+    """Score of the chosen law, in [0, 1]: how well it predicts the position of each lamp of the photo from the
+    other lamps. Lamps weigh in proportion to their pixels in the photo. EmissionLaw.WHOLE and EmissionLaw.FREE
+    predict nothing and have a fixed score. NaN if no score was computed, for example because too few of the
+    lights are whole lamps."""
     margin: float
-    """law_score minus the score of runner_up. It is negative if the law was chosen although runner_up scores
-    slightly better."""
+    """law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen
+    although runner_up scores slightly better: EmissionLaw.BEST prefers the law of EmissionLaw.CORRELATION, and
+    lattices along the axes of the room."""
 
 
 @dataclass(frozen=True)
@@ -1701,13 +1757,13 @@ class Luminaire:
     centre: tuple[float, float]
     """Centre in texels, x and y."""
     size: tuple[float, float]
-    """Lengths of the principal axes in texels, the longer first."""
+    """Extents of the lamp along its two principal axes, in texels, the longer one first."""
     orientation: float
-    """Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]."""
+    """Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in square texels; texels at the edge count with the share that the lamp covers."""
+    """Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers."""
     flux_share: float
-    """Share of the luminous flux of all lamps of the texture, in [0, 1]."""
+    """This lamp's share of the luminous flux of all lamps of the texture, in [0, 1]."""
     colour: tuple[float, float, float]
     """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
@@ -1768,17 +1824,18 @@ class PatternParams(TypedDict, total=False):
     """Length of a lamp for PatternScale.LAMP, or spacing of the lamps for PatternScale.SPACING, in metres, in
     [1e-6, 1e6]; default 1. Other values of scale do not use it."""
     texel_size: float
-    """Side of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, but not so fine
-    that the texture exceeds max_texels of TransferParams."""
+    """Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or
+    a larger size if the texture would otherwise exceed max_texels of TransferParams. A size with which the
+    texture exceeds max_texels is an error."""
     rotation: float
     """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
-    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices
-    only: lamps without a lattice have no fixed places and are not shifted."""
+    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a
+    lattice have no fixed places: for them, a shift other than 0 is an error unless the texture is tileable."""
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
     luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
-    the default -1, lamps at the edge of the surface are kept, and the edge cuts them."""
+    the default -1, only lamps that touch a zone are left out, and the edge of the surface cuts lamps."""
 
 
 class TransferParams(TypedDict, total=False):
@@ -1787,13 +1844,13 @@ class TransferParams(TypedDict, total=False):
     max_texels: int
     """Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048."""
     plane_distance: float
-    """Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]; it sets the
-    scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
-    ceiling tiles. TransferReport states the distance and its error."""
+    """Distance in metres of the photo's camera from the plane with the lights, in [0.01, 1e4]. With
+    PatternScale.DISTANCE, it sets the scale of the pattern. 0, the default: estimated from the size of the
+    lamps, which are mostly made to fit ceiling tiles. TransferReport states the distance and its error."""
     white_luminance: float
-    """Luminance in cd/m² of the photo's white, in [1e-6, 1e9]; default 100, the luminance of matt white paper
-    in 314 lux. The strength of the lamps is proportional to it. A photo alone does not determine this
-    luminance: see proposed_white of TransferReport."""
+    """Luminance in cd/m² of the photo's white (value 1), in [1e-6, 1e9]; default 100, the luminance of matt
+    white paper in 314 lux. The strength of the lamps is proportional to it. A photo alone does not determine
+    this luminance: see proposed_white of TransferReport."""
     target: Target | str | int
     """Part of the photo whose mean colour is matched: Target; default Target.SURFACE."""
     rectify: RectifyParams
@@ -1824,7 +1881,7 @@ class TransferReport:
     """Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT
     has ended."""
     seconds: tuple[float, ...]
-    """Duration of each stage's last run in seconds; the index is the Stage."""
+    """Duration of each stage's last run in seconds, 0 without a run; the index is the Stage."""
     view_error: float
     """Largest standard deviation of the directions of the vanishing points, in radians."""
     depth_confidence: float
@@ -1847,9 +1904,9 @@ class TransferReport:
     target: tuple[float, float, float]
     """Mean colour that the surface should have: linear RGB, where 1 is the photo's white."""
     plane_distance: float
-    """Distance in metres of the photo's camera from the plane with the lights, if these lights were as large as
-    they are on the scene's surface. NaN before the stage EMISSION has ended, and if the caller gave the
-    texture."""
+    """Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo
+    are as large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the
+    caller gave the texture."""
     plane_distance_error: float
     """Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps,
     it is about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings
@@ -1879,7 +1936,7 @@ class Fixture:
     axis: tuple[float, float, float]
     """Unit vector along the lamp's long axis."""
     radiance: tuple[float, float, float]
-    """Mean luminance of the lamp per channel in cd/m²."""
+    """Mean emission of the lamp: linear RGB in cd/m²."""
     kind: int
     """Number of the lamp's kind, as in Luminaire."""
     size: tuple[float, float]
@@ -1887,7 +1944,7 @@ class Fixture:
     area: float
     """Area in m²."""
     flux: float
-    """Luminous flux in lumens."""
+    """Luminous flux in lumens: pi * luminance * area, since the lamp is Lambertian."""
     cct: float
     """Correlated colour temperature of the light in kelvin; 0 for a lamp that is off."""
     duv: float
@@ -1905,7 +1962,7 @@ class Warning:
     luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene, and for the size of the scene
     of a luxfer_transfer, it is Stage.SCENE; for a luxfer_guides or a luxfer_stylize it is Stage.STYLIZE."""
     has_place: int
-    """1 if the warning has a place in the photo, else 0."""
+    """1 if the warning points to a place, else 0."""
     severity: float
     """The figure that caused the warning; the comment of the WarningCode in the field code says what it
     measures."""
@@ -1913,7 +1970,8 @@ class Warning:
     """The limit that the severity has passed: an upper limit, unless the comment of the WarningCode says that
     the severity is below the limit."""
     place: tuple[float, float]
-    """The place in the photo, x and y in pixels; 0 if the warning has no place."""
+    """The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the
+    target or, where the comment of the WarningCode says so, of the artwork. 0 if the warning has no place."""
     message: str
     """The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as
     the luxfer_warnings."""
@@ -1954,7 +2012,8 @@ class IlluminanceReport:
     """Summary of the illuminance, in lux."""
 
     points: int
-    """Number of points; on a mesh, the texels that the surface covers."""
+    """Number of points with a value: on a mesh, the number of texels that the mesh covers. If it is 0, the
+    other values are 0."""
     minimum: float
     """Smallest illuminance. The uniformity U0 is minimum / mean."""
     mean: float
@@ -1971,24 +2030,27 @@ class LampsParams(TypedDict, total=False):
     group: Group | str | int
     """Lamps that share one power: Group; default Group.EACH."""
     row_tolerance: float
-    """Largest gap between neighbouring lamps in one row, for Group.BY_X, _Y and _Z: the difference of their
-    coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row."""
+    """Largest gap between neighbouring lamps in one row, for Group.BY_X, _Y and _Z: the difference of the
+    coordinates by which the lamps are grouped, in metres or as a texture coordinate, >= 0; default 0.01. A
+    larger gap starts a new row."""
     free_colour: int
-    """1: solve for each colour channel of a group separately; all goals must then be given per channel, as by
-    luxfer_lamps_add_mesh. 0, the default: solve for the power only."""
+    """1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
+    luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour."""
     max_scale: float
-    """Largest factor for the emission of a group, >= 0; default infinity."""
+    """Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity."""
     regularisation: float
-    """Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals
-    are met, with large values the powers are nearly equal."""
+    """Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6.
+    With a small weight the goals are met, with a large weight the powers are nearly equal."""
     tolerance: float
-    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], plus the noise of the
-    goal's light; default 0.01."""
+    """Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target
+    by at most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence
+    interval of the light."""
     paths: int
     """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop tracing when, for every goal, the relative half-width of the 95 % confidence interval of the light
-    from all lamps together is at most this value, in [0, 1]; default 0.01; 0: do not stop for this reason."""
+    """Stop tracing when, for every goal, the light from all lamps together is known to this relative error, in
+    [0, 1]; default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 % confidence
+    interval divided by the mean, in the worst channel."""
     time_budget_ms: int
     """Stop tracing after this number of milliseconds; default 0: no limit."""
     seed: int
@@ -2008,7 +2070,7 @@ class LampsReport:
     paths: int
     """Number of paths traced for each goal."""
     all_goals_met: int
-    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason."""
+    """1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason."""
 
 
 @dataclass(frozen=True)
@@ -2018,8 +2080,8 @@ class Lamp:
     group: int
     """Index of the group that the lamp belongs to."""
     centre: tuple[float, float, float]
-    """Centre of the lamp: u, v and 0 in texture coordinates if the emission has a texture, else the position in
-    metres."""
+    """Centre of the lamp: (u, v, 0) in texture coordinates if the emission has a texture, else the position in
+    metres; 0 for directional lights."""
     scale: tuple[float, float, float]
     """Factor for the lamp's emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
@@ -2033,8 +2095,8 @@ class LampsGoal:
     outcome: tuple[Outcome, Outcome, Outcome]
     """Outcome of each channel."""
     target: tuple[float, float, float]
-    """Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid,
-    illuminance / pi."""
+    """Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is
+    the wanted illuminance divided by pi."""
     achieved: tuple[float, float, float]
     """Mean radiance of the goal's surface with the powers found, in cd/m² per channel."""
     half_width: tuple[float, float, float]
@@ -2047,8 +2109,8 @@ class LampsGoal:
     achieved_lux: float
     """Illuminance with the powers found, in lux."""
     half_width_lux: float
-    """Upper bound of the half-width of the 95 % confidence interval of achieved_lux, in lux: it holds even if
-    the errors of all channels have the same sign."""
+    """Half-width of the 95 % confidence interval of achieved_lux, in lux. It is an upper bound, computed as if
+    the errors of all channels had the same sign."""
     background_lux: float
     """Illuminance from all light but the lamps, in lux."""
 
@@ -2075,9 +2137,9 @@ class ImportanceParams(TypedDict, total=False):
     paths: int
     """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the relative half-width of the 95 % confidence interval of the light that the target would
-    receive from a uniform emission is at most this value, in [0, 1]; default 0.01; 0: do not stop for this
-    reason."""
+    """Stop when the light that the target would receive from a uniform emission is known to this relative
+    error, in [0, 1]; default 0.01; 0: do not stop for this reason. The error is the half-width of the 95 %
+    confidence interval divided by the mean, in the worst channel."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
@@ -2095,8 +2157,9 @@ class ImportanceReport:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     band_error: tuple[float, float, float]
-    """Change of the field response, noise included, if the map's cells had twice the width and height. The
-    error that comes from the size of the cells is about a third of this change."""
+    """The response that cells of twice the width and height would give, minus the field response, in cd/m². The
+    error that comes from the size of the cells is about a third of this difference, which also contains
+    noise."""
 
 
 class PlacementParams(TypedDict, total=False):
@@ -2109,18 +2172,20 @@ class PlacementParams(TypedDict, total=False):
     """Wanted mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default
     0."""
     starts: int
-    """Number of placements at which the search starts, in [1, 4096]; default 64."""
+    """Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the
+    best of them."""
     min_offset: Sequence[float]
     """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
-    """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. Equal values of min_offset and
-    max_offset fix the offset; likewise for the fields below."""
+    """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the
+    default, allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the
+    fields below."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
     """Largest number of repetitions along u and v, in [1/64, 64]; default 1."""
     min_rotation: float
-    """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
+    """Smallest rotation of the texture coordinates from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     max_rotation: float
     """Largest rotation in radians, in [-2 pi, 2 pi]; default 0."""
     seed: int
@@ -2145,8 +2210,9 @@ class Placement:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     band_error: tuple[float, float, float]
-    """Change of the field response, noise included, if the map's cells had twice the width and height. The
-    error that comes from the size of the cells is about a third of this change."""
+    """The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The
+    error of response that comes from the size of the cells is about a third of this difference, which also
+    contains noise."""
 
 
 @dataclass(frozen=True)
@@ -2156,10 +2222,11 @@ class GlareReport:
     sources: int
     """Number of glare sources."""
     ugr: float
-    """Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity
-    without sources."""
+    """Unified glare rating (CIE 117): below 10 the glare causes no discomfort; 19 is the limit for offices;
+    -infinity without sources."""
     background: float
-    """Luminance of the background in cd/m²."""
+    """Background luminance of the rating in cd/m²: the mean over the pixels that are not glare sources,
+    weighted by their contribution to the illuminance at the eye."""
     threshold: float
     """The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources."""
     solid_angle: float
@@ -2173,29 +2240,33 @@ class GlareReport:
 
 @dataclass(frozen=True)
 class Observer:
-    """An observer: an eye that looks in a direction. An element of arrays, so this struct never changes."""
+    """An observer: an eye that looks in a direction. Callers pass arrays of this struct, so its size and fields
+    never change in later versions."""
 
     position: tuple[float, float, float]
     """Position of the eye, in metres."""
     direction: tuple[float, float, float]
-    """Line of sight; any length but 0, and not vertical."""
+    """Line of sight; any length but 0. It must not be vertical: its horizontal part must be at least 2 % of its
+    length."""
 
 
 @dataclass(frozen=True)
 class ObserverGlare:
-    """The glare that an observer experiences. An element of arrays, so this struct never changes."""
+    """The glare that an observer experiences. Callers pass arrays of this struct, so its size and fields never
+    change in later versions."""
 
     ugr: float
-    """Unified glare rating: below 10 there is no glare, 19 is the limit for offices. -infinity if no luminaire
-    is in view; infinity if a luminaire is in view and the background is black."""
+    """Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view,
+    with their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is
+    imperceptible; 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is
+    in view and the background is black."""
     background: float
     """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
     background_error: float
     """Standard error of the field background, in cd/m²."""
     unrated_lux: float
-    """Direct illuminance at the eye, in lux, from all lights that ugr leaves out: point, spot and directional
-    lights, emissive surfaces, the environment, and luminaires that are seen edge-on or whose file states no
-    dimensions."""
+    """Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are
+    not rated, point, spot and directional lights, emissive surfaces, and the environment."""
     solid_angle: float
     """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
     sources: int
@@ -2215,11 +2286,11 @@ class FalseColourParams(TypedDict, total=False):
     bar: int
     """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
     minimum: float
-    """Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale 0 stands for a thousandth of
+    """Value that gets the darkest colour, >= 0; default 0. On a logarithmic scale, 0 stands for a thousandth of
     the value that gets the lightest colour."""
     maximum: float
-    """Value that gets the lightest colour, greater than minimum; 0, the default: the largest value of the
-    image."""
+    """Value that gets the lightest colour, greater than minimum; 0, the default: the largest finite value of
+    the image."""
 
 
 @dataclass(frozen=True)
@@ -2230,7 +2301,7 @@ class Mixture:
     """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     mixture."""
     colour: tuple[float, float, float]
-    """Linear RGB colour of the mixture."""
+    """Linear RGB colour of the mixture, in the unit of the primaries."""
     delta_e: float
     """CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle
     grey."""
@@ -2246,7 +2317,7 @@ class TemperatureFit:
     """Luminance of the emission, >= 0. It is in cd/m² if the array response of luxfer_fit_temperature was
     measured for a white emission of 1 cd/m²."""
     achieved: tuple[float, float, float]
-    """Mean radiance of the target from this light and all other lights together, in cd/m²."""
+    """Mean radiance of the target from this light and all other lights together, in cd/m² per channel."""
     delta_e: float
     """CIEDE2000 difference between the field achieved and the wanted radiance, at the exposure that shows the
     wanted radiance as middle grey."""
@@ -2279,40 +2350,43 @@ class PendantsParams(TypedDict, total=False):
     alike: int
     """1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own."""
     level: int
-    """1: all lamps hang equally high, which needs alike = 1; 0, the default: each hangs at its own height."""
+    """1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own
+    height."""
     refine: int
-    """1, the default: the outline is moved to the place where the photo's luminance is half of the way from the
-    lamp to its surroundings; 0: the outline is that of the mask."""
+    """1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the
+    luminances inside and outside the lamp; 0: the outline is that of the mask."""
     known: Known | str | int
     """Meaning of known_length: Known; default Known.NOTHING."""
     known_length: float
-    """The known length in metres, in [1e-4, 1e4], a drop in [0, 1e4]; not used with Known.NOTHING, and then 0,
-    the default."""
+    """The known length in metres: in [0, 1e4] for Known.DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
+    be 0, the default, with Known.NOTHING."""
     ceiling: float
-    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: lengths are then multiples
-    of this height."""
+    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in
+    multiples of the true height."""
     suspension_error: float
     """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
     focal: float
-    """The camera, if no rectification is given: its focal length in pixels, > 0; default 0."""
+    """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
+    used with a rectification."""
     focal_error: float
-    """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. Of a rectification, the
-    error of a focal length that was assumed or read from metadata is used if this is 0."""
+    """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a
+    rectification is given, the rectification's own error is used if its focal length was assumed or read from
+    metadata."""
     axes_error: float
-    """Standard deviation in radians of the rotation of the axes about each horizontal axis, in [0, 0.5];
-    default 0. Not used with a rectification, which has its own."""
+    """Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5];
+    default 0. Not used with a rectification, which has its own value."""
     principal: Sequence[float]
-    """Principal point in pixels; NaN, the default: the photo's centre."""
+    """Principal point in pixels; NaN, the default: the photo's centre. Not used with a rectification."""
     axes: Sequence[float]
     """Room axes as unit vectors in camera space, as in RectifyReport.axes: axis 1 points down. Default: a
-    camera that looks along a level axis, without roll."""
+    camera that looks horizontally, without roll. Not used with a rectification."""
 
 
 @dataclass(frozen=True)
 class Pendant:
-    """A hanging lamp: its body, its place and the doubts about them. Intervals are three numbers: the value,
-    the lower end and the upper end of the 95 % interval. If the photo does not determine a value, the value is
-    NaN and the interval holds what is known; its ends may be infinite."""
+    """A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value,
+    and the lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are
+    the known bounds, which may be 0 and infinity. A value without an estimate is NaN."""
 
     profile_count: int
     """Number of vertices of the profile, in [2, 65]."""
@@ -2331,23 +2405,24 @@ class Pendant:
     drop: tuple[float, float, float]
     """Interval of the distance in metres of the body's top below the ceiling."""
     centre: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    """Intervals of the place of the body's middle relative to the camera: along room axes 0 and 2, which are
-    horizontal, and upwards. In metres; with Doubt.SIZE in multiples of the distance of the first lamp's
-    middle."""
+    """Intervals of the position of the body's middle relative to the camera: along the horizontal room axes 0
+    and 2, and upwards. The unit is the metre; with Doubt.SIZE it is the distance of the first lamp's middle
+    from the camera."""
     residual: float
-    """Median distance in pixels between the outline and the fitted body."""
+    """Median distance in pixels between the outline of the lamp and that of the fitted body."""
     cut: float
     """Share of the outline that the photo's border cuts off, in [0, 0.3]."""
     clipped: float
     """Share of the lamp's pixels that the photo clips, in [0, 1]."""
     profile: tuple[tuple[float, float], ...]
     """Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the
-    largest diameter. The rest is 0."""
+    largest diameter. Elements from profile_count on are 0."""
     profile_error: tuple[float, ...]
-    """Half of the 95 % interval of each radius of the profile. It is large where the body hides its own
-    profile."""
+    """Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is
+    large where the body hides its own profile."""
     radiance: tuple[tuple[float, float, float], ...]
-    """Mean radiance of the lamp in 16 bands of equal height, from bottom to top, in the units of the photo."""
+    """Mean radiance of the lamp in 16 bands of equal height, from bottom to top: linear RGB in the units of the
+    photo. Where the photo is clipped, it is only a lower bound."""
     contour: tuple[tuple[float, float], ...]
     """Outline of the fitted body in the photo, a closed polygon: x and y in pixels."""
 
@@ -2383,7 +2458,8 @@ class StylizeParams(TypedDict, total=False):
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
     levels: int
-    """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6."""
+    """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The
+    coarsest level is at least 5 patches wide and high."""
     iterations: int
     """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
     voting."""
@@ -2405,8 +2481,9 @@ class StylizeParams(TypedDict, total=False):
     """Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target
     patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams."""
     seam: float
-    """Cost of a seam between neighbouring patches, as a share of the mean error, in [0, 100]; default 0.2. It
-    applies to the sweeps after each matching; see settle."""
+    """Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between
+    two neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the
+    sweeps after each matching; see settle."""
     vote: StylizeVote | str | int
     """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
@@ -2433,10 +2510,11 @@ class StylizeParams(TypedDict, total=False):
     """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
     has 6."""
     occurrence: float
-    """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; 0 is
-    StylizeMode.NEAREST. Default 0.1, which Fiser et al. found best by hand (Fig. 10n). The penalty of a patch
-    of average usage is lambda; it is added to the distance of a match, the sum over the patch of squared
-    differences of channels in [0, 1] (Eq. 1)."""
+    """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; with
+    0, the mode equals StylizeMode.NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty is added
+    to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over the
+    pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
+    lambda."""
 
 
 @dataclass(frozen=True)
@@ -2455,8 +2533,9 @@ class StylizeReport:
     max_uses: int
     """Number of uses of the exemplar patch that was used most often."""
     energy: float
-    """Mean squared difference of matched patches after the last round (Eq. 3), with channels in [0, 1]. All
-    channels of the artwork together have the weight 1, all guides together have the weight guide_weight."""
+    """Mean squared difference of matched patches after the last round (Fiser et al. 2016, Eq. 3), with channels
+    in [0, 1]. All channels of the artwork together have the weight 1. All guides together have the weight
+    guide_weight; before the finest level is finished, they have guide_weight * coarse_guides."""
     used: float
     """Share of the exemplar patches that were used, in [0, 1]."""
     entropy: float
@@ -2479,7 +2558,8 @@ class StylizeRound:
     passes: int
     """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
     energy: float
-    """Energy after this round, defined as for StylizeReport.energy."""
+    """Energy after this round, as StylizeReport.energy. On all levels but the finest, all guides together have
+    the weight guide_weight * coarse_guides."""
 
 
 @dataclass(frozen=True)
@@ -2524,7 +2604,7 @@ class SheetReport:
     to_photo predicts for them. If it is more than one or two pixels, the paper is not flat or the lens
     distorts."""
     error: float
-    """Expected alignment error in pixels of the picture."""
+    """Expected alignment error in pixels of the picture, from the residual and the number of marks."""
     to_photo: tuple[float, ...]
     """Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row."""
 
