@@ -1,15 +1,16 @@
 //! Designs: one size and one outline for all lamps of a kind, estimated from the photo.
 //!
-//! In a photo, distant lamps are small and blurred, and unwarping magnifies the blur. Of several equal lamps, the
-//! distant ones therefore become larger and ragged.
+//! In a photo, distant lamps are small and blurred, and unwarping magnifies the blur. In the unwarped photo, distant
+//! lamps therefore look larger and more ragged than equal lamps nearby.
 //!
 //! 1. Lamps that are equal apart from blur form a kind.
 //! 2. The shape (rectangle or ellipse) and the size of a kind are estimated from all its lamps, weighted by their
 //!    number of photo pixels.
-//! 3. Bloom adds a constant number of photo pixels to every lamp. The size therefore grows with magnification. This
-//!    growth is estimated from the lamps and subtracted.
+//! 3. Bloom adds a constant number of photo pixels to every side. Where unwarping magnifies more, a side therefore
+//!    becomes longer in unwarped pixels. This growth is estimated from the lamps and subtracted.
 //!
-//! The resulting outline is exact at any resolution. Lamps of another shape keep their own outline.
+//! The resulting outline is a geometric shape, so it is sharp at any resolution. Lamps that are neither rectangles nor
+//! ellipses keep their own outline.
 //!
 //! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
@@ -22,41 +23,49 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width, because blur elongates discs, but
-/// longer shapes are tubes with round ends. It must also agree with the lamps better than a rectangle by at least
-/// `MIN_ELLIPSE_GAIN`, because blur rounds the corners of a rectangle. [judged on 20 photos]
+/// Conditions under which a kind of lamps is an ellipse rather than a rectangle. [judged on 20 photos]
+///
+/// - Its length is at most `MAX_ELLIPSE` times its width. Longer shapes are tubes with round ends.
+/// - It agrees better with the lamps than a rectangle, by more than `MIN_ELLIPSE_GAIN` (see [`MIN_AGREEMENT`]). The
+///   margin is needed because blur rounds the corners of rectangles.
 const MAX_ELLIPSE: f64 = 2.5;
 const MIN_ELLIPSE_GAIN: f64 = 0.03;
-/// Limits for discs that blur has elongated. `MAX_SMEARED`: maximum area in photo pixels. `MIN_SMEAR`: the long axis
-/// must exceed the short axis by this factor, for the lamp and for its blur. `MIN_COS_ALONG`: minimum cosine of the
-/// angle between the long axes of lamp and blur. [judged on 20 photos]
+/// Limits by which discs that blur has elongated are recognised. [judged on 20 photos]
+///
+/// - `MAX_SMEARED`: lamps with a larger mean area, in photo pixels, need other evidence ([`disc`]).
+/// - `MIN_SMEAR`: the long axis must exceed the short axis by this factor, both for the lamp and for a photo pixel in
+///   the unwarped photo.
+/// - `MIN_COS_ALONG`: minimum cosine of the angle between the long axes of the lamp and of the photo pixel.
 const MAX_SMEARED: f64 = 160.0;
 const MIN_SMEAR: f64 = 1.25;
 const MIN_COS_ALONG: f64 = 0.9;
-/// Lamps count as elongated in one common direction if the mean of the unit vectors at angles 2α is longer than this,
-/// where α is the angle of a lamp's long axis. The mean has length 1 if all axes are parallel; α and α + π give the
-/// same vector. If lamps are elongated along their own blur but not in a common direction, they are discs, whatever
-/// their size. [judged on 20 photos]
+/// Let α be the angle of a lamp's long axis. Lamps count as elongated in one common direction if the mean of their unit
+/// vectors at the angles 2α is longer than this. The factor 2 makes α and α + π equal; the mean has length 1 if all
+/// axes are parallel. If lamps are elongated along their own blur but not in a common direction, they are discs,
+/// whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
-/// A kind of lamps gets a design only if its lamps agree with the shape by at least this value, on average. Agreement
-/// is the area of the intersection divided by the area of the union. [judged on 20 photos]
+/// A kind of lamps gets a design only if the mean agreement of its lamps with the shape is at least this. Agreement is
+/// the area of the intersection divided by the area of the union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// The length of a rectangle is its mean over the middle part of the width, and the width is its mean over the middle
-/// part of the length, away from the rounded corners. The middle part has this share of the width or length.
-/// [judged on 20 photos]
+/// Blur rounds the corners of a rectangle, so its sides are measured away from the corners: the length as a mean over
+/// the middle part of the width, and the width as a mean over the middle part of the length. The middle part has this
+/// share of the whole. [judged on 20 photos]
 const MIDDLE_SHARE: f64 = 0.6;
-/// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
+/// Lamps count as aligned with the axes of the unwarped photo if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
 const MAX_ALIGNED_ANGLE: f64 = 0.07;
-/// Standard deviation of a measured side (`SIDE_NOISE`), and prior standard deviation of the bloom at each edge
-/// (`BLOOM`), both in photo pixels. [judged on 20 photos]
+/// `SIDE_NOISE`: standard deviation of a measured side, in photo pixels. `BLOOM`: standard deviation of the prior of
+/// the bloom, the distance in photo pixels by which each edge is moved outwards. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// `SHOWN_BLOOM` replaces `BLOOM` if the lamps show their bloom: there are at least `MIN_BLOOM_LAMPS` of them, the
-/// bloom is at most `MAX_BLOOM`, and it explains at least the share `MIN_EXPLAINED` of the variation of their sides.
-/// Lamps of several lengths, and partly hidden lamps, fail this test, because their sides do not grow with
-/// magnification. `MIN_SIDE`: minimum side without bloom, as a share of the shortest measured side.
-/// [bench photos:tune, photos:real]
+/// The wider prior `SHOWN_BLOOM`, in photo pixels, replaces `BLOOM` if the lamps show their bloom, which means:
+///
+/// - There are at least `MIN_BLOOM_LAMPS` lamps.
+/// - The estimated bloom is between 0 and `MAX_BLOOM` photo pixels.
+/// - The bloom explains more than the share `MIN_EXPLAINED` of the variation of the sides. Lamps of several lengths and
+///   partly hidden lamps fail this condition, because their sides do not grow with magnification.
+///
+/// `MIN_SIDE`: minimum side without bloom, as a share of the shortest measured side. [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 6.0;
 const MAX_BLOOM: f64 = 10.0;
 const MIN_EXPLAINED: f64 = 0.5;
@@ -73,8 +82,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Ratio of a side to the standard deviation of the area along that side: a rectangle of side s has a deviation of
-    /// s / √12, an ellipse of diameter d has a deviation of d / 4.
+    /// Ratio of a side to the standard deviation of the shape's points along this side. The deviation is s / √12 for a
+    /// rectangle with side s, and d / 4 for an ellipse with diameter d.
     fn sides_per_deviation(self) -> f64 {
         match self {
             Self::Rectangle => 12f64.sqrt(),
@@ -93,14 +102,15 @@ pub struct Design {
     pub axis: DVec2,
 }
 
-/// A lamp of the exemplar, with the index of its design in `Designs::kinds`.
+/// The fit of a lamp of the exemplar to a design. Lengths are in unwarped pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Fitted {
+    /// Index of the design in [`Designs::kinds`].
     pub kind: usize,
     pub centre: DVec2,
-    /// The lamp's sides in the unwarped photo, blur included.
+    /// The lamp's sides in the unwarped photo, along and across the design's axis. They include blur and bloom.
     pub size: DVec2,
-    /// Length of a photo pixel near the lamp in unwarped pixels, along and across the axis.
+    /// Length of a photo pixel near the lamp, along and across the design's axis.
     pub photo_pixel: DVec2,
 }
 
@@ -127,7 +137,8 @@ impl Designs {
         designs
     }
 
-    /// Total area of the lamps by their designs, divided by their total area in the unwarped photo.
+    /// Total area of the designs of all lamps that have one, divided by the total area that these lamps cover in the
+    /// unwarped photo. 1 if no lamp has a design.
     pub fn area_ratio(&self, exemplar: &Exemplar) -> f64 {
         let (mut designed, mut shown) = (0.0, 0.0);
         for (k, lamp) in exemplar.components.list.iter().enumerate() {
@@ -146,20 +157,24 @@ impl Designs {
     }
 }
 
-/// A lamp of a kind, with the moments of its outline.
+/// A lamp of a kind, with the moments of its outline. Lengths are in unwarped pixels.
 struct Member {
+    /// Index of the lamp's component in the exemplar.
     component: usize,
     outline: Vec<DVec2>,
     area: f64,
     centre: DVec2,
-    /// Second moments divided by the area: variances and covariance.
+    /// Covariance matrix of the points inside the outline.
     moments: DMat2,
-    /// Angle of the smallest enclosing rectangle of the outline, in [0, π/2).
+    /// Angle of the smallest enclosing rectangle of the outline, in radians, in [0, π/2).
     angle: f64,
+    /// Number of photo pixels that show the lamp.
     weight: f64,
+    /// Length of a photo pixel at the lamp, along x and along y.
     blur: DVec2,
-    /// The matrix that converts steps in photo pixels to steps in unwarped pixels, near the lamp.
+    /// Near the lamp, converts a step in photo pixels to a step in unwarped pixels.
     inverse_map: DMat2,
+    /// Whether the photo shows the lamp completely, away from the border.
     is_clear: bool,
 }
 
@@ -181,8 +196,8 @@ impl Member {
         })
     }
 
-    /// Whether the lamp and the shape of a photo pixel in the unwarped image are both elongated, in about the same
-    /// direction.
+    /// Whether blur may have elongated the lamp: the lamp is elongated in the unwarped photo, a photo pixel is too, and
+    /// both have about the same direction.
     fn is_smeared(&self) -> bool {
         let [[short, x], [long, y]] = principal(self.moments);
         let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
@@ -190,14 +205,14 @@ impl Member {
         long > MIN_SMEAR * short && most > MIN_SMEAR * least && along > MIN_COS_ALONG
     }
 
-    /// Standard deviations of the area along and across an axis.
+    /// Standard deviations of the points inside the outline, along and across an axis.
     fn deviations(&self, axis: DVec2) -> DVec2 {
         let along = |a: DVec2| a.dot(self.moments * a).max(0.0).sqrt();
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// Sides along and across an axis, assuming the given shape. A rectangle is measured in its middle part only,
-    /// because blur rounds its corners.
+    /// The lamp's sides along and across an axis, if it has the given shape. The sides of an ellipse follow from its
+    /// standard deviations. Those of a rectangle are measured in its middle part, because blur rounds its corners.
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -218,8 +233,8 @@ impl Member {
     }
 }
 
-/// Fits the design of a kind to its lamps. Returns the design and the fit of each lamp; `None` if no simple shape
-/// agrees with the lamps.
+/// Fits a rectangle or an ellipse to the lamps of a kind. Returns the design, and the component and the fit of each
+/// lamp. `kind` is the index that the design will get. `None` if neither shape agrees with the lamps.
 fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)> {
     let mut judges: Vec<&Member> = members.iter().filter(|m| m.is_clear).collect();
     if judges.is_empty() {
@@ -256,16 +271,20 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps that are discs, without their bloom; `None` if they are not discs. `are_round` states that an
-/// ellipse fits the lamps better than a rectangle.
+/// Decides whether lamps are discs. Returns their diameter without bloom, in unwarped pixels; `None` if they are not
+/// discs. `are_round` states that an ellipse fits the lamps better than a rectangle.
 ///
-/// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. If this
-/// explains the long and short sides of at least [`MIN_BLOOM_LAMPS`] round lamps, they are discs. Otherwise they are
-/// discs if at least half of them, by weight, are elongated along their blur, and if one of these conditions holds:
+/// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. At least
+/// [`MIN_BLOOM_LAMPS`] round lamps are discs if bloom explains their long and short sides ([`BloomFit::shown`]).
+/// Otherwise, lamps are discs if at least half of them, by weight, are elongated along their blur, and if one of these
+/// conditions holds as well:
 ///
-/// - They are round: lamps are rarely oval, but bloom, or a lens below the ceiling, makes discs look oval.
+/// - They are round. Lamps are rarely oval, but bloom makes discs look oval. So does a cover that protrudes from the
+///   ceiling.
 /// - They are small in the photo.
 /// - They are not all elongated in one common direction.
+///
+/// The diameter of these lamps follows from their short sides if bloom does not explain the sides.
 fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
     let pixel = |m: &Member, x: f64, y: f64| (m.inverse_map.transpose() * DVec2::new(x, y)).length();
     let sides = |m: &&Member| {
@@ -302,18 +321,21 @@ fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     [[(mean - spread).max(0.0).sqrt(), axis.x], [(mean + spread).sqrt(), axis.y]]
 }
 
-/// The common axis of lamps: the mean angle of their enclosing rectangles, modulo a right angle. Returns the x axis if
-/// the mean is nearly aligned with it.
+/// The common axis of lamps: the mean angle of their enclosing rectangles, modulo a right angle and weighted by photo
+/// pixels. Returns the x axis if the mean is at most [`MAX_ALIGNED_ANGLE`] away from the x or the y axis.
 fn common_axis(members: &[&Member]) -> DVec2 {
     let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
     let angle = sum.to_angle() / 4.0;
     if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The common side of lamps without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a lamp,
-/// and the length of a photo pixel there, both in unwarped pixels. The bloom is estimated from the sides, if at least
-/// [`MIN_BLOOM_LAMPS`] lamps show it ([`BloomFit::shown`]). Otherwise it is estimated with the narrow prior [`BLOOM`].
-/// A single lamp, and lamps that seem smaller than in reality (bloom below 0), keep their mean side.
+/// The common side of lamps without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a lamp
+/// and the length of a photo pixel at the lamp, both in unwarped pixels.
+///
+/// - If at least [`MIN_BLOOM_LAMPS`] lamps show their bloom ([`BloomFit::shown`]), the bloom is estimated with the wide
+///   prior [`SHOWN_BLOOM`].
+/// - Otherwise it is estimated with the narrow prior [`BLOOM`]. If this estimate is not above 0, or if there is only
+///   one lamp, the result is the mean measured side.
 fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let fit = BloomFit::new(sides);
     let shown = if fit.count >= MIN_BLOOM_LAMPS { fit.shown() } else { None };
@@ -323,12 +345,14 @@ fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     })
 }
 
-/// A least-squares fit of `side = s + 2 bloom × photo pixel`: the side `s` of lamps without bloom in unwarped pixels,
-/// and the bloom at each edge in photo pixels.
+/// A weighted least-squares fit of the line `side = s + 2 b p` to the measured sides of lamps. `p` is the length of a
+/// photo pixel at a lamp in unwarped pixels. The unknowns are the side `s` without bloom, in unwarped pixels, and the
+/// bloom `b` at each edge, in photo pixels.
 struct BloomFit {
-    /// Normal equations for the side and the bloom, and the weighted sum of squared sides.
+    /// The normal equations are `gram` (s, b) = `sums`.
     gram: DMat2,
     sums: DVec2,
+    /// Weighted sum of the squared measured sides.
     square: f64,
     shortest: f64,
     count: usize,
@@ -348,35 +372,37 @@ impl BloomFit {
         fit
     }
 
-    /// The side in unwarped pixels, and the bloom in photo pixels. The prior of the bloom is normal, with mean 0 and
-    /// the given standard deviation in photo pixels.
+    /// Solves for (s, b), the side in unwarped pixels and the bloom in photo pixels. The prior of the bloom is normal,
+    /// with mean 0 and the given standard deviation in photo pixels.
     fn solve(&self, deviation: f64) -> DVec2 {
         (self.gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * self.sums
     }
 
-    /// The mean of the measured sides.
+    /// The weighted mean of the measured sides.
     fn mean(&self) -> f64 {
         self.sums.x / self.gram.x_axis.x
     }
 
-    /// The side, if bloom explains at least the share [`MIN_EXPLAINED`] of the variation of the measured sides.
+    /// The side without bloom. `None` if the bloom is below 0 or above [`MAX_BLOOM`], or if it does not explain more
+    /// than the share [`MIN_EXPLAINED`] of the variation of the measured sides.
     fn shown(&self) -> Option<f64> {
         let solution = self.solve(SHOWN_BLOOM);
-        // Sums of squared residuals of two models: with bloom (`left`), and with the mean side alone (`all`).
+        // Weighted sums of squared residuals of two models: a side with bloom (`left`), and a constant side (`all`).
         let left = self.square - 2.0 * solution.dot(self.sums) + solution.dot(self.gram * solution);
         let all = self.square - self.mean() * self.sums.x;
         let is_shown = (0.0..=MAX_BLOOM).contains(&solution.y) && left < (1.0 - MIN_EXPLAINED) * all;
         is_shown.then_some(solution.x).and_then(|side| self.limited(side))
     }
 
-    /// The side, raised to the share [`MIN_SIDE`] of the shortest measured side; `None` unless positive and finite.
+    /// Returns the larger of `side` and [`MIN_SIDE`] times the shortest measured side; `None` unless this is positive
+    /// and finite.
     fn limited(&self, side: f64) -> Option<f64> {
         Some(side.max(MIN_SIDE * self.shortest)).filter(|s| s.is_finite() && *s > 0.0)
     }
 }
 
 impl Design {
-    /// Corners of the outline around a centre, in the order from x towards y.
+    /// Corners of the outline around a centre, in the order of increasing angle from x towards y.
     pub fn outline(&self, centre: DVec2) -> Vec<DVec2> {
         let half = self.size / 2.0;
         let at = |p: DVec2| centre + self.axis * p.x + self.axis.perp() * p.y;
@@ -429,7 +455,8 @@ impl Design {
                 };
                 along(q.x, half.x) * along(q.y, half.y)
             }
-            // Computed from the signed distance to the ellipse, to first order.
+            // Approximate the ellipse near the square by a straight edge. Its signed distance is, to first order, the
+            // value of |(x / a, y / b)| - 1, with the half-axes a and b, divided by the length of its gradient.
             Shape::Ellipse => {
                 let u = q / half;
                 let r = u.length();
@@ -440,8 +467,8 @@ impl Design {
         }
     }
 
-    /// Agreement of a polygon with the design around `centre`: the area of their intersection divided by the area of
-    /// their union.
+    /// Agreement of a polygon of the given area with the design around `centre`: the area of their intersection divided
+    /// by the area of their union.
     fn agreement(&self, polygon: &[DVec2], area: f64, centre: DVec2) -> f64 {
         let own = self.outline(centre);
         let common = own.iter().zip(own.iter().cycle().skip(1)).fold(polygon.to_vec(), |clipped, (p, q)| {
@@ -453,7 +480,7 @@ impl Design {
     }
 }
 
-/// Area, centroid, and central second moments divided by the area of a polygon (Steger 1996); `None` if its area is 0.
+/// Area, centroid and covariance matrix of the points inside a polygon (Steger 1996); `None` if the area is 0.
 fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     let origin = *corners.first()?;
     let (mut area, mut first, mut xx, mut xy, mut yy) = (0.0, DVec2::ZERO, 0.0, 0.0, 0.0);
@@ -474,7 +501,8 @@ fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     (area.abs() > 0.0 && moments.is_finite()).then(|| (area.abs(), origin + mean, moments))
 }
 
-/// The angle in [0, π/2) of the smallest enclosing rectangle of the corners (Freeman and Shapira 1975).
+/// The angle, in radians in [0, π/2), of the smallest rectangle that encloses the corners. One of its sides lies along
+/// an edge of the convex hull (Freeman and Shapira 1975).
 fn rectangle_angle(corners: &[DVec2]) -> f64 {
     let hull = polygon::convex_hull(corners.to_vec());
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
@@ -499,8 +527,8 @@ mod tests {
 
     #[test]
     fn bloom_that_grows_with_magnification_is_taken_off() {
-        // Sides of 40 unwarped pixels. Bloom moves each edge outwards by 0.8 photo pixels, whose length grows from
-        // lamp to lamp.
+        // Sides of 40 unwarped pixels. Bloom moves each edge outwards by 0.8 photo pixels. A photo pixel is 1 to 6
+        // unwarped pixels long.
         let pixels = [1.0f64, 1.5, 2.5, 4.0, 6.0];
         let side = common_side(pixels.into_iter().map(|p| (40.0 + 1.6 * p, p))).unwrap();
         assert!((side - 40.0).abs() < 1.0, "{side}");
@@ -531,7 +559,7 @@ mod tests {
         }
     }
 
-    /// The same lamp in a photo that unwarping magnifies along x instead of y.
+    /// A lamp of the same outline in a photo that unwarping magnifies along x instead of y.
     fn with_blur_across(lamp: Member) -> Member {
         Member { blur: lamp.blur.yx(), inverse_map: DMat2::from_diagonal(lamp.blur.yx()), ..lamp }
     }
@@ -543,7 +571,7 @@ mod tests {
         let (design, _) = fit(&lamps, 0).unwrap();
         assert_eq!(design.shape, Shape::Ellipse);
         assert!((design.size - DIAMETER).abs().max_element() < 0.5, "{}", design.size);
-        // Ellipses that are long across their blur are no discs.
+        // Ellipses that are elongated across the direction of their blur are not discs.
         let turned: Vec<Member> = lamps.into_iter().map(with_blur_across).collect();
         let (design, _) = fit(&turned, 0).unwrap();
         assert!(design.size.y > 1.15 * design.size.x, "{}", design.size);
@@ -551,7 +579,7 @@ mod tests {
 
     #[test]
     fn a_few_ovals_that_are_long_along_their_blur_are_discs() {
-        // Two lamps are too few for measuring bloom, so the discs get the diameter of the short side of the ovals.
+        // Two lamps are too few to show their bloom, so the diameter of the discs is the short side of the ovals.
         let lamps = || [2.5, 2.6].into_iter().enumerate().map(|(k, pixel)| bloomed_disc(k, pixel));
         let (design, _) = fit(&lamps().collect::<Vec<_>>(), 0).unwrap();
         assert_eq!((design.shape, design.size.x), (Shape::Ellipse, design.size.y));

@@ -1,7 +1,7 @@
 //! Finds the lamps of the exemplar that a quilted texture shows, and places each as a whole.
 //!
 //! The texture is black outside the lights (Fig. 12c of the paper), so a patch contributes nothing but its lamps. A
-//! seam between patches may cut a lamp and leave only a part of it. Therefore parts of lamps are never drawn:
+//! seam between patches may cut a lamp and leave only a part of it. Therefore each lamp is drawn whole or not at all:
 //!
 //! - A lamp is placed as a whole if patches with one common shift show enough of it. A shift is the position in the
 //!   texture minus the position in the exemplar.

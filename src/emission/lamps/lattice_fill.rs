@@ -1,10 +1,12 @@
 //! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo. A site is a
 //! position within the lattice cell at which lamps lie.
 //!
-//! Patches repeat the errors of the photo: they lack distant lamps that the mask missed, and perspective has displaced
-//! others. The mean position of a site's lamps, weighted by their photo pixels, is more exact. A site that nearly
-//! always has a lamp gets one in every cell. At other sites the patches decide whether there is a lamp, and the lamp
-//! moves to the exact site.
+//! Patches repeat the errors of the unwarped photo: some distant lamps are absent because the light mask missed them,
+//! and others are displaced because the unwarping is inexact. The mean position of all lamps of a site, weighted by
+//! their photo pixels, is more exact.
+//!
+//! - A site that nearly always has a lamp in the photo gets one in every cell.
+//! - At any other site, the patch there decides whether there is a lamp. If there is one, it moves to the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -17,24 +19,24 @@ use crate::emission::lattice::law::Law;
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site (a position in the lattice cell) gets a lamp in every cell if lamps shine there in at least this share of
-/// the visible cells between its first and its last lamp, weighted by photo pixels. [bench emission:perspective]
+/// A site gets a lamp in every cell if its occupancy ([`Site::occupancy`]) is at least this. The occupancy is the share
+/// of visible cells, from the site's first to its last lamp, in which a lamp shines at the site. Cells are weighted by
+/// photo pixels. [bench emission:perspective]
 const MIN_OCCUPANCY: f64 = 0.93;
-/// If a site is dark in at most `MAX_FEW_DARK` of these cells, the share `MIN_OCCUPANCY_FEW_DARK` suffices instead of
-/// `MIN_OCCUPANCY`, because something may hide the missing lamps. [judged on 20 photos]
+/// If a site is dark in at most `MAX_FEW_DARK` of these cells, something may hide the missing lamps. An occupancy of
+/// `MIN_OCCUPANCY_FEW_DARK` then suffices. [judged on 20 photos]
 const MIN_OCCUPANCY_FEW_DARK: f64 = 0.5;
 const MAX_FEW_DARK: usize = 2;
-/// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
-/// [judged on 5 photos]
+/// A lamp counts as sharp if the number of photo pixels that show it is at least this share of the largest number among
+/// the lamps of its site. [judged on 5 photos]
 const MIN_SHARP_SHARE: f64 = 0.4;
-/// Two positions count as one site if their distance along each axis is at most this share of a lamp's side.
-/// [judged on 20 photos]
+/// A position belongs to a site if its distance from the site, along x and along y, is at most this share of the width
+/// or height of the site's lamp. [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
 
-/// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels whose lattice begins at
-/// `offset`. A site that nearly always has a lamp gets one in every cell. `shown` holds the lamps that the copied
-/// patches contain: at such a site they are dropped, near another site they move exactly onto it, and elsewhere they
-/// stay unmoved.
+/// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels. The origin of the exemplar
+/// moves to `offset`. A site that nearly always has a lamp gets one in every cell. `shown` holds the lamps that the
+/// copied patches contain. Returns the lamps of `shown` unchanged if `law` has no lattice.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -65,9 +67,8 @@ pub fn place(
             }
         }
     }
-    // Add the lamps that the copied patches contain. A site is a position that repeats in every cell. Skip a lamp near
-    // a site that got a lamp in every cell above. Move a lamp near one of the other sites exactly onto it. Leave a
-    // lamp near no site where it is.
+    // Add the lamps that the copied patches contain. Skip a lamp near a site that got a lamp in every cell above. Move
+    // a lamp near any other site exactly onto the site. Leave a lamp where it is if no site is near.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
@@ -81,16 +82,17 @@ pub fn place(
     instances
 }
 
-/// Finds where the pattern ends in the exemplar. Returns a function that is true for a position beyond the end. Only
-/// sites that get a lamp in every cell count, and the pattern ends where all of them have ended. `None` if there is no
-/// such site, or if one of them does not end in view.
+/// Finds where the pattern of lamps ends in the exemplar, for example before a wall. Returns a function that is true
+/// for a position beyond the end. Only sites that get a lamp in every cell are considered, and the pattern ends where
+/// the last of them ends. `None` if there is no such site, or if at least one of them continues to the border of the
+/// view.
 pub fn end<'a>(sites: &'a Sites, exemplar: &Exemplar) -> Option<impl Fn(DVec2) -> bool + use<'a>> {
     let filled: Vec<&Site> = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).collect();
     let all_end = !filled.is_empty() && filled.iter().all(|site| site.ends());
     all_end.then(|| move |position| !filled.iter().any(|site| sites.continues(site, position)))
 }
 
-/// Whether a site gets a lamp in every cell. The panes of a luminous ceiling always do.
+/// Whether a site gets a lamp in every cell. On a luminous ceiling, every site does: panes cover it without gaps.
 fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     if exemplar.is_luminous_ceiling() {
         return true;
@@ -98,8 +100,8 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.hole_count <= MAX_FEW_DARK { MIN_OCCUPANCY_FEW_DARK } else { MIN_OCCUPANCY }
 }
 
-/// Returns the sites in descending order of the number of photo pixels of their lamps. Leaves out each site that
-/// overlaps an earlier one in this order.
+/// Returns the sites in descending order of the number of photo pixels that show their lamps. Leaves out each site that
+/// overlaps an earlier site of this order.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));

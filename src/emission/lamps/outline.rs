@@ -4,30 +4,33 @@
 //! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
 //! each lit texel and each adjacent unlit one. Lit texels that have only a corner in common belong to one lamp.
 //!
-//! The coverages of the two texels determine where the outline crosses the line between their centres. For a straight
-//! edge that crosses only these two texels, the sum of both coverages gives the exact position, whereas a level set of
-//! interpolated values is off by up to 0.09 texels.
+//! The coverages of the two texels determine where the outline crosses the line between their centres. If a straight
+//! edge crosses only these two texels, the sum of both coverages gives the exact position. Linear interpolation of the
+//! coverages to 0.5, as in common marching squares, would be off by up to 0.09 texels.
 //!
-//! A lamp's corners are sharper than texels can show, so two sides that are a few texels long are extended until they
-//! meet.
+//! Texels blunt the corners of a lamp. To restore a corner, its two sides are extended until they meet, if both are at
+//! least two texels long.
 
 use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
 use glam::DVec2;
 
-/// Maximum distance in texels by which simplification may move an outline that runs between the centres of texels.
-/// [rounding]
+/// Simplification may move an outline by at most this distance, in texels. The value is for outlines that run between
+/// the centres of texels. [rounding]
 const TOLERANCE: f64 = 0.1;
-/// Like `TOLERANCE`, but for an outline along the corners of texels, which is used if every texel is either fully lit
-/// or unlit. This distance turns a staircase into a line. [rounding]
+/// Like `TOLERANCE`, but for outlines along the corners of texels. Such an outline is a staircase; this tolerance turns
+/// it into a straight line. It is used for narrow lamps, and if every texel is either fully lit or unlit. [rounding]
 const STAIRCASE_TOLERANCE: f64 = 1.0;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
 /// centres would enclose only half of a single texel. [rounding]
 const MAX_NARROW_WIDTH: f64 = 2.0;
-/// Limits for restoring sharp corners, in texels. `MIN_SIDE`: minimum length of a side whose direction is used.
-/// `MAX_BLUNT`: maximum length of the blunt part between two sides. `MAX_EXTENDED`: maximum length by which a side is
-/// extended. `COS_CORNER`: cosine of 60°, the minimum angle by which the outline must turn from one side to the next.
-/// A disc turns by less from one side of length `MIN_SIDE` to the next, so it gets no corners. [origin not recorded]
+/// Limits for restoring sharp corners; lengths are in texels. [origin not recorded]
+///
+/// - `MIN_SIDE`: minimum length of a side whose direction is used.
+/// - `MAX_BLUNT`: maximum length of the blunt part between two sides.
+/// - `MAX_EXTENDED`: maximum length by which a side is extended.
+/// - `COS_CORNER`: cosine of 60°. At a corner, the outline must turn by at least 60° from one side to the next. The
+///   outline of a disc turns by less between two sides of length `MIN_SIDE`, so a disc gets no corners.
 const MIN_SIDE: f64 = 2.0;
 const MAX_BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
@@ -35,22 +38,26 @@ const COS_CORNER: f64 = 0.5;
 /// Tolerance, in texels, within which a restored corner may lie outside the texture because of rounding. [rounding]
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, traversed with the lamp on the right. For each texel edge on the way, `crossings`
-/// holds the point at which the outline crosses the line between the centres of the two texels at that edge, and
-/// `corners` holds the texel corner at which the edge begins. Points are relative to the lamp's first column and row,
-/// so that equal lamps have equal bits anywhere in the texture.
+/// The outer boundary of a lamp, traversed along the edges of texels with the lamp on the right. Lengths are in texels.
+/// Points are relative to `origin`, so that equal lamps have bit-identical outlines anywhere in the texture.
 pub struct Ring {
+    /// For each texel edge, the point at which the outline crosses the line between the centres of its two texels.
     crossings: Vec<DVec2>,
+    /// For each texel edge, the texel corner at which it begins.
     corners: Vec<DVec2>,
+    /// Whether light covers any texel beside the boundary partly.
     is_soft: bool,
+    /// Width or height of the lamp, whichever is smaller.
     narrow: f64,
+    /// First column and first row of the lamp.
     origin: DVec2,
 }
 
 impl Ring {
-    /// Walks around a lamp. `is_in` tells whether a texel, given by column and row, belongs to the lamp. `coverage`
-    /// gives the share of a texel that light covers: at least 0.5 for texels of the lamp, less for others, and `None`
-    /// outside the texture, where the outline follows the border.
+    /// Walks around a lamp and records its boundary. Both functions take the column and the row of a texel. `is_in`
+    /// tells whether the texel belongs to the lamp. `coverage` gives the share of the texel that light covers: at least
+    /// 0.5 for texels of the lamp, less for other texels, and `None` outside the texture, where the outline follows the
+    /// border.
     pub fn walk(
         lamp: &Component,
         is_in: &dyn Fn([isize; 2]) -> bool,
@@ -62,9 +69,9 @@ impl Ring {
         let start = first.unwrap_or(origin);
         let local = |at: [isize; 2]| DVec2::new((at[0] - origin[0]) as f64, (at[1] - origin[1]) as f64);
 
-        // Walk eastwards from the start with the lamp on the right. Only one texel of the lamp touches the start, so
-        // the walk ends when it returns there. Where two lamp texels touch at a corner only, turn left: both belong to
-        // the lamp.
+        // Begin in the direction of +x, with the lamp on the right. Only one texel of the lamp touches the start, so
+        // the boundary passes through the start once, and the walk ends there. Where two lamp texels have only a corner
+        // in common, turn left, from one texel to the other: both belong to the lamp.
         let (mut crossings, mut corners, mut is_soft) = (Vec::new(), Vec::new(), false);
         let (mut at, mut heading) = (start, [1isize, 0isize]);
         loop {
@@ -92,7 +99,8 @@ impl Ring {
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > MAX_NARROW_WIDTH {
-            // Begin at the point farthest from the centre, so that a rotated lamp begins at the corresponding point.
+            // Begin at the point farthest from the centre, whatever the lamp's orientation. Simplification depends on
+            // where the outline begins, and equal lamps should get equal outlines.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);
@@ -108,13 +116,14 @@ impl Ring {
     }
 }
 
-/// Tolerance, in texels, for simplifying an outline along the corners of texels; the lamp is `narrow` texels wide.
+/// Tolerance, in texels, for simplifying an outline along the corners of texels. `narrow` is the width or height of the
+/// lamp in texels, whichever is smaller.
 pub fn staircase(narrow: f64) -> f64 {
     STAIRCASE_TOLERANCE.min(0.3 * narrow)
 }
 
-/// The texel diagonally ahead of the texel corner `at` for a walk in direction `heading`: on the right if `side` is 1,
-/// on the left if it is -1.
+/// The texel diagonally ahead of a walk that is at the texel corner `at` and moves in direction `heading`: the texel on
+/// the right if `side` is 1, on the left if `side` is -1.
 fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     [
         at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2),
@@ -122,15 +131,16 @@ fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     ]
 }
 
-/// Where the outline crosses the line from the centre of a lit texel to the centre of an adjacent unlit texel, as a
-/// share of that line. The arguments are the coverages of both texels. `beyond` is NaN outside the texture, where the
-/// outline follows the border.
+/// The outline crosses the line from the centre of a lit texel to the centre of an adjacent unlit texel. Returns the
+/// distance of the crossing from the lit centre, in texels. `light` and `beyond` are the coverages of the lit and the
+/// unlit texel. `beyond` is NaN outside the texture, where the outline follows the border.
 fn crossing(light: f64, beyond: f64) -> f64 {
     let step = light - beyond;
     match () {
         () if beyond.is_nan() => 0.5,
-        // The position of a straight edge follows from the two coverages: from their sum if the edge crosses only
-        // these two texels, from their slope if it is blurred over more. At a step of one half both formulas agree.
+        // If a sharp straight edge crosses only these two texels, their lit areas add up to its distance from the far
+        // side of the lit texel. If the edge is blurred over more texels, coverage falls linearly from `light` by
+        // `step` per texel and reaches 0.5 at the edge. For a step of 0.5, both formulas agree.
         () if step > 0.5 => light + beyond - 0.5,
         () => ((light - 0.5) / step.max(f64::MIN_POSITIVE)).min(1.0),
     }
@@ -142,7 +152,8 @@ fn farthest(points: &[DVec2], from: DVec2) -> usize {
     (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// Simplifies a closed outline: drops points that lie close to a line between other points (Douglas and Peucker 1973).
+/// Simplifies a closed outline (Douglas and Peucker 1973): drops points that are at most `tolerance` away from the line
+/// between the kept points before and after them.
 pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     // Split the outline at the point farthest from the first, then simplify both halves.
     let far = points.first().map_or(0, |first| farthest(&points, *first));
@@ -154,7 +165,8 @@ pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     points.iter().zip(&kept).take(points.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()
 }
 
-/// Marks the points between two kept points that are too far from the line between them.
+/// Marks in `kept` the points between the kept points `first` and `last` that simplification must keep: repeatedly the
+/// point farthest from the line between its kept neighbours, if its distance exceeds `tolerance`.
 fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &mut [bool]) {
     let mut open = vec![(first, last)];
     while let Some((a, b)) = open.pop() {
@@ -171,8 +183,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// Replaces the blunt corners of a closed outline by sharp ones, unless the sharp corner would lie outside the
-/// texture, which reaches from `first` to `last`.
+/// Replaces the blunt corners of a closed outline by sharp ones, except where the sharp corner would lie outside the
+/// texture. `first` and `last` are the upper left and the lower right corner of the texture.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];
@@ -199,7 +211,9 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     out
 }
 
-/// The point where two sides would meet; `None` if the part between them is too long for a corner blunted by texels.
+/// The sharp corner at which the side from `a` to `end` and the next side, from `start` to `b`, would meet. `between`
+/// holds the points of the outline from `end` to `start`. `None` if the sides already meet, if they turn too little, or
+/// if the blunt part or one of the two extensions is too long.
 fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Option<DVec2> {
     let length: f64 = between.windows(2).map(|w| w[0].distance(w[1])).sum();
     let (u, v) = ((end - a).normalize(), (b - start).normalize());

@@ -1,9 +1,9 @@
 //! Restores the colour of lamps that the photo shows clipped.
 //!
-//! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At the rim, where
-//! the lens blurs the lamp into the dark surroundings, all channels are below white and show the lamp's colour. The
-//! core gets the colour of the rim, with the minimum brightness that its clipped channels allow. How much brighter the
-//! core is cannot be read from the photo; relighting solves for it.
+//! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At the rim, the
+//! lens blurs the lamp into the dark surroundings. There, all channels are below white and show the lamp's colour. The
+//! core gets the colour of the rim, with the minimum brightness that its clipped channels allow. The photo does not
+//! tell how much brighter the core really is; relighting estimates it.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -11,12 +11,13 @@ use crate::emission::exemplar::components::Components;
 use crate::image::Image;
 use glam::{DVec3, Vec3};
 
-/// An image in which a lit pixel exceeds this value has a high dynamic range and is not clipped. [convention]
+/// If a channel of any lit pixel exceeds this value, the image has a high dynamic range and is not clipped. White is 1.
+/// [convention]
 const MAX_CLIPPED: f32 = 1.05;
-/// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
-/// [origin not recorded]
+/// A pixel belongs to a lamp's rim only if its strongest channel is at least this share of the level at which channels
+/// clip. [origin not recorded]
 const MIN_BRIGHTNESS: f32 = 0.5;
-/// A pixel may belong to a lamp's rim if its distance from the lamp is at most this, in pixels.
+/// A pixel belongs to a lamp's rim only if it is at most this many columns and rows away from a pixel of the lamp.
 const RIM_WIDTH: usize = 2;
 /// A colour is read from a rim only if the rim has at least this number of pixels. [origin not recorded]
 const MIN_RIM: f64 = 8.0;
@@ -26,8 +27,10 @@ const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
 /// The colours of lamps, read from their rims, which replace clipped pixels.
 pub struct RimColours {
+    /// Channel values of at least this are clipped.
     level: f32,
-    /// The colour of each component, scaled so that its strongest channel is 1; `None` if no rim has enough pixels.
+    /// The colour of each component, scaled so that its strongest channel is 1. A component whose rim has too few
+    /// pixels gets the mean colour of all rims. `None` if all rims together have too few.
     colours: Vec<Option<Vec3>>,
 }
 
@@ -63,13 +66,14 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// Replaces the clipped channels of `value`, the photo's colour of a component, by the rim's colour.
+    /// Replaces the clipped channels of `value`, a pixel of a component, by those of the rim's colour. The rim's colour
+    /// is scaled to the lowest brightness that agrees with all channels of `value`. No channel decreases.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {
             Some(colour) if clipped.any() => {
-                // Find the brightness at which the rim's colour agrees with `value`. Each channel gives a brightness;
-                // a clipped channel gives only a lower bound.
+                // Find the factor by which the rim's colour agrees with `value`. Each channel gives a factor; that of a
+                // clipped channel is only a lower bound. Take the largest of all.
                 let strength = value / colour;
                 let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
@@ -80,7 +84,7 @@ impl RimColours {
     }
 }
 
-/// The label of a pixel or, if the pixel has no label, of a labelled pixel within [`RIM_WIDTH`].
+/// The label of the component that contains pixel `i` or, if there is none, of a component within [`RIM_WIDTH`].
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(RIM_WIDTH)..(y + RIM_WIDTH + 1).min(height);
@@ -98,7 +102,8 @@ mod tests {
     use super::*;
     use crate::emission::exemplar::components;
 
-    /// A photo with clipped round lamps, far brighter than white and blurred by a lens.
+    /// A photo of round lamps, blurred by a lens and clipped at 1. Each lamp is given as (x, y, colour); the colours
+    /// are brighter than white.
     fn photo(lamps: &[(f32, f32, Vec3)]) -> Image {
         Image::from_fn(160, 60, |x, y| {
             let light: Vec3 = lamps
@@ -122,8 +127,8 @@ mod tests {
         for (component, truth, x) in [(0, warm, 40), (1, cool, 110)] {
             assert_eq!(image.rgb(x, 30), Vec3::ONE);
             let light = rim_colours.undo(component, Vec3::ONE);
-            // The ratio of any two channels must be restored from the clipped value 1. The dark surroundings
-            // contribute up to a tenth of the light in the rim.
+            // The photo shows the core as (1, 1, 1). The ratios between the lamp's channels must be restored. The
+            // tolerance is needed because the surroundings contribute up to a tenth of the light in the rim.
             for (a, b) in [(0, 1), (1, 2), (0, 2)] {
                 let (stated, true_ratio) = (light[a] / light[b], truth[a] / truth[b]);
                 assert!((stated / true_ratio - 1.0).abs() < 0.12, "{light} for {truth}");

@@ -1,4 +1,4 @@
-//! Replaces lamps that have few photo pixels by similar lamps that have many.
+//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show, because these are sharper.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -7,22 +7,23 @@ use crate::emission::exemplar::roles::Role;
 use crate::rng::Rng;
 use std::collections::BTreeMap;
 
-/// Two lamps are similar if their areas, their sides and their aspect ratios each differ by at most this share.
-/// [origin not recorded]
+/// Two lamps are similar if their areas, their widths, their heights and their aspect ratios each differ by at most a
+/// relative tolerance. Let A be the number of photo pixels that show the lamp to be replaced. The tolerance is
+/// `DIFFERENCE` + `BLUR_PIXELS` / √A, but at most `MAX_DIFFERENCE`. [origin not recorded]
 const DIFFERENCE: f64 = 0.25;
 
-/// `BLUR_PIXELS`: number of photo pixels by which sides may differ in addition to `DIFFERENCE`, because blur and bloom
-/// lengthen a lamp with few photo pixels. `MAX_DIFFERENCE`: maximum of both tolerances together, as a relative
-/// difference. [origin not recorded]
+/// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp most. For `MAX_DIFFERENCE`,
+/// see [`DIFFERENCE`]. [origin not recorded]
 const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 
-/// A lamp counts as sharp if it has at least this share of the photo pixels of the largest similar lamp.
-/// [origin not recorded]
+/// A lamp counts as sharp if the number of photo pixels that show it is at least this share of the largest number among
+/// similar lamps. [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
-/// Replaces each lamp with few photo pixels by a similar whole lamp with many. If there are several such lamps, one is
-/// chosen at random, so that the texture keeps their variety.
+/// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp
+/// and whole, with the same centre. Chooses at random among several such lamps, so that the texture keeps their
+/// variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -31,7 +32,6 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
             let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= like * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
             let ([w, h], [u, v]) = (a.size(), b.size());
-            // Require similar size and proportions; the replacement must be a whole lamp.
             let is_alike = close(a.area, b.area) && close(w, u) && close(h, v) && close(w * v, u * h);
             exemplar.roles[*j] == Role::Whole && is_alike
         };

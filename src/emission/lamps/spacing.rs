@@ -1,6 +1,7 @@
-//! Keeps copies of lamps apart.
+//! Keeps the copies of lamps in a texture apart.
 //!
-//! If the lamps of a photo do not lie exactly on a lattice, the texture may show one lamp at two nearly equal places.
+//! If the lamps of a photo do not lie exactly on a lattice, different patches may show one lamp at two nearly equal
+//! positions. One of these copies is dropped.
 
 use super::design::{Design, Designs};
 use super::instance::Instance;
@@ -8,10 +9,11 @@ use crate::emission::exemplar::Exemplar;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Minimum gap between two copies, as a share of the smallest gap between two lamps of the photo. [convention]
+/// Minimum gap between two lamps of the texture, as a share of the smallest gap between two whole lamps of the unwarped
+/// photo. [convention]
 const MIN_GAP_SHARE: f64 = 0.5;
 
-/// A box around a lamp.
+/// An axis-aligned box around a lamp, in unwarped pixels.
 #[derive(Clone, Copy)]
 struct Frame {
     centre: DVec2,
@@ -19,13 +21,13 @@ struct Frame {
 }
 
 impl Frame {
-    /// Gap between two boxes along the axis on which they are farther apart; negative if they overlap.
+    /// The larger of the gaps between two boxes along x and along y; negative if they overlap.
     fn gap(&self, other: &Self) -> f64 {
         ((self.centre - other.centre).abs() - (self.size + other.size) / 2.0).max_element()
     }
 }
 
-/// The box around a component as it is drawn.
+/// The box around a component at its position in the exemplar. A component with a design gets the box of the design.
 fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
     match designs.of(component) {
         Some((&Design { size, axis, .. }, fitted)) => {
@@ -38,8 +40,8 @@ fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
     }
 }
 
-/// Drops each copy whose gap to an earlier copy is below [`MIN_GAP_SHARE`] times the smallest gap between two whole
-/// lamps of the photo.
+/// Returns the instances without those that are too close to an earlier instance that is kept. The minimum gap is
+/// [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar.
 pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instance>) -> Vec<Instance> {
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();
@@ -49,8 +51,8 @@ pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instanc
         return instances;
     }
 
-    // Look up earlier copies in a grid. Its cells are as large as the longest lamp plus the minimum gap, so a copy that
-    // is too close lies in the same cell or in an adjacent one.
+    // Find earlier instances by a grid over their centres. A grid cell is as large as the longest lamp plus the minimum
+    // gap, so an instance that is too close lies in the same grid cell or in an adjacent one.
     let cell = frames.iter().map(|f| f.size.max_element()).fold(0.0, f64::max) + least;
     let mut grid: BTreeMap<[i64; 2], Vec<Frame>> = BTreeMap::new();
     let mut kept = Vec::new();

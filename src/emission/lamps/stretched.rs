@@ -1,8 +1,10 @@
 //! Places lamps on a stretched lattice, cell by cell.
 //!
-//! Within a patch, lamps keep the distances of the exemplar. If the lattice is stretched for a tileable texture, the
-//! distances would be wrong within patches and jump between them. Therefore each cell of the stretched lattice gets
-//! the lamps of one whole cell of the exemplar: the cell that the patch at its centre shows.
+//! A tileable texture may need a stretched lattice, so that a whole number of periods fits its sides. Lamps that are
+//! copied with their patch keep the distances that they have in the exemplar. On a stretched lattice, these distances
+//! are slightly wrong within a patch, and the error shows as a jump at the seams. Therefore lamps are placed by cells
+//! instead: each cell of the stretched lattice gets all lamps of one complete cell of the exemplar, the one that the
+//! patch at the cell's centre shows.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -15,8 +17,9 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Places the lamps in a texture of `size` unwarped pixels, on the lattice `stretched` in place of the exemplar's
-/// lattice `own`. The stretched lattice begins at `offset`. `None` if the exemplar shows no lamp or no complete cell.
+/// Places the lamps of the exemplar, whose lattice has the periods `own`, in a texture whose lattice has the periods
+/// `stretched`. The origin of the exemplar moves to `offset`. `size` is the size of the texture. Lengths are in
+/// unwarped pixels. `None` if the exemplar has no lamp or no complete cell.
 pub fn place(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -37,8 +40,8 @@ pub fn place(
     let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
-    // Collect the lamps of each cell, then the complete cells. A cell is complete if it has no cut lamp and the photo
-    // shows the position of its central lamp.
+    // Collect the lamps of each cell in `lamps`, and the complete cells in `whole`. A cell is complete if it has no cut
+    // lamp and the photo shows all of the place where its central lamp should be.
     let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
     let components = exemplar.components.list.iter().zip(&exemplar.roles);
@@ -52,8 +55,8 @@ pub fn place(
     }
     let known: BTreeSet<Cell> = whole.iter().copied().collect();
 
-    // Fill the cells whose centre lies in the texture. Lamps of these cells that cross the border re-enter on the
-    // opposite side.
+    // Fill the cells whose centre lies in the texture with the lamps of a complete cell: the cell that the patch there
+    // shows, or a random one if that cell is not complete. Lamps that cross the border re-enter on the opposite side.
     let start = first.centre + offset;
     let mut instances = Vec::new();
     for cell in cells::between(to_stretched, DVec2::ZERO - start, size - start) {
@@ -75,7 +78,7 @@ pub fn place(
     Some(instances)
 }
 
-/// Whether the unwarped photo shows all corners of a lamp that is moved to `centre`.
+/// Whether the photo would show all corners of the lamp's bounding box if the lamp were at `centre`.
 fn shows(exemplar: &Exemplar, lamp: &Component, centre: DVec2) -> bool {
     let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) / 2.0;
     let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];
