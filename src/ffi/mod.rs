@@ -1,4 +1,5 @@
-//! The C boundary: the only place with `extern "C"` and raw pointers. One file per handle; nothing here computes.
+//! The C boundary: the only place with `extern "C"` and raw pointers. Each kind of handle has a file of its own. These
+//! files only check and convert arguments and results; the other modules of the library do the computations.
 //!
 //! The parts from which the entry points are built:
 //! - [`guard`] turns panics and errors into a status and keeps the message for the calling thread;

@@ -11,7 +11,8 @@ use glam::DVec2;
 /// Choice of the length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
 pub type luxfer_pattern_scale = i32;
 /// The distance of the photo's camera from the plane with the lights. It is plane_distance of luxfer_transfer_params,
-/// or if that is 0, an estimate from the size of the lamps.
+/// or if that is 0, an estimate. The estimate comes from the size of the lamps if they are rectangular; otherwise it is
+/// a usual distance with a large error.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
 /// The length of the lamps: the pattern is scaled until the median of their longer sides is
 /// luxfer_pattern_params.length.

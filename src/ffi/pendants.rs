@@ -43,7 +43,7 @@ pub const LUXFER_BODY_DOME: luxfer_body = 6;
 /// Any other body of revolution, such as a bell.
 pub const LUXFER_BODY_OTHER: luxfer_body = 7;
 
-/// The length that determines the size of lamps: a LUXFER_KNOWN_ value.
+/// The length that determines the size of the lamps: a LUXFER_KNOWN_ value.
 pub type luxfer_known = i32;
 /// No length is known; suspensions determine the size if any are given.
 pub const LUXFER_KNOWN_NOTHING: luxfer_known = 0;
@@ -54,17 +54,17 @@ pub const LUXFER_KNOWN_DIAMETER: luxfer_known = 2;
 /// The horizontal distance between the axes of the first two lamps.
 pub const LUXFER_KNOWN_SPACING: luxfer_known = 3;
 
-/// No length determines the size: drop, diameter and height hold only bounds.
+/// No length determines the size, or only with a standard deviation above half of the size. The fields drop, diameter
+/// and height then hold only bounds.
 pub const LUXFER_DOUBT_SIZE: u32 = 1;
 /// The probability of the kind is below 0.9.
 pub const LUXFER_DOUBT_KIND: u32 = 2;
-/// The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its glare may
-/// enlarge the outline.
+/// The photo clips more than a tenth of the lamp's pixels (see luxfer_pendant.clipped): the lamp may be brighter than
+/// it appears, and its glare may enlarge the outline.
 pub const LUXFER_DOUBT_CLIPPED: u32 = 4;
 /// The border of the photo cuts off a part of the outline.
 pub const LUXFER_DOUBT_CUT: u32 = 8;
-/// The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of the largest
-/// diameter.
+/// The body hides a part of its own profile. At least one value of luxfer_pendant.profile_error exceeds 0.05.
 pub const LUXFER_DOUBT_HIDDEN: u32 = 16;
 
 /// Largest number of lamps, and of suspensions, that luxfer_pendants_find accepts.
@@ -80,8 +80,9 @@ pub struct luxfer_pendants_params {
     pub alike: u32,
     /// 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height.
     pub level: u32,
-    /// 1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the luminances
-    /// inside and outside the lamp; 0: the outline is that of the mask.
+    /// 1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of the
+    /// luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on the
+    /// outline of the mask. 0: all points stay on the outline of the mask.
     pub refine: u32,
     /// Meaning of known_length: a LUXFER_KNOWN_ value; default LUXFER_KNOWN_NOTHING.
     pub known: luxfer_known,
@@ -90,16 +91,17 @@ pub struct luxfer_pendants_params {
     /// The known length in metres: in [0, 1e4] for LUXFER_KNOWN_DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
     /// be 0, the default, with LUXFER_KNOWN_NOTHING.
     pub known_length: f64,
-    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in multiples
-    /// of the true height.
+    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
+    /// the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
     pub ceiling: f64,
     /// Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1.
     pub suspension_error: f64,
     /// Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
     /// a rectification.
     pub focal: f64,
-    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a rectification
-    /// is given, the rectification's own error is used if its focal length was assumed or read from metadata.
+    /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
+    /// for the standard deviation that the rectification has; it has one only for a focal length that was assumed or
+    /// read from metadata.
     pub focal_error: f64,
     /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
     /// 0. Not used with a rectification, which has its own value.
@@ -207,9 +209,9 @@ impl luxfer_pendants_params {
     }
 }
 
-/// A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value, and the
-/// lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are the known
-/// bounds, which may be 0 and infinity. A value without an estimate is NaN.
+/// A hanging lamp: its body, its place and the doubts about them. Fields called an interval hold three numbers: the
+/// value, and the lower and the upper end of its 95 % confidence interval. If the photo does not determine the value,
+/// the ends are the known bounds of the value, which may be 0 and infinity. A value without an estimate is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_pendant {
@@ -239,13 +241,14 @@ pub struct luxfer_pendant {
     pub residual: f64,
     /// Share of the outline that the photo's border cuts off, in [0, 0.3].
     pub cut: f64,
-    /// Share of the lamp's pixels that the photo clips, in [0, 1].
+    /// Share of the lamp's pixels that the photo clips, in [0, 1]. A pixel counts as clipped if a channel is at least
+    /// 98 % of the photo's largest value.
     pub clipped: f64,
     /// Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the largest
     /// diameter. Elements from profile_count on are 0.
     pub profile: [[f32; 2]; 65],
-    /// Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is large where
-    /// the body hides its own profile.
+    /// Half-width of the 95 % confidence interval of each radius of the profile, in multiples of the largest diameter.
+    /// It is large where the body hides its own profile.
     pub profile_error: [f32; 65],
     /// Mean radiance of the lamp in 16 bands of equal height, from bottom to top: linear RGB in the units of the photo.
     /// Where the photo is clipped, it is only a lower bound.
@@ -288,7 +291,7 @@ const MAX_PLACES: u32 = 1024;
 const SURE: f64 = 0.9;
 /// A lamp with a larger share of clipped pixels gets LUXFER_DOUBT_CLIPPED. [convention]
 const CLIPPED: f64 = 0.1;
-/// If half of the 95 % interval of a radius exceeds this multiple of the largest diameter, the lamp gets
+/// If an element of `profile_error` exceeds this value (a multiple of the largest diameter), the lamp gets
 /// LUXFER_DOUBT_HIDDEN. [convention]
 const HIDDEN: f64 = 0.05;
 
@@ -356,15 +359,16 @@ fn doubts(found: &Fixture, lamp: &Lamp) -> u32 {
 }
 
 /// Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
-/// 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp; lamps are numbered in the
-/// order of their topmost pixels. view is a rectification of the photo whose job has succeeded; NULL: the camera is
-/// that of params. params may be NULL for the defaults.
+/// 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp, except regions with less than
+/// 2 % of the largest region's pixels, which are ignored. Lamps are numbered in the order of their topmost pixels. view
+/// is a rectification of the photo whose job has succeeded; NULL: the camera is that of params. params may be NULL for
+/// the defaults.
 ///
 /// suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
-/// there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp may have one point.
-/// pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps, even if
-/// it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp, and
-/// more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+/// there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at most one
+/// point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps,
+/// even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp,
+/// and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
 /// LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
 /// of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
 /// LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
@@ -407,12 +411,13 @@ pub unsafe extern "C" fn luxfer_pendants_find(
     })
 }
 
-/// Adds count meshes, 1 to 1024, to a scene, each with the body of a lamp that luxfer_pendants_find has found. places
-/// has the coordinates x, y and z in metres of the middle of each body's upper end. diameter is the largest diameter in
-/// metres, in [0.001, 1e4]; 0: the diameter found. The meshes share a new material, which emits light with the photo's
-/// colours along the height of the body. Where the photo clips the lamp, this emission is too dark. luminance is the
-/// luminance in cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive
-/// the index of the first new mesh and that of the material; each pointer may be NULL. Any thread.
+/// Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
+/// found. places holds x, y and z in metres of count points; each point becomes the centre of the upper end of one
+/// body. diameter is the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The
+/// meshes share a new material. Its emission follows the colours of the photo along the height of the body. Where the
+/// photo clips the lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value
+/// 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and that of the
+/// material; each pointer may be NULL. Any thread.
 /// LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]

@@ -53,7 +53,7 @@ pub struct luxfer_photo_metadata {
     pub iso: f64,
     /// Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), from the definition of
     /// the saturation-based speed in ISO 12232. N, t and S are the three fields above. 0 = unknown. Valid only for the
-    /// image that the camera wrote: editors that change the brightness keep these tags.
+    /// image that the camera wrote: an editor that changes the brightness keeps the tags, so the value is then wrong.
     pub white_luminance: f64,
     /// Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO speed is a
     /// standard output sensitivity (ISO 12232) instead of a saturation-based speed.

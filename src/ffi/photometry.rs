@@ -32,10 +32,10 @@ pub struct luxfer_glare_report {
     pub threshold: f64,
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
-    /// Number of point lights, spot lights and luminaires of the rendered scene that shine from points. They are
-    /// invisible in the image, and ugr leaves them out. Known only for images of luxfer_render_get_image and
-    /// luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
-    /// LUXFER_WARNING_NOT_IN_PICTURE.
+    /// Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires without
+    /// faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+    /// luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the
+    /// scene has LUXFER_WARNING_NOT_IN_PICTURE.
     pub unseen_lights: u32,
     /// Reserved; always 0.
     pub reserved: u32,

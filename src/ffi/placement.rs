@@ -43,7 +43,8 @@ pub struct luxfer_placement_params {
     /// Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5.
     pub min_offset: [f64; 2],
     /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
-    /// allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the fields below.
+    /// allows every offset. If min_offset and max_offset are equal, the offset is fixed; the same holds for scale and
+    /// rotation.
     pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub min_scale: [f64; 2],
@@ -116,9 +117,9 @@ pub struct luxfer_placement {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The error
-    /// of response that comes from the size of the cells is about a third of this difference, which also contains
-    /// noise.
+    /// The response computed with cells of twice the width and height, minus the field response, in cd/m² per channel.
+    /// About a third of this difference is the error of response that comes from the size of the map's cells. The
+    /// difference also contains noise.
     pub band_error: [f64; 3],
 }
 

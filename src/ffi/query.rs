@@ -51,8 +51,8 @@ const BLOCK: usize = 4096;
 
 /// Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
 /// two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
-/// that are not finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares
-/// the scene for tracing, which takes longer. Any thread.
+/// whose origin or direction is not finite, or whose direction is 0, hit nothing. The first call after a scene is
+/// loaded or changed prepares the scene for tracing, which takes longer. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_intersect(

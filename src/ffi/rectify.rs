@@ -38,7 +38,8 @@ pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 
 /// The search for vanishing points: a LUXFER_SEARCH_ value.
 pub type luxfer_search = i32;
-/// Finds three orthogonal directions and the focal length together, then refines each direction with its own lines.
+/// Finds three orthogonal directions and the focal length together, then refines each direction with the lines that run
+/// along it.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
 /// The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
 /// earlier vanishing point.
@@ -49,7 +50,8 @@ pub type luxfer_metric = i32;
 /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
 /// finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected segment.
+/// The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that the photo
+/// shows, instead of the detected segment.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// The source of a focal length: a LUXFER_FOCAL_ value.
@@ -70,7 +72,7 @@ pub const LUXFER_FOCAL_FROM_LAMPS: luxfer_focal_source = 4;
 pub type luxfer_rectify_image = i32;
 /// The plane in frontal view, linear RGB.
 pub const LUXFER_RECTIFY_UNWARPED: luxfer_rectify_image = 0;
-/// 1 where the photo shows the plane, else 0; 1 channel.
+/// The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0; 1 channel.
 pub const LUXFER_RECTIFY_VALID: luxfer_rectify_image = 1;
 
 /// Settings of a rectification. Fill them with luxfer_rectify_params_init.
@@ -100,9 +102,9 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification in the unwarped image, relative to the part of the plane that the photo shows largest, in
-    /// (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the camera, are cut
-    /// off.
+    /// Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from the
+    /// camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest part by
+    /// more than this factor are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -179,7 +181,7 @@ pub struct luxfer_rectify_report {
     /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0
     /// at infinity.
     pub vanishing_points: [[f64; 3]; 3],
-    /// Standard deviations of the directions of the vanishing points in camera space, in radians.
+    /// Standard deviation of the direction to each vanishing point in camera space, in radians.
     pub vanishing_errors: [f64; 3],
     /// Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
     /// others, or from the assumption that the camera is upright.
@@ -213,10 +215,10 @@ pub struct luxfer_rectify_report {
     pub distortion: f64,
     /// Standard deviation of the field distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
-    /// For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two axes is
-    /// estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not square or the
-    /// principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
-    /// orthogonal.
+    /// For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of the
+    /// two axes is estimated only from the lines that run along it. The value differs from 0 if walls are oblique,
+    /// pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of
+    /// the field axes are always orthogonal.
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
@@ -395,7 +397,8 @@ pub unsafe extern "C" fn luxfer_rectify_start(
     })
 }
 
-/// Gets the image that a LUXFER_RECTIFY_ value selects: the unwarped plane or its mask. The caller releases *image.
+/// Gets the image that kind, a LUXFER_RECTIFY_ value, selects: the unwarped plane or its mask. The caller releases
+/// *image.
 /// Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded.
 #[unsafe(no_mangle)]

@@ -37,9 +37,9 @@ pub type luxfer_fit = i32;
 /// The mean of the light over the target surface should equal the target value.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// The sum, over all points of the target surface, of the squared difference between light and target value should be
-/// smallest. A gradient descent on the texels of the emission has this aim too. Bright points count more, so the
+/// smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points count more, so the
 /// emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
-/// the coefficient of variation of the light over the target surface.
+/// the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
@@ -74,12 +74,12 @@ pub struct luxfer_relight_params {
     pub quantity: luxfer_quantity,
     /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the scale,
-    /// in [0, 1]; default 0.01; 0: do not stop for this reason.
+    /// Stop when luxfer_relight_report.error is at most this value, in [0, 1]; default 0.01; 0: do not stop for this
+    /// reason.
     pub target_error: f32,
     /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
-    /// LUXFER_FIT_ value; default LUXFER_FIT_MEAN.
+    /// How the light of the target is compared with its target value: a LUXFER_FIT_ value; default LUXFER_FIT_MEAN.
     pub fit: luxfer_fit,
     /// Seed of the paths; default 1.
     pub seed: u64,
@@ -146,8 +146,9 @@ pub struct luxfer_relight_report {
     /// The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without such
     /// channels.
     pub error: f64,
-    /// Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its actual
-    /// colour and the wanted colour is below this value, at the exposure that shows the target as middle grey.
+    /// Uncertainty of the target's colour under the solution. With a probability of 95 %, the CIEDE2000 difference
+    /// between the actual and the wanted colour is below this value. Both colours are taken at the exposure that shows
+    /// the target as middle grey.
     pub delta_e: f64,
 }
 
@@ -323,8 +324,9 @@ impl Emitter {
 /// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
 /// caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
-/// LUXFER_UNREACHABLE if no emitted light reaches the target or the other lights alone exceed it, LUXFER_DEGENERATE if
-/// the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// LUXFER_UNREACHABLE if in each channel no emitted light reaches the target or the other lights alone exceed it,
+/// LUXFER_DEGENERATE if the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
+/// of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,

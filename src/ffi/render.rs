@@ -40,16 +40,16 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined with those
-/// neighbours that differ from it by no more than the noise explains. It stays as it is where that is estimated to be
-/// more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+/// The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged with those
+/// neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value where this value is
+/// estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
 /// luxfer_render_report.preview_error estimates the remaining error. The image exists only if
 /// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
-/// Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
-/// bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
-/// it may contain the true value of only 86 % of the pixels. The image exists only if luxfer_render_params.preview is
-/// not 0.
+/// Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval
+/// includes the bias of the filter. It is infinite where a pixel has fewer than four paths. With few paths it is too
+/// narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image exists only if
+/// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW_INTERVAL: luxfer_render_image = 5;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -76,9 +76,9 @@ pub struct luxfer_render_params {
     /// of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
     /// pixel, even if it then misses the target.
     ///
-    /// The relative error of a pixel is half the width of the 95 % confidence interval of its luminance, divided by
-    /// its luminance or by a tenth of the image's mean, whichever is larger. The relative error of a block is the root
-    /// mean square over its pixels.
+    /// The relative error of a pixel is e / max(Y, m / 10). Here e is half the width of the 95 % confidence interval of
+    /// the pixel's luminance Y, and m is the mean of the image. The relative error of a block is the root mean square
+    /// over its pixels.
     pub pixel_error: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -140,8 +140,9 @@ pub struct luxfer_render_report {
     pub error: f64,
     /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root mean
-    /// square over all blocks, divided by the image's mean. 0 without a preview.
+    /// Estimated bias of the preview. The bias of a block of 8 x 8 pixels is the expected value of the block's mean
+    /// minus its true mean. This field is the root mean square of the bias over all blocks, divided by the image's
+    /// mean. 0 without a preview.
     pub preview_bias: f64,
     /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
@@ -330,8 +331,8 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
-/// lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
+/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. The text also tells how
+/// many lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
 /// rendering learns this from its first paths. Later paths hardly ever sample these lamps, which does not change the
 /// expected image. Any thread.
 ///

@@ -6,22 +6,25 @@
 //! the order of their flags. Layers do not change the main image by a single bit.
 //!
 //! AOVs describe the first surface that a path from the camera meets; clear panes and mirrors count as surfaces. Depth,
-//! distance, position and normals are means over the samples of the pixel that meet a surface.
+//! distance, position and normals are means over the samples of the pixel that meet a surface; a mean normal is scaled
+//! to unit length. The comment of each LUXFER_AOV_ flag names the layer and its channels.
 //!
 //! A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
 //! | ( ) have their usual meaning. It has one of two forms.
 //!
-//! From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is any light, D is a
-//! diffuse event, S is every other scattering event.
+//! The first form runs from a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is
+//! any light, D is a diffuse event, S is every other scattering event.
 //!
-//! From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
-//! has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such as G, matches any event with
-//! this type or mode. The types are R (reflection), T (transmission) and V (volume, never occurs here). The modes are D
-//! (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as.
+//! The second form runs from the camera (C) to a light, as in Open Shading Language, for example "C<RD>L",
+//! "C[GS]+.*<L.'Lamp'>". An event has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such
+//! as G, matches any event with this type or mode. The types are R (reflection), T (transmission) and V (volume, never
+//! occurs here). The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane only). Lights are L,
+//! O and B; see luxfer_emitter_as.
 //!
-//! A label in quotes restricts an event to an object or a light. It is the name of a mesh or of its material; Name#0,
-//! Name#1, ... for the patches of its emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for
-//! the scene's punctual lights in their order; environment for the scene's environment.
+//! A label in quotes restricts an event to an object or a light. The label is the name of a mesh or of its material.
+//! Name#0, Name#1, ... are the lamps (connected patches) in the emission texture of the mesh or material Name, numbered
+//! as luxfer_lamps numbers them. light0, light1, ... are the scene's punctual lights in their order, and environment is
+//! the scene's environment.
 //!
 //! Arnold's built-in names work too: beauty, direct, indirect, emission, background, and diffuse, specular,
 //! transmission, each alone or with _direct or _indirect.
@@ -39,9 +42,11 @@ use crate::render::{Aov, Film, Layer};
 use std::ffi::c_char;
 use std::path::Path;
 
-/// Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z.
+/// Distance of the surface from the camera along the viewing direction (depth z), in metres; infinite where there is no
+/// surface. Layer Depth, channel Z.
 pub const LUXFER_AOV_DEPTH: u32 = 1;
-/// Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z.
+/// Distance of the surface from the camera along the pixel's ray, in metres; infinite where there is no surface. Layer
+/// Distance, channel Z.
 pub const LUXFER_AOV_DISTANCE: u32 = 2;
 /// Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z.
 pub const LUXFER_AOV_POSITION: u32 = 4;
@@ -50,18 +55,18 @@ pub const LUXFER_AOV_NORMAL: u32 = 8;
 /// Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer GeometricNormal,
 /// channels X Y Z.
 pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
-/// Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo, channels R
-/// G B.
+/// Reflectance plus transmittance at normal incidence: the mean over all samples of the pixel, where samples that meet
+/// no surface count as 0. Layer Albedo, channels R G B.
 pub const LUXFER_AOV_ALBEDO: u32 = 32;
-/// Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of any mesh
-/// that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights have
-/// the number of meshes plus i plus 1. Layer IndexOB, channel X.
+/// 1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
+/// mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights
+/// have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
-/// Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority, of any
-/// material that was hit. 0 where there is no surface. The faces of luminaires have the number of materials plus 1.
-/// Layer IndexMA, channel X.
+/// 1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
+/// material that was hit. 0 where there is no surface. The faces of luminaires have the value n + 1, where n is the
+/// number of materials. Layer IndexMA, channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
-/// Share of the pixel that surfaces cover. Layer Alpha, channel A.
+/// Share of the pixel that surfaces cover, in [0, 1]. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;
 /// Luminance of the main image, in cd/m². Layer Luminance, channel Y.
 pub const LUXFER_AOV_LUMINANCE: u32 = 512;

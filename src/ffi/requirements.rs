@@ -49,10 +49,10 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number n of bounces that matter: light with more than n bounces is at most the share error of all scattered
-    /// light, where error is the argument of luxfer_scene_get_requirements. n is the smallest positive integer with a^n
-    /// <= error, where a is the largest channel of the field albedo. 0 if there is no such number. For information
-    /// only: no rendering ends paths at this number.
+    /// Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest channel
+    /// of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more than n bounces
+    /// is then at most the share error of all scattered light. 0 if there is no such n. For information only: no
+    /// rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

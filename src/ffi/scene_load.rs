@@ -51,7 +51,8 @@ pub struct luxfer_scene_load_params {
     pub unit: f64,
     /// 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
     /// relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
-    /// origin of the file; far from it, the rounding of coordinates to floats moves them.
+    /// origin of the file; in a scene far from that origin, the rounding of coordinates to floats visibly moves
+    /// vertices.
     pub keep_origin: u32,
     /// From where the luminaires of the file (EXT_lights_ies) shine: a LUXFER_LUMINAIRE_ value; default
     /// LUXFER_LUMINAIRE_FACES.

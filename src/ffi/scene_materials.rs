@@ -35,8 +35,8 @@ pub const LUXFER_ALPHA_BLEND: luxfer_alpha_mode = 2;
 pub struct luxfer_material_params {
     /// sizeof(luxfer_material_params), set by luxfer_material_params_init.
     pub struct_size: u32,
-    /// 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block light in
-    /// both cases.
+    /// 1, the default: back faces emit as front faces do; 0: only front faces emit. In both cases, back faces reflect
+    /// and block light as front faces do.
     pub double_sided: u32,
     /// Name in UTF-8, copied; NULL, the default: no name.
     pub name: *const c_char,
