@@ -26,7 +26,7 @@ pub struct Distortion {
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
     /// Number of traced segments that are consistent with the estimate.
-    pub lines: usize,
+    pub segments: usize,
 }
 
 /// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
@@ -38,7 +38,7 @@ const SEARCH_WIDTH: i32 = 4;
 /// A segment is used only if its edge is found along at least this share of its length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of traced segments; with fewer segments there is no estimate.
-const MIN_LINES: usize = 12;
+const MIN_SEGMENTS: usize = 12;
 /// Error of an edge's position, in pixels, that the residuals of the fitted parabola do not show. Its square is added
 /// to the variance of the residuals. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
@@ -193,13 +193,13 @@ const ROUNDS: usize = 20;
 
 /// Returns the value of k that most segments support: an M-estimate started at the weighted median.
 fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
-    if estimates.len() < MIN_LINES {
+    if estimates.len() < MIN_SEGMENTS {
         return None;
     }
     let median = weighted_median(estimates.iter().map(|s| (s.corner, s.weight.sqrt())).collect()).unwrap_or(0.0);
-    let start = Distortion { corner: median, error: f64::INFINITY, lines: 0 };
+    let start = Distortion { corner: median, error: f64::INFINITY, segments: 0 };
     let found = (0..ROUNDS).fold(start, |found, _| m_estimate_step(estimates, found.corner));
-    (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
+    (found.segments >= MIN_SEGMENTS && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
 /// Returns the result of one step of the M-estimate: the weighted mean over the segments within the biweight's limit
@@ -207,7 +207,7 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);
-    let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
+    let (mut weights, mut sum, mut squares, mut segments) = (0.0, 0.0, 0.0, 0);
     for s in estimates {
         let off = s.at_corner(corner) - corner;
         let residual = off * s.weight.sqrt() / limit;
@@ -215,12 +215,12 @@ fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
         weights += agreement * s.weight;
         sum += agreement * s.weight * s.at_corner(corner);
         squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
-        lines += usize::from(agreement > 0.0);
+        segments += usize::from(agreement > 0.0);
     }
     Distortion {
         corner: sum / weights,
         error: ((SEGMENTS_PER_LINE * squares).sqrt() / weights).hypot(MODEL_ERROR),
-        lines,
+        segments,
     }
 }
 

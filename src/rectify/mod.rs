@@ -151,19 +151,19 @@ fn find_lines(photo: &Image, params: &Params, job: Job) -> Result<Lines> {
     let centre = params.principal.unwrap_or(0.5 * size);
     let longest = photo.width.max(photo.height);
     if longest <= DETECTION_SIDE {
-        return lines_at_full_size(photo, centre, params, job);
+        return detect_lines(photo, centre, params, job);
     }
     let reduce = |side: usize| (side * DETECTION_SIDE).div_ceil(longest).max(1);
     let reduced = pyramid::resize(photo, reduce(photo.width), reduce(photo.height), job.part(0.0, 0.3))?;
     let scale = size / DVec2::new(reduced.width as f64, reduced.height as f64);
-    let mut lines = lines_at_full_size(&reduced, centre / scale, params, job.part(0.3, 1.0))?;
+    let mut lines = detect_lines(&reduced, centre / scale, params, job.part(0.3, 1.0))?;
     for s in &mut lines.segments {
         (s.a, s.b) = (s.a * scale, s.b * scale);
     }
     Ok(lines)
 }
 
-fn lines_at_full_size(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Result<Lines> {
+fn detect_lines(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Result<Lines> {
     let luma = gradient::encoded_luma(photo, job.part(0.0, 0.2))?;
     let gradients = gradient::gradients(&luma, job.part(0.2, 0.4))?;
     let segments = match params.detector {

@@ -20,7 +20,7 @@ pub struct Rectangle {
     pub high: DVec2,
     /// Side, in plane units, of the square that a photo pixel covers on the best-resolved part of the plane (the 2 %
     /// quantile over the pixels of the mask).
-    pub densest: f64,
+    pub finest_pixel_side: f64,
 }
 
 /// Finds the rectangle with the highest score: the number of its cells that the mask marks and the photo resolves well
@@ -34,11 +34,11 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
         return Err(Error::degenerate("the mask lies beyond the plane's horizon: choose other axes"));
     }
     seen.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let densest = seen[seen.len() / 50].0;
-    let farthest = densest * max_magnification;
-    seen.truncate(seen.partition_point(|s| s.0 <= farthest).max(1));
+    let finest_pixel_side = seen[seen.len() / 50].0;
+    let max_pixel_side = finest_pixel_side * max_magnification;
+    seen.truncate(seen.partition_point(|s| s.0 <= max_pixel_side).max(1));
     // Widen by half a pixel, since only pixel centres were counted.
-    let rim = DVec2::splat(densest / 2.0);
+    let rim = DVec2::splat(finest_pixel_side / 2.0);
     let (low, high) =
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
     let (low, high) = (low - rim, high + rim);
@@ -55,7 +55,7 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
             let in_front = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].iter().all(|c| corner(c.0, c.1).z > 1e-6);
             let centre = corner(0.5, 0.5);
             let photo = centre.truncate() / centre.z;
-            let shows = in_front && marks(mask, photo) && plane.pixel_side(photo) <= farthest;
+            let shows = in_front && marks(mask, photo) && plane.pixel_side(photo) <= max_pixel_side;
             *gain = if shows {
                 1.0
             } else if in_front {
@@ -65,9 +65,9 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
             };
         }
     }
-    let ([x0, y0], [x1, y1]) = densest_block(&gain);
+    let ([x0, y0], [x1, y1]) = max_sum_block(&gain);
     let at = |x: usize, y: usize| low + cell * DVec2::new(x as f64, y as f64);
-    Ok(Rectangle { low: at(x0, y0), high: at(x1, y1), densest })
+    Ok(Rectangle { low: at(x0, y0), high: at(x1, y1), finest_pixel_side })
 }
 
 /// Whether the mask marks the pixel at a position of the photo.
@@ -77,7 +77,7 @@ pub fn marks(mask: &Image, p: DVec2) -> bool {
 
 /// Finds the block of cells with the greatest sum of gains (Kadane's algorithm over every range of rows). Returns its
 /// first cell and the cell past its last.
-fn densest_block(gain: &[[f64; GRID]]) -> ([usize; 2], [usize; 2]) {
+fn max_sum_block(gain: &[[f64; GRID]]) -> ([usize; 2], [usize; 2]) {
     let mut best = (f64::NEG_INFINITY, [0, 0], [GRID, GRID]);
     for top in 0..GRID {
         let mut sums = [0.0; GRID];

@@ -98,7 +98,7 @@ impl WeightedLine {
 
     /// Returns the squared residual of the line for a vanishing point; the line does not belong to the point if the
     /// squared residual is above 1. A line whose midpoint coincides with the point has the residual 0.
-    pub fn residual(&self, p: DVec3) -> f64 {
+    pub fn squared_residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
         let across = self.line.direction.perp_dot(away);
@@ -108,7 +108,7 @@ impl WeightedLine {
     /// Returns how well the line agrees with a vanishing point: `1 - residual²`, but at least 0. It is 0 if the line
     /// does not belong to the point.
     pub fn agreement(&self, p: DVec3) -> f64 {
-        (1.0 - self.residual(p)).max(0.0)
+        (1.0 - self.squared_residual(p)).max(0.0)
     }
 }
 
@@ -134,12 +134,12 @@ pub struct Refined {
 impl Refined {
     /// Root mean square, in radians, of the angle to the true direction.
     pub fn error(&self) -> f64 {
-        deviation(&self.covariance)
+        rms_angle(&self.covariance)
     }
 }
 
 /// Returns the square root of the trace of a direction's covariance, at most a right angle (in radians).
-pub fn deviation(covariance: &DMat3) -> f64 {
+pub fn rms_angle(covariance: &DMat3) -> f64 {
     let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
     trace.sqrt().min(std::f64::consts::FRAC_PI_2)
 }
@@ -176,7 +176,7 @@ pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &
     let own = covariance(lines, start, focal)?;
     // Up to a factor, the normal matrix of the lines is the inverse of their covariance. Scale the priors by this
     // factor.
-    let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
+    let unit = rms_angle(&own.of_direction).powi(2) / own.inverse_trace;
     let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {
         add_square(&mut prior, *to, unit / variance);

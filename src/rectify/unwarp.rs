@@ -23,7 +23,7 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
 
     // The best-resolved part of the photo determines the pixel size, unless the image would become too large.
     let size = rectangle.high - rectangle.low;
-    let pixel_size = rectangle.densest.max(size.max_element() / params.max_side as f64);
+    let pixel_size = rectangle.finest_pixel_side.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);
     let (width, height) = (side(size.x), side(size.y));
     // Keep pixels square; distribute the rounding of the size over opposite sides.

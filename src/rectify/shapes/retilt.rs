@@ -3,7 +3,7 @@
 use super::likeness::{self, Shape};
 use super::tilt::{Tilt, TiltEstimate};
 use crate::geometry::{FocalSource, Perspective, Segment};
-use crate::rectify::sphere::{Frame, WeightedLine, deviation, project, refine, round_covariance};
+use crate::rectify::sphere::{Frame, WeightedLine, project, refine, rms_angle, round_covariance};
 use crate::rectify::{VanishingPoint, View, camera, manhattan};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
@@ -50,10 +50,10 @@ impl View {
                 // Covariance of a direction within the plane: the covariance of the normal plus the covariance of the
                 // rotation about the normal. The lines along the direction determine this rotation.
                 let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
-                covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
+                covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| rms_angle(&r.covariance)));
             }
             let point = perspective.vanishing_point(axis).normalize();
-            VanishingPoint { point, support, error: deviation(&covariance), covariance }
+            VanishingPoint { point, support, error: rms_angle(&covariance), covariance }
         });
         let segments = segments.into_iter().zip(members).collect();
         View { segments, vanishing_points, perspective, squareness: [None; 3], ..self.clone() }

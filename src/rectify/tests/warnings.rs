@@ -67,7 +67,7 @@ fn uncertain_axes_bent_lines_and_oblique_walls_raise_warnings() {
     uncertain.vanishing_points[1].error = 0.5;
     assert_eq!(codes(&uncertain.warnings()), [Code::ViewUncertain]);
 
-    let bent = |corner, error| View { distortion: Some(Distortion { corner, error, lines: 40 }), ..good.clone() };
+    let bent = |corner, error| View { distortion: Some(Distortion { corner, error, segments: 40 }), ..good.clone() };
     let warnings = bent(-0.05, 0.01).warnings();
     assert_eq!(codes(&warnings), [Code::LensDistortion]);
     assert!(warnings[0].message.contains("5.0 % of barrel"), "{}", warnings[0].message);
