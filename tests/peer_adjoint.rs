@@ -111,8 +111,8 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
         let image = map.image().unwrap();
         let cells: Vec<f64> = image.data.iter().map(|v| f64::from(*v) * std::f64::consts::PI).collect();
         let mut row = blocks(&cells);
-        let (_, slopes) = map.slope(&texture, &POSE, monitor.job()).unwrap();
-        row.extend(slopes.into_iter().flat_map(irradiance));
+        let (_, derivatives) = map.value_and_gradient(&texture, &POSE, monitor.job()).unwrap();
+        row.extend(derivatives.into_iter().flat_map(irradiance));
         row
     };
     Pool::new(2).unwrap().run(|| (1..=SEEDS as u64).map(row).collect())
@@ -181,7 +181,7 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
         }
     }
     println!(
-        "{texels} blocks and {} slopes differ by up to {:.2} %, the widest interval is {:.2} %; all blocks {:.4} and {:.4}",
+        "{texels} blocks and {} derivatives differ by up to {:.2} %, the widest interval is {:.2} %; all blocks {:.4} and {:.4}",
         tests - texels,
         100.0 * worst,
         100.0 * widest,

@@ -50,8 +50,8 @@ impl<'a> Ballot<'a> {
     pub fn collect(&self, candidates: &mut Vec<Candidate>, [x, y]: [usize; 2], weighted: bool) {
         let Self { field, patch, scale, .. } = *self;
         candidates.clear();
-        for fy in fields_over(y, patch, field.height) {
-            for fx in fields_over(x, patch, field.width) {
+        for fy in patches_over(y, patch, field.height) {
+            for fx in patches_over(x, patch, field.width) {
                 let i = fy * field.width + fx;
                 if field.at[i] == NONE {
                     continue;
@@ -93,7 +93,7 @@ impl<'a> Ballot<'a> {
 /// patch has no match.
 #[inline]
 pub(super) fn common_offset(field: &Field, patch: usize, [x, y]: [usize; 2]) -> Option<u32> {
-    let (columns, rows) = (fields_over(x, patch, field.width), fields_over(y, patch, field.height));
+    let (columns, rows) = (patches_over(x, patch, field.width), patches_over(y, patch, field.height));
     let first = field.at[rows.start * field.width + columns.start];
     let offset = first.wrapping_sub(pack(columns.start, rows.start));
     let agrees = |fy: usize| {
@@ -104,6 +104,6 @@ pub(super) fn common_offset(field: &Field, patch: usize, [x, y]: [usize; 2]) -> 
 }
 
 /// Returns the range of patches along one axis that cover a pixel.
-fn fields_over(pixel: usize, patch: usize, count: usize) -> std::ops::Range<usize> {
+fn patches_over(pixel: usize, patch: usize, count: usize) -> std::ops::Range<usize> {
     (pixel + 1).saturating_sub(patch)..(pixel + 1).min(count)
 }

@@ -46,8 +46,8 @@ impl<const N: usize> Bounds<N> {
     }
 
     /// Whether a variable may move along the negative gradient.
-    fn is_free(&self, i: usize, x: &[f64; N], slope: &[f64; N]) -> bool {
-        let held = x[i] <= self.min[i] && slope[i] >= 0.0 || x[i] >= self.max[i] && slope[i] <= 0.0;
+    fn is_free(&self, i: usize, x: &[f64; N], gradient: &[f64; N]) -> bool {
+        let held = x[i] <= self.min[i] && gradient[i] >= 0.0 || x[i] >= self.max[i] && gradient[i] <= 0.0;
         self.is_open(i) || self.min[i] < self.max[i] && !held
     }
 }
@@ -59,14 +59,14 @@ pub(super) fn run<const N: usize>(
     f: impl Fn([f64; N]) -> (f64, [f64; N]),
     job: Job,
 ) -> [f64; N] {
-    let (mut value, mut slope) = f(x);
+    let (mut value, mut gradient) = f(x);
     let mut inverse: Option<[[f64; N]; N]> = None;
     for _ in 0..MAX_STEPS {
         if job.is_cancelled() {
             break;
         }
-        let free: [bool; N] = std::array::from_fn(|i| bounds.is_free(i, &x, &slope));
-        let steepest: [f64; N] = std::array::from_fn(|i| if free[i] { -slope[i] } else { 0.0 });
+        let free: [bool; N] = std::array::from_fn(|i| bounds.is_free(i, &x, &gradient));
+        let steepest: [f64; N] = std::array::from_fn(|i| if free[i] { -gradient[i] } else { 0.0 });
         let length = dot(&steepest, &steepest).sqrt();
         if length == 0.0 || !length.is_finite() {
             break;
@@ -75,7 +75,7 @@ pub(super) fn run<const N: usize>(
         let mut step = steepest.map(|s| s * FIRST_STEP / length);
         if let Some(inverse) = &inverse {
             let newton = std::array::from_fn(|i| if free[i] { dot(&inverse[i], &steepest) } else { 0.0 });
-            if dot(&newton, &slope) < 0.0 {
+            if dot(&newton, &gradient) < 0.0 {
                 step = newton;
             }
         }
@@ -85,17 +85,17 @@ pub(super) fn run<const N: usize>(
             let share = 0.5f64.powi(halving as i32);
             let to = bounds.nearest(std::array::from_fn(|i| x[i] + share * step[i]));
             let step_taken: [f64; N] = std::array::from_fn(|i| to[i] - x[i]);
-            let (there, slope_there) = f(to);
-            if there <= value + ARMIJO * dot(&step_taken, &slope) {
-                next = Some((to, step_taken, there, slope_there));
+            let (there, gradient_there) = f(to);
+            if there <= value + ARMIJO * dot(&step_taken, &gradient) {
+                next = Some((to, step_taken, there, gradient_there));
                 break;
             }
         }
-        let Some((to, step_taken, there, slope_there)) = next else { break };
-        let gradient_change: [f64; N] = std::array::from_fn(|i| slope_there[i] - slope[i]);
+        let Some((to, step_taken, there, gradient_there)) = next else { break };
+        let gradient_change: [f64; N] = std::array::from_fn(|i| gradient_there[i] - gradient[i]);
         update(&mut inverse, &step_taken, &gradient_change);
         let gain = value - there;
-        (x, value, slope) = (to, there, slope_there);
+        (x, value, gradient) = (to, there, gradient_there);
         if gain <= MIN_RELATIVE_GAIN * value.abs() {
             break;
         }

@@ -110,7 +110,7 @@ impl Importance {
     ///
     /// # Errors
     /// Cancelled.
-    pub fn slope(&self, texture: &Image, pose: &Pose, job: Job) -> Result<(DVec3, [DVec3; 5])> {
+    pub fn value_and_gradient(&self, texture: &Image, pose: &Pose, job: Job) -> Result<(DVec3, [DVec3; 5])> {
         Ok(self.search(texture, Aim::Brightest, job)?.light(pose.numbers()))
     }
 
@@ -147,7 +147,7 @@ impl Importance {
             order.push(0);
         }
         let found = exec::map(order.len(), job.part(0.3, 0.8), |i| {
-            descent::run(&bounds, start(order[i]), |at| search.slope(at), job)
+            descent::run(&bounds, start(order[i]), |at| search.value_and_gradient(at), job)
         })?;
 
         // Select the best result at full resolution, because the search used a blurred texture.
@@ -211,14 +211,14 @@ struct Search {
 
 impl Search {
     fn value(&self, numbers: [f64; 5]) -> f64 {
-        self.slope(numbers).0
+        self.value_and_gradient(numbers).0
     }
 
     /// Returns the cost of a placement and its gradient.
-    fn slope(&self, numbers: [f64; 5]) -> (f64, [f64; 5]) {
-        let (light, slopes) = self.light(numbers);
+    fn value_and_gradient(&self, numbers: [f64; 5]) -> (f64, [f64; 5]) {
+        let (light, derivatives) = self.light(numbers);
         let (value, by_light) = self.judge(light);
-        (value, slopes.map(|slope| slope.dot(by_light)))
+        (value, derivatives.map(|derivative| derivative.dot(by_light)))
     }
 
     /// Returns the target's light under a placement, and its derivatives.
@@ -231,7 +231,7 @@ impl Search {
         let texels = pose.scale.element_product() * (cell * self.texels).element_product();
         let level = 0.5 * texels.log2();
         let by_scale = DVec2::splat(0.5 / std::f64::consts::LN_2) / pose.scale;
-        let (mut light, mut slopes) = (DVec3::ZERO, [DVec3::ZERO; 5]);
+        let (mut light, mut derivatives) = (DVec3::ZERO, [DVec3::ZERO; 5]);
         for (i, importance) in importance.iter().enumerate().filter(|(_, i)| **i != DVec3::ZERO) {
             let from = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5) * cell - 0.5;
             let scaled = from * pose.scale;
@@ -246,9 +246,9 @@ impl Search {
                 along(rotation.y_axis * from.y) + sample.d_dlevel * by_scale.y,
                 along(turned.perp()),
             ];
-            slopes.iter_mut().zip(changes).for_each(|(slope, change)| *slope += importance * change);
+            derivatives.iter_mut().zip(changes).for_each(|(derivative, change)| *derivative += importance * change);
         }
-        (light, slopes)
+        (light, derivatives)
     }
 
     /// Returns the cost of the target's light, and the gradient of the cost with respect to the light.

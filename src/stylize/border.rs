@@ -30,10 +30,10 @@ const RADIUS: usize = 256;
 const MAX_USES: f64 = 100.0;
 /// Maximum number of rounds that search other matches for the target patches beyond `MAX_USES`.
 const ROUNDS: usize = 8;
-/// `REACH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out. `FADE`:
-/// factor of each step. [bench stylit:autocomplete]
+/// `REACH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out.
+/// `DIFFUSION_FACTOR`: factor of each step. [bench stylit:autocomplete]
 const REACH: usize = 12;
-const FADE: f32 = 0.97;
+const DIFFUSION_FACTOR: f32 = 0.97;
 
 /// The border of the painted part at one pyramid level.
 pub(super) struct Border<'a> {
@@ -120,7 +120,7 @@ pub(super) fn fade(picture: &mut Image, field: &Field, problem: &Problem, mode: 
     Ok(())
 }
 
-/// Replaces each pixel inside the mask by [`FADE`] times the mean of its four neighbours.
+/// Replaces each pixel inside the mask by [`DIFFUSION_FACTOR`] times the mean of its four neighbours.
 fn spread(image: &mut Image, mask: &[bool], job: Job) -> Result<()> {
     let (width, height, channels) = (image.width, image.height, image.channels);
     let before = image.try_clone()?;
@@ -133,7 +133,7 @@ fn spread(image: &mut Image, mask: &[bool], job: Job) -> Result<()> {
                 [x, (y + 1).min(height - 1)],
             ];
             for (c, v) in pixel.iter_mut().enumerate() {
-                *v = 0.25 * FADE * around.map(|[x, y]| before.pixel(x, y)[c]).iter().sum::<f32>();
+                *v = 0.25 * DIFFUSION_FACTOR * around.map(|[x, y]| before.pixel(x, y)[c]).iter().sum::<f32>();
             }
         }
     })
@@ -144,7 +144,8 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Along a straight border, the share r that remains from pixel to pixel satisfies 4 / FADE = 2 + r + 1 / r.
+    /// Along a straight border, the share r that remains from pixel to pixel satisfies
+    /// 4 / DIFFUSION_FACTOR = 2 + r + 1 / r.
     #[test]
     fn a_step_fades_out_from_a_straight_border() {
         let mut step = Image::from_fn(40, 9, |x, _| [f32::from(x < 10)]).unwrap();
@@ -155,7 +156,7 @@ mod tests {
         };
         let reached = spread_times(REACH);
         assert!(reached[..10].iter().all(|v| *v == 1.0) && reached[10 + REACH..].iter().all(|v| *v == 0.0));
-        let b = 2.0 / FADE - 1.0;
+        let b = 2.0 / DIFFUSION_FACTOR - 1.0;
         let r = b - (b * b - 1.0).sqrt();
         let settled = spread_times(300);
         for (k, v) in settled[9..20].iter().enumerate() {
