@@ -371,9 +371,10 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
     })
 }
 
-/// Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
-/// object or material, in UTF-8. If no name is equal to it, a name that differs only in upper and lower case is taken;
-/// if there is none, the only name that contains it. size is sizeof *found. Any thread.
+/// Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
+/// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. If no name is
+/// equal to it, a name that differs only in upper and lower case is taken; if there is none either, the only name that
+/// contains it. size is sizeof *found. Any thread.
 /// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
 /// there is no planar surface.
 #[unsafe(no_mangle)]

@@ -31,7 +31,7 @@ pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
 /// The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
 /// How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions that resemble
-/// the painted lamps but not closely enough for the mask, else 0. Where it is high, another stroke helps.
+/// the painted lamps but not closely enough for the mask, else 0. Another stroke helps where the value is high.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
 /// The subject of a segmentation: a LUXFER_SUBJECT_ value.
@@ -61,8 +61,9 @@ pub struct luxfer_segment_params {
     /// Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
     /// tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
     /// smallest error on held-out strokes. Sets with position are left out if the mask will be restricted to a wall,
-    /// floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. For
-    /// lights use 7, colour only, since lights and their plane have the same geometry.
+    /// floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. If
+    /// you segment lights as LUXFER_SUBJECT_SURFACE, use 7 (colour only), since lights and their plane have the same
+    /// geometry.
     pub channels: u32,
     /// Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no refinement.
     /// The refinement makes the mask follow the edges of the photo: it is a guided filter with the first three
@@ -73,8 +74,8 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// The refinement treats neighbouring pixels as one surface if their first three channels differ by less than
-    /// this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+    /// Difference between neighbouring pixels in the first three channels below which the refinement treats them as one
+    /// surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
     /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
     /// lamps, the settings above have no effect.
@@ -252,7 +253,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
     })
 }
 
-/// Gets the image of the result that a LUXFER_SEGMENT_ value selects, for example the mask. The caller releases
+/// Gets the image of the result that kind, a LUXFER_SEGMENT_ value, selects, for example the mask. The caller releases
 /// *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]

@@ -101,7 +101,7 @@ impl<T: Default> Painted<T> {
     }
 }
 
-/// Returns the strokes for a mask, a LUXFER_PHASE_ value.
+/// Returns the strokes from which the mask of `phase`, a LUXFER_PHASE_ value, is made.
 pub(super) fn of_phase(set: &StrokeSet, phase: luxfer_phase) -> Result<Vec<Stroke>> {
     match phase {
         LUXFER_PHASE_PLANE => Ok(set.plane_examples()),

@@ -20,8 +20,8 @@ pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: 
     enter(context, |_| left_out())
 }
 
-/// Defines the functions without parameters: in the C calling convention the caller removes the arguments, so a
-/// function may ignore them.
+/// Defines functions that take no parameters, whereas the header declares some. This is safe: in the C calling
+/// convention the caller removes the arguments, so a function may ignore them.
 macro_rules! absent {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

@@ -21,7 +21,7 @@ pub const LUXFER_STYLIZE_PREVIEW: luxfer_stylize_preset = 2;
 /// The settings of the paper, for comparison.
 pub const LUXFER_STYLIZE_PAPER: luxfer_stylize_preset = 3;
 
-/// How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value.
+/// How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value.
 pub type luxfer_stylize_mode = i32;
 /// Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default.
 pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
@@ -108,7 +108,8 @@ pub struct luxfer_stylize_params {
     /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
     /// LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
-    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_ADAPTIVE.
+    /// How a pixel of the final picture is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
+    /// LUXFER_STYLIZE_VOTE_ADAPTIVE.
     pub final_vote: luxfer_stylize_vote,
     /// 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
     /// default: full resolution.
@@ -130,8 +131,8 @@ pub struct luxfer_stylize_params {
     /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
     /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty
-    /// is added to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over
+    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The
+    /// penalty is added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over
     /// the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
     /// lambda.
     pub occurrence: f32,

@@ -69,7 +69,8 @@ pub const LUXFER_TARGET_SURFACE: luxfer_target = 0;
 /// The whole photo.
 pub const LUXFER_TARGET_WHOLE_IMAGE: luxfer_target = 1;
 
-/// Settings of a transfer. Fill them with luxfer_transfer_params_init. Its pointers are used during the call only.
+/// Settings of a transfer. Fill them with luxfer_transfer_params_init. The library reads the structs to which the
+/// pointers lead only during the call that gets the settings.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_transfer_params {
@@ -262,9 +263,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
 /// Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
 /// transfer never changes the scene; each job uses the scene as it is when the job starts. Any thread.
 ///
-/// Of the planes of that object or material, the transfer takes the plane that faces most of the room. The parts of
-/// this plane, for example between the beams of a ceiling, share one pattern that continues from part to part.
-/// Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
+/// If the object or material has triangles in several planes, the transfer takes the plane from which most of the room
+/// is visible. The parts of this plane, for example between the beams of a ceiling, share one pattern that continues
+/// from part to part. Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,
@@ -283,11 +284,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
     })
 }
 
-/// Sets the triangles of the scene that receive the lights, instead of the named surface. The array triangles holds
-/// the mesh index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes
-/// the plane that faces most of the room, as for a named surface. These triangles replace the triangles of an earlier
-/// call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface
-/// receives the lights again. Any thread.
+/// Sets the triangles of the scene that receive the lights, instead of the named surface. The array triangles holds the
+/// mesh index and the triangle index of each of count triangles. If the triangles lie in several planes, the transfer
+/// takes the plane from which most of the room is visible, as for a named surface. These triangles replace the
+/// triangles of an earlier call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and
+/// the named surface receives the lights again. Any thread.
 /// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(

@@ -37,7 +37,7 @@ pub const LUXFER_TRANSFER_LIGHTS_MASK: luxfer_transfer_image = 3;
 pub const LUXFER_TRANSFER_LIGHTS_CONFIDENCE: luxfer_transfer_image = 4;
 /// The unwarped image: the plane in frontal view, linear RGB.
 pub const LUXFER_TRANSFER_UNWARPED: luxfer_transfer_image = 5;
-/// 1 where the photo shows the plane of the unwarped image, else 0; 1 channel.
+/// The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0; 1 channel.
 pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
 /// The emissive texture: linear RGB, where 1 is the photo's white.
 pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
@@ -82,8 +82,8 @@ pub struct luxfer_transfer_report {
     pub lights_error: f64,
     /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
     pub unwarp_error: f64,
-    /// luxfer_emission_report.error: largest relative difference between texture and photo in three statistics of
-    /// their lamps.
+    /// luxfer_emission_report.error: largest relative difference between texture and photo in the lit share, the size
+    /// or the spacing of their lamps.
     pub emission_error: f64,
     /// luxfer_relight_report.error: largest relative half-width of the solution's 95 % confidence intervals.
     pub relight_error: f64,
@@ -200,7 +200,7 @@ pub struct luxfer_fixture {
     pub axis: [f32; 3],
     /// Mean emission of the lamp: linear RGB in cd/m².
     pub radiance: [f32; 3],
-    /// Number of the lamp's kind, as in luxfer_luminaire.
+    /// Number of the lamp's kind, from 1, as in luxfer_luminaire.kind; 0 if the border of the texture cuts the lamp.
     pub kind: u32,
     /// Lengths of the lamp along its long axis and across it, in metres.
     pub size: [f64; 2],
@@ -237,7 +237,7 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     })
 }
 
-/// Gets the image that a LUXFER_TRANSFER_ value selects, which a stage has made. The caller releases *image. Any
+/// Gets the image that kind, a LUXFER_TRANSFER_ value, selects; a stage has made it. The caller releases *image. Any
 /// thread.
 /// LUXFER_NOT_READY before the stage that makes the image has ended; LUXFER_NOT_FOUND for a preview if
 /// luxfer_render_params.preview was 0.
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
     })
 }
 
-/// Gets the scene that a LUXFER_SCENE_ value selects, which the transfer has made. The scene is independent of the
+/// Gets the scene that kind, a LUXFER_SCENE_ value, selects; the transfer has made it. The scene is independent of the
 /// transfer. The caller releases *scene. Any thread.
 /// LUXFER_NOT_READY if the stage that makes the scene has not ended: EMISSION for LUXFER_SCENE_UNSOLVED, RELIGHT for
 /// the other scenes.

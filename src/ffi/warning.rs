@@ -43,8 +43,8 @@ pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
 /// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation of an
 /// angle between two room axes from a right angle, in radians.
 pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
-/// There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
-/// confidence of the fit, which is below the limit.
+/// There is no depth map, and the room that was fitted to the lines of the photo is uncertain. The severity is the
+/// confidence of the fit, in [0, 1], which is below the limit; 0 if no room could be fitted.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
 /// Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly resemble
 /// the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
@@ -65,8 +65,8 @@ pub const LUXFER_WARNING_EMPTY_MASK: luxfer_warning_code = 10;
 pub const LUXFER_WARNING_MISSED_STROKES: luxfer_warning_code = 11;
 /// Lights cover much of their plane; the severity is the share of the plane that they cover.
 pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
-/// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
-/// strongly magnified. The warning points to the point with the largest magnification.
+/// Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of the plane
+/// that is magnified so much. The warning points to the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
 /// The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
 /// ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
@@ -106,8 +106,8 @@ pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// to that origin; the severity is its distance from the origin of the file in metres, and the limit is 0. Otherwise
 /// coordinates of vertices are so large that floats round them; the severity is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does
-/// not rate them. The severity is their number; the message lists the first ones with their positions.
+/// A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does not
+/// rate them. The severity is the number of these luminaires; the message lists the first few with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 /// Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles there. Their
 /// motion is unknown and therefore NaN. The severity is the share of the picture that shows these objects; the message
@@ -120,12 +120,12 @@ pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// motion among the pixels that were compared. The warning points to the pixel with the largest error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
-/// painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of these
+/// painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of such
 /// pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
 /// the target where most of them lie.
 pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
 /// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
-/// the share of the exemplar with such light. The warning points to a place of the artwork with such light.
+/// the share of the exemplar that such places cover. The warning points to one of them in the artwork.
 pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
 /// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
 /// the difference, in units of the difference that places with equal guides typically have. The warning points to the
