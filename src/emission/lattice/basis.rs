@@ -3,8 +3,8 @@
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Maximum number of lamps whose pairs are compared; if there are more, every second, every third, … lamp is taken.
-/// [bench emission:seconds]
+/// The pairs of at most this number of lamps are compared. If there are more lamps, every k-th one is taken, with the
+/// smallest sufficient k. [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period. [bench emission:patterns]
@@ -14,8 +14,8 @@ const MAX_OFF_SITE: f64 = 0.12;
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
 /// Returns a period, made exactly parallel to the x or y axis if its slant is below `max_slant`. The slant is the
-/// tangent of the angle between period and axis; the length stays. In a row of few lamps, a slant of a few percent may
-/// be mere disorder, but a long row that kept this slant would end far from the axis.
+/// tangent of the angle between period and axis. The length of the period stays. In a row of few lamps, a slant of a
+/// few percent may be a measurement error, but it would carry a long row far from the axis.
 pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     match () {
         _ if period.x.abs() < max_slant * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
@@ -24,7 +24,7 @@ pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     }
 }
 
-/// The shortest two vectors that span a lattice (Lagrange's reduction).
+/// The two shortest vectors that span the same lattice as the given ones (Lagrange's reduction).
 pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
     // Each step shortens the longer vector by a factor, so a few dozen steps reduce any lattice of finite vectors.
     for _ in 0..64 {
@@ -40,10 +40,11 @@ pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
     [a, b]
 }
 
-/// Fits the first `count` basis vectors to the centres of lamps of equal size, by least squares. A pair of lamps takes
-/// part if the vector between them is about `i a + j b` with integers `i` and `j`. Three passes use ever more distant
-/// pairs, because `i` and `j` of a distant pair are correct only if the basis is accurate. A pair is weighted by the
-/// area of the smaller lamp, because small fragments resemble each other everywhere.
+/// Fits the first `count` (1 or 2) basis vectors `a`, `b` to the centres of lamps, by least squares. A pair of lamps
+/// takes part if both have about equal size and the vector between them is about `i a + j b` with integers `i` and `j`.
+/// The first pass uses close pairs only, the second more distant ones, and the third all pairs, because `i` and `j` of
+/// a distant pair are correct only if the basis is already accurate. A pair is weighted by the area of the smaller
+/// lamp, because small fragments resemble each other by chance.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();
@@ -53,7 +54,7 @@ pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2
         if !inverse.is_finite() {
             break;
         }
-        // Accumulate the normal equations of difference = [a b] (i, j).
+        // Accumulate the normal equations of the fit: difference = i a + j b for each pair, with unknown a and b.
         let (mut gram, mut sums) = (DMat2::ZERO, DMat2::ZERO);
         let mut votes = 0;
         for (n, p) in lamps.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Excludes dark sites at the border of the exemplar: lattice sites that have no lamp and that the border cuts.
 //!
-//! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Dark sites that the
-//! border cuts must be left out as well. Otherwise patches could show these dark sites but not the lit ones, and the
-//! texture would lack lamps more often than the exemplar does.
+//! Patches do not show a lamp that the border cuts, because only a part of it is visible. They must not show a dark
+//! site that the border cuts either. Otherwise, of the sites at the border, patches would show only the dark ones, and
+//! lamps would be missing more often in the texture than in the exemplar.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -10,14 +10,15 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Two lamps lie at one position of the lattice cell if the vector between them differs from a lattice vector by less
-/// than this, in periods. [origin not recorded]
+/// Two lamps belong to one site if the vector between them differs from a lattice vector by less than this. The
+/// difference is measured in lattice coordinates, in which each period has length 1. [origin not recorded]
 const MAX_OFF_SITE: f64 = 0.2;
-/// A position in the lattice cell counts as a site of lamps if a lamp lies there in at least this share of the cells
-/// in which the position is fully visible. [convention]
+/// Dark sites are excluded only if the site has a lamp in at least this share of the cells in which the photo shows the
+/// site completely. Otherwise the site is usually dark, and its dark copies may stay. [convention]
 const MIN_OCCUPANCY: f64 = 0.5;
 
-/// Marks parts of the exemplar as unusable for patches: the lattice sites that have no lamp and that the border cuts.
+/// Marks as unusable for patches the lattice sites of an exemplar that have no lamp and that the border cuts. The
+/// periods of the lattice, `a` and `b`, are in unwarped pixels.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();
@@ -57,8 +58,8 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Returns one lamp for each position in the lattice cell at which lamps lie. `inverse` maps unwarped pixels to
-/// lattice steps.
+/// Returns one lamp for each site: each position within the lattice cell at which lamps lie. `inverse` maps unwarped
+/// pixels to lattice coordinates.
 fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     let mut first: Vec<&Component> = Vec::new();
     for lamp in exemplar.lamps() {
@@ -73,7 +74,8 @@ fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     first
 }
 
-/// Marks boxes of unwarped pixels as unusable for patches, unless no usable pixel would remain.
+/// Marks boxes, given as `[x0, y0, x1, y1]` in unwarped pixels, as unusable for patches. Does nothing if no usable
+/// pixel would remain.
 fn hide(exemplar: &mut Exemplar, boxes: &[[usize; 4]]) {
     let working = &exemplar.working;
     let mut usable = working.usable.clone();

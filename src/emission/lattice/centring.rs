@@ -5,11 +5,11 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// In a texture with more lattice cells than this, counting the lamps that the border cuts would take too long. A lamp
-/// is then moved to the texture's centre without comparison. [convention]
+/// In a texture with more lattice cells than this, it would take too long to count the lamps that the border cuts. The
+/// lamp nearest to the exemplar's centre then moves to the texture's centre, without comparison. [convention]
 const MAX_CELLS: f64 = 1e6;
 
-/// A bounding box of lights.
+/// A bounding box of lights, in unwarped pixels.
 #[derive(Clone, Copy)]
 struct Bounds {
     low: DVec2,
@@ -31,10 +31,11 @@ impl Bounds {
     }
 }
 
-/// The shift that centres a lattice in a texture of `size` unwarped pixels. Four shifts are compared: they move a
-/// lamp, or a midpoint between two or four lamps, to the texture's centre. The shift with the fewest lamps cut by the
-/// border is chosen; among equals, the one that keeps the other lamps farthest from the border. `None` without a
-/// lattice.
+/// The shift, in unwarped pixels, that centres a lattice in a texture of `size` unwarped pixels. Four shifts are
+/// compared. They move one of these points to the texture's centre: a lamp, the midpoint between two lamps that are one
+/// period apart (for each period), or the midpoint between four lamps around a cell. The shift is chosen for which the
+/// border cuts the fewest lamps; among equals, the one that keeps the other lamps farthest from the border. `None` if
+/// the law has no lattice.
 pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     let [a, b] = law.lattice()?;
     let motif = motif(exemplar, law);
@@ -53,9 +54,9 @@ pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     Some(shifts[best])
 }
 
-/// The bounding boxes of the lamps of one cell, which the lattice repeats; the box nearest to the exemplar's centre
-/// comes first. If the period along an axis is the exemplar's extent, all lamps along that axis are merged into one
-/// box.
+/// The bounding boxes of the lamps of one lattice cell. The box nearest to the exemplar's centre comes first. For a
+/// lattice, the cell is centred on the lamp of this box. For a row, all lamps across the row are treated as one box.
+/// For repetition of the whole exemplar, all lamps are treated as one box.
 fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
@@ -81,13 +82,14 @@ fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
     }
 }
 
-/// The number of lamps that the texture's border cuts, and the minimum distance of the other lamps from the border.
+/// The number of lamps that the texture's border cuts after `shift`, and the minimum distance of the other lamps from
+/// the border, in unwarped pixels. `a` and `b` are the periods of the lattice.
 fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
     let inverse = DMat2::from_cols(a, b).inverse();
     let (mut cut, mut room) = (0, f64::INFINITY);
     for lamp in motif {
         let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-        // Find the lattice vectors that move the lamp into the texture or near it.
+        // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the texture.
         let half = (lamp.high - lamp.low) / 2.0;
         let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
         let cells = corners.map(|c| inverse * (c - lamp.centre()));

@@ -18,15 +18,16 @@ impl std::ops::Mul for Complex {
     }
 }
 
-/// Pearson's correlation of an image with itself after a shift, over the pixels that are valid in both. It is computed
-/// by three forward and two inverse Fourier transforms (Padfield 2012).
+/// Pearson's correlation of an image with its shifted copy, over the pixels that are valid in both, for every shift. It
+/// is computed by three forward and two inverse Fourier transforms (Padfield 2012).
 pub struct Autocorrelation {
     width: usize,
     height: usize,
     /// Sides of the zero-padded grid, powers of two.
     columns: usize,
     rows: usize,
-    /// For every shift, the correlation and the number of overlapping pixels. Negative shifts wrap around.
+    /// For every shift (x, y), the correlation and the number of overlapping valid pixels, at the position (x, y) of
+    /// the padded grid. Negative coordinates wrap around.
     value: Vec<f32>,
     overlap: Vec<f32>,
 }
@@ -47,16 +48,21 @@ impl Autocorrelation {
         let m = spectrum(&|i| (f64::from(values[i]), 0.0))?;
         let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
 
-        // Compute the sums over p of a(p) b(p + shift), for all shifts, as the inverse transform of conj(A) B. Such
-        // sums are real, so one complex transform gives two of them: v·v + i m·m, and m·v + i s·v. The sums m·v and
-        // s·v run over the first pixel of each pair; those over the second pixel are found at the opposite shift.
+        // The signals are the validity v (1 or 0), the values m and their squares s; their transforms have the same
+        // names. For signals a and b, write (a·b)(d) for the sum over all pixels p of a(p) b(p + d), where d is a
+        // shift. By the correlation theorem, a·b is the inverse transform of conj(A) B, where A and B are the
+        // transforms.
+        //
+        // These sums are real, so one complex transform gives two of them: v·v + i m·m, or m·v + i s·v. The sums m·v
+        // and s·v take m and s at the first pixel p of each pair. Their values at the shift -d take m and s at the
+        // second pixel, p + d.
         let cross = |a: &[Complex], b: &[Complex], c: &[Complex], d: &[Complex]| -> Result<Vec<Complex>> {
             let mut grid = try_vec(columns * rows, Complex::default())?;
             for (i, out) in grid.iter_mut().enumerate() {
                 let ab = Complex { re: a[i].re, im: -a[i].im } * b[i];
                 let cd = Complex { re: c[i].re, im: -c[i].im } * d[i];
-                // Store the conjugate of the product, because the inverse transform is computed as the conjugate of
-                // the forward transform of the conjugate.
+                // Store the conjugate of ab + i cd. Only the forward transform is implemented: conjugating its input
+                // and its output gives the inverse transform, apart from the factor `norm`.
                 *out = Complex { re: ab.re - cd.im, im: -(ab.im + cd.re) };
             }
             transform(grid, columns, rows, job)
@@ -79,8 +85,8 @@ impl Autocorrelation {
             overlap[i] = n as f32;
             let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
             let least = 1e-9 * n;
-            // The correlation is undefined if the image, or its shifted copy, does not vary in the overlap. Take 1 if
-            // neither varies and their means are equal, else 0.
+            // The correlation is undefined if the image, or its shifted copy, is constant in the overlap. Then take 1
+            // if both are constant and equal, and 0 otherwise.
             value[i] = if var1 > least && var2 > least {
                 ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
             } else {
@@ -108,7 +114,7 @@ impl Autocorrelation {
     }
 }
 
-/// Forward transform in two dimensions: transform the rows, transpose, and repeat both steps.
+/// Forward Fourier transform of a grid: transform the rows, transpose the grid, then do both again.
 fn transform(mut grid: Vec<Complex>, columns: usize, rows: usize, job: Job) -> Result<Vec<Complex>> {
     // Report no progress, because the transforms take milliseconds.
     let silent = job.part(0.0, 0.0);
@@ -129,7 +135,8 @@ fn transform(mut grid: Vec<Complex>, columns: usize, rows: usize, job: Job) -> R
     Ok(grid)
 }
 
-/// In-place radix-2 transform of a power-of-two length (Cooley and Tukey 1965).
+/// In-place radix-2 Fourier transform of a power-of-two length n (Cooley and Tukey 1965). `twiddles` holds
+/// exp(-2π i k / n) for k < n / 2.
 fn fft(data: &mut [Complex], twiddles: &[Complex]) {
     let n = data.len();
     let bits = n.trailing_zeros();

@@ -13,8 +13,9 @@ const CELL_GAP: f64 = 4.0;
 /// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// All lamps form one isolated group if the free space around them, along both axes, exceeds this multiple of the
-/// longest distance from a lamp to its nearest neighbour. Along an axis, the free space on both sides is added up.
+/// All lamps form one isolated group if the free space around them is large compared with the distances between them.
+/// The free space along an axis is the extent of the exemplar minus that of the box around all lamps. Along both axes,
+/// it must exceed this factor times d, where d is the largest distance from a lamp to its nearest neighbour.
 /// [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
@@ -24,18 +25,18 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The repeat of the panes of a luminous ceiling along x and y, in unwarped pixels: the length of the box around all
-/// panes, plus the width of the widest bar between them.
+/// The period, along x and along y, with which all panes of a luminous ceiling repeat, in unwarped pixels: the length
+/// of the box around all panes, plus the width of the widest bar between panes.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let [[width, column], [height, row]] = [spread(exemplar, 0, usize::max), spread(exemplar, 1, usize::max)];
-    // A single column or row of panes has bars of one direction only: take their width for both directions.
+    // A single column or row of panes has bars along one axis only. Their width then serves for the other axis as well.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
     DVec2::new(width + bar(column, row), height + bar(row, column))
 }
 
-/// The length of the box around all lamps along an axis, and the length of a gap between lamps along this axis, in
-/// unwarped pixels. A gap is an interval of the axis that no lamp reaches into. If there are several, `choose` picks
-/// the longest or the shortest one; without a gap, the length is 0.
+/// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: that of the box around all lamps, and that
+/// of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are several, `choose`
+/// picks the longest or the shortest one. If there is none, the length of the gap is 0.
 fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
     let mut spans: Vec<[usize; 2]> =
         exemplar.components.list.iter().map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
@@ -51,10 +52,10 @@ fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -
     [(end - first) as f64, gap.unwrap_or(0) as f64]
 }
 
-/// The repeat of the rows of an exemplar along x and y, in unwarped pixels: the size of the exemplar, or more. If
-/// there are gaps between lamps along an axis, the repeat is at least the length of the box around all lamps plus the
-/// shortest gap. Otherwise two rows at opposite borders of the photo would lie side by side in the texture, almost
-/// without a gap.
+/// The period, along x and along y, with which an exemplar that shows rows of lamps repeats, in unwarped pixels. Along
+/// each axis, it is the larger of two lengths: the exemplar's extent, and the length of the box around all lamps plus
+/// the shortest gap between lamps, if there is a gap. Without the second length, two rows at opposite borders of the
+/// exemplar would lie side by side in the texture, almost without a gap.
 pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
     let spaced = |axis: usize| {
         let [length, gap] = spread(exemplar, axis, usize::min);
@@ -63,7 +64,7 @@ pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
     of(exemplar).max(DVec2::new(spaced(0), spaced(1)))
 }
 
-/// The law by which the exemplar repeats as a whole.
+/// The law by which the exemplar repeats as a whole, with periods along x and y.
 pub fn as_period(exemplar: &Exemplar) -> Law {
     let cell = whole_exemplar(exemplar, of(exemplar));
     Law::Whole([DVec2::X * cell, DVec2::Y * cell])
@@ -74,9 +75,12 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The periods along x and y with which an exemplar repeats as a whole, chosen so that the texture keeps the lit share
-/// of the visible part of the plane. The periods are shorter than the exemplar if its corners are not visible, or if
-/// cut lamps are left out. A single lamp in a photo shows no spacing, so its two periods are equal.
+/// The periods along x and along y with which an exemplar repeats as a whole, in unwarped pixels. The texture should
+/// have the same lit share as the visible part of the plane. So the area of a repetition is the area of the lights that
+/// it copies, divided by that share. This area is smaller than the exemplar if some of its corners are not visible, or
+/// if cut lamps are left out.
+///
+/// A single lamp in a photo shows no spacing, so both periods are equal if the lamp fits.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
@@ -96,14 +100,16 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
-/// The bounding box of lamps; the first corner exceeds the second if there are none.
+/// The corners of the bounding box of lamps with the smallest and the largest coordinates. Without lamps, these are +∞
+/// and -∞.
 fn bounds_of<'a>(lamps: impl Iterator<Item = &'a Component>) -> (DVec2, DVec2) {
     lamps
         .map(Component::bounds)
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (first, last)| (low.min(first), high.max(last)))
 }
 
-/// Whether the lamps lie close together and far from the border, so that they are one object, such as a chandelier.
+/// Whether the lamps lie close together and far from the border ([`GROUP_MARGIN`]). They then count as one object, such
+/// as a chandelier.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
     let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
@@ -112,12 +118,12 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period with which a whole row of lamps repeats. It is the length of the exemplar along the row, including the
-/// free space at both ends, rounded to a multiple of `period`. `None` unless the row ends visibly at both ends, because
-/// it may then continue where it is not visible. A visible end meets two conditions:
+/// The period with which a row of lamps repeats as a whole: a vector along `period`, which leads from lamp to lamp. Its
+/// length is that of the exemplar along the row, including the free space at both ends, rounded to a multiple of
+/// `period`. `None` if the row may continue beyond the view at one of its ends. An end is in view if:
 ///
-/// - The exemplar extends beyond the place where the next lamp would begin.
-/// - The photo, if there is one, shows the place where the centre of the next lamp would lie.
+/// - the exemplar extends beyond the place where the next lamp would begin, and
+/// - the photo, if there is one, shows the place where the centre of the next lamp would lie.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;
@@ -143,8 +149,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether the photo shows the places beyond both ends of a row at which the next lamps would lie. Without a photo,
-/// all places count as shown.
+/// Whether the photo shows the two places, one beyond each end of a row, at which the centre of the next lamp would
+/// lie. Without a photo, all places count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

@@ -4,7 +4,8 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
-/// Two lamps are of one kind if each side differs by at most this share. [judged on 5 photos]
+/// Two lamps are of one kind if their widths and their heights differ by at most this share of the larger value, or by
+/// at most two pixels. [judged on 5 photos]
 const MAX_SIDE_DIFFERENCE: f64 = 0.33;
 /// A shift is not a period if, among the lamps that it moves onto lamps, more than this share land on a lamp of
 /// another kind. [judged on 5 photos]
@@ -12,8 +13,9 @@ const MAX_UNLIKE: f64 = 0.4;
 /// Maximum number of lamps that are tested. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;
 
-/// Whether a shift moves lamps onto lamps of their kind. Lamps that it moves onto no lamp are ignored. The test is
-/// needed because lights also correlate at a shift that moves a row of narrow panes onto a row of wide panes.
+/// Whether a shift, in unwarped pixels, moves lamps onto lamps of their kind. Ignores lamps that the shift moves onto
+/// no lamp. The test is needed because the autocorrelation is also high at a shift that moves, for example, a row of
+/// narrow panes onto a row of wide panes.
 pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     let all: Vec<_> = exemplar.lamps().collect();
     let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);

@@ -5,13 +5,15 @@ use super::basis;
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
 
-/// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
+/// A row of lamps counts as parallel to an axis if the tangent of the angle between them is below this.
+/// [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
-/// A period of a lattice becomes parallel to an axis if its slant, as a tangent, is at most this. [judged on 50 photos]
+/// A period of a lattice is made parallel to an axis if the tangent of the angle between them is below this.
+/// [judged on 50 photos]
 const MAX_LATTICE_SLANT: f64 = 0.06;
 
-/// A period, made exactly parallel to an axis if it nearly is. Its length stays.
+/// Returns a period, made exactly parallel to an axis if it is nearly parallel. The length stays.
 pub fn aligned(period: DVec2) -> DVec2 {
     basis::straight(period, MAX_LATTICE_SLANT)
 }
@@ -23,12 +25,12 @@ pub enum Law {
     Copy,
     /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
-    /// The lights form a row. The first vector is the period of the row; the second is the extent of the exemplar
-    /// across the row, which serves as the second period.
+    /// The lights form a row. The first vector is the period along the row. The second vector leads across the row; its
+    /// length is the extent of the exemplar, or more ([`super::row`]).
     Row([DVec2; 2]),
-    /// Too few lights for a period: the exemplar repeats as a whole, with its extent as both periods.
+    /// There are too few lights for a period. The exemplar repeats as a whole; both periods follow from its extent.
     Whole([DVec2; 2]),
-    /// Many lights without a period: patches are placed without a lattice.
+    /// There are many lights, but no period. Patches are placed without a lattice.
     Free,
 }
 
@@ -41,12 +43,15 @@ impl Law {
         }
     }
 
-    /// Stretches the lattice so that a whole number of periods, at least one, fits into `size`.
+    /// Stretches the lattice so that a texture of `size` unwarped pixels can repeat: its width and its height become
+    /// lattice vectors.
     ///
-    /// Errors: `Degenerate` if the stretched lattice has no area.
+    /// Errors: `Degenerate` if this is impossible, for example because a side of the texture is shorter than half a
+    /// period.
     pub fn fitted(self, size: DVec2) -> Result<Self> {
         let fit = |[a, b]: [DVec2; 2]| {
-            // Round the two sides of the texture to whole steps along both periods.
+            // Express the two sides of the texture in lattice coordinates and round these to integers. Then solve for
+            // the periods: [a b] = diag(size) N⁻¹, where the columns of N are the integers of the two sides.
             let inverse = DMat2::from_cols(a, b).inverse();
             let steps = |side: DVec2| (inverse * side).round();
             let whole = DMat2::from_cols(steps(DVec2::X * size.x), steps(DVec2::Y * size.y)).inverse();
@@ -67,7 +72,8 @@ impl Law {
         })
     }
 
-    /// The law with periods exactly parallel to the axes, where they nearly are. Other laws than lattices stay.
+    /// Returns a lattice whose shortest periods are exactly parallel to the axes if they are nearly parallel. Laws
+    /// other than lattices are returned unchanged.
     pub fn aligned(self) -> Self {
         match self {
             Self::Lattice(found) => Self::Lattice(basis::reduced(found).map(aligned)),
@@ -75,7 +81,7 @@ impl Law {
         }
     }
 
-    /// Whether the periods, if any, are exactly parallel to the axes.
+    /// Whether the periods are exactly parallel to the axes; true if there are none.
     pub fn is_aligned(&self) -> bool {
         let on_axis = |period: DVec2| period.min_element() == 0.0 || period.max_element() == 0.0;
         match *self {
@@ -85,8 +91,8 @@ impl Law {
         }
     }
 
-    /// The periods along x and along y in unwarped pixels; `None` for an axis along which the lattice has no period.
-    /// For `Copy`, both periods are infinite.
+    /// The lengths of the periods along x and along y in unwarped pixels; `None` for an axis to which no period is
+    /// parallel. For `Copy`, both are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

@@ -1,11 +1,13 @@
 //! Finds the lattice that the lamps lie on, from the autocorrelation of their mask.
 //!
 //! If a shift maps the mask nearly exactly onto itself, the lamps repeat with that shift. The two shortest such shifts
-//! form the lattice, which may be rectangular, hexagonal or skewed. Missing lamps lower the correlation only by their
-//! share. On a lattice, patches are shifted by lattice vectors only.
+//! that are not parallel are the periods of the lattice, which may be rectangular, hexagonal or skewed. A missing lamp
+//! does not hide a period: if a tenth of the lamps is missing, the correlation falls by about a tenth. The synthesis
+//! then shifts patches by lattice vectors only.
 //!
-//! If there is only one such shift, or if there are only a few lamps, the extent of the exemplar serves in place of
-//! the missing periods. If there are many lamps but no such shift, patches are placed without a lattice.
+//! - If there is only one such shift, the lamps form a row. The extent of the exemplar serves as the other period.
+//! - If there is none, and only a few lamps, the exemplar repeats as a whole. Its extents serve as both periods.
+//! - If there is none, but many lamps, patches are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -27,10 +29,11 @@ use correlation::Autocorrelation;
 use glam::DVec2;
 use law::Law;
 
-/// Minimum correlation of a period, relative to the highest correlation. A shift with a lower correlation probably
-/// moves lamps onto lamps of another kind. [bench emission:patterns]
+/// Minimum correlation at a period, relative to the highest correlation at any shift. A shift with a lower correlation
+/// probably moves lamps onto lamps of another kind. [bench emission:patterns]
 const MIN_RELATIVE_CORRELATION: f32 = 0.9;
-/// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
+/// The correlation at a shift counts only if at least this share of the valid pixels overlaps with valid pixels of the
+/// shifted image. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
 const MAX_SIDE: usize = 160;
@@ -38,9 +41,10 @@ const MAX_SIDE: usize = 160;
 /// [bench emission:patterns]
 const MAX_PARALLEL_SINE: f64 = 0.3;
 
-/// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition or without
-/// a period. Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be
-/// a period if its correlation is at least `min_regularity`; at 1 there are no periods.
+/// Finds from the autocorrelation how the exemplar's lights continue: on a lattice, in a row, by repetition as a whole,
+/// or without a lattice. Also returns the regularity: the lowest correlation at a period, or 0 if there is no period.
+/// A shift may be a period only if its correlation is at least `min_regularity`. If `min_regularity` is 1, no period is
+/// sought, and the law is `Free`.
 pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Law, f64) {
     if min_regularity >= 1.0 {
         return (Law::Free, 0.0);
@@ -55,9 +59,10 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
     }
 }
 
-/// A row with the given period. Its second period, across the row, is the extent of the exemplar, or longer if lamps
-/// lie at both borders: copies of the exemplar must keep a bar between panes ([`extent::of_panes`]), or the shortest
-/// gap between other lamps ([`extent::of_rows`]).
+/// A row with the given period. The second period leads across the row, along x or y. It is the extent of the exemplar,
+/// or longer if lamps lie at opposite borders, so that these lamps do not touch where copies of the exemplar adjoin.
+/// Panes are kept apart by the widest bar ([`extent::of_panes`]), other lamps by the shortest gap
+/// ([`extent::of_rows`]).
 pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     let extent = match exemplar.is_luminous_ceiling() {
         true => extent::of(exemplar).max(extent::of_panes(exemplar)),
@@ -68,7 +73,8 @@ pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     Law::Row([basis::straight(period, law::MAX_SLANT), across])
 }
 
-/// How lights without a period continue: few lamps repeat as a whole, and many are placed without a lattice.
+/// The law of lights without a period: an exemplar with few lamps repeats as a whole; otherwise there is no lattice.
+/// `extent` is the size of the usable part of the exemplar in unwarped pixels.
 pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
     if !extent::has_few_lamps(exemplar, extent) {
         return Law::Free;
@@ -88,7 +94,7 @@ pub struct Correlated {
 }
 
 impl Correlated {
-    /// Correlates the lights in the pixels of the reduced exemplar for which `is_within` returns true.
+    /// Correlates the lights of a part of the exemplar: the working pixels for whose index `is_within` returns true.
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);
@@ -108,8 +114,8 @@ impl Correlated {
     }
 }
 
-/// At most two shifts that map the pattern of lights onto itself, with their correlations: the shortest one, and the
-/// next that is not parallel to it.
+/// At most two shifts, in unwarped pixels, that map the pattern of lights onto itself, with their correlations: the
+/// shortest one, and the shortest of those that are not parallel to it.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
     for (shift, value) in shifts(exemplar, correlated, min_regularity, MIN_RELATIVE_CORRELATION, usize::MAX) {
@@ -125,10 +131,15 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < MAX_PARALLEL_SINE
 }
 
-/// The shortest shifts that map the lights onto themselves, with their correlations; at most `max_count`. A shift must
-/// move lamps onto lamps of the same kind. Its correlation must be at least `least`, and at least `relative` times the
-/// highest [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of all shifts. If the lights do not change along an
-/// axis, a shift of one pixel along that axis comes first.
+/// The shifts, in unwarped pixels, that map the lights onto themselves, with their correlations. Shorter ones come
+/// first; at most `max_count` are returned. Each shift meets these conditions:
+///
+/// - It moves lamps onto lamps of the same kind.
+/// - Its correlation is at least `least`.
+/// - Its correlation is at least `relative` times the highest
+///   [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of all shifts.
+///
+/// If the lights do not change along the x or y axis, a shift of one pixel along that axis precedes the other shifts.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

@@ -1,15 +1,16 @@
 //! Finds periods along the axes from the distances between neighbouring lamps.
 //!
-//! Autocorrelation needs lamps of equal shape at equal distances. The distances between neighbours give the periods of
-//! lamps in rows and columns even if the distant lamps are blurred. If wide and narrow gaps between lamps alternate,
-//! these distances alternate too, and the distance to the second neighbour gives the period.
+//! Autocorrelation needs lamps of equal shape at equal distances. The distances between the centres of neighbours in a
+//! row or column give the period even if blur has changed the shape of distant lamps. If wide and narrow gaps
+//! alternate, the period is the distance to the second neighbour.
 
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// Number of neighbours whose distances are proposed as periods: the next lamp, the second and the third one. For
-/// windows of n ≤ 3 panes along an axis, the distance to the n-th neighbour is the period of the windows. [convention]
+/// The distances to this number of neighbours are proposed as periods: to the next lamp, the second and the third one.
+/// For example, if each window has three panes side by side, the period of the windows is the distance from a pane to
+/// the third one after it. [convention]
 const ORDERS: usize = 3;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.
@@ -22,7 +23,8 @@ pub fn rows([across, down]: &[Vec<f64>; 2]) -> Vec<DVec2> {
     across.iter().map(|x| DVec2::X * *x).chain(down.iter().map(|y| DVec2::Y * *y)).collect()
 }
 
-/// Periods along x and along y, at most [`ORDERS`] each, in unwarped pixels.
+/// Periods along x and along y in unwarped pixels, at most [`ORDERS`] each. The n-th period is the median over all
+/// lamps of the distance to the n-th neighbour, weighted by photo pixels.
 pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| {
         let found = (1..=ORDERS).filter_map(|order| {
@@ -33,8 +35,8 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     })
 }
 
-/// Distance along an axis from a lamp to its `order`-th neighbour in the positive direction, within the lamp's row or
-/// column. `None` if there are fewer neighbours.
+/// Distance along an axis (0 for x, 1 for y) from a lamp to its `order`-th neighbour in the positive direction, among
+/// the lamps of the same row or column. `None` if there are fewer neighbours.
 fn distance(lamps: &[MeasuredLamp], lamp: &MeasuredLamp, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &MeasuredLamp| other.centre - lamp.centre;
     let is_beside = |other: &&MeasuredLamp| {

@@ -1,48 +1,51 @@
-//! Finds repeats: shifts that move lights onto lights, which are peaks of the autocorrelation.
+//! Finds repeats: shifts that move lights onto lights. The autocorrelation of the lights has a peak at each of them.
 
 use super::correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Number of standard errors that are subtracted from each correlation before the highest one is sought. Without this,
-/// shifts that compare few lamps would often have the highest correlation by chance. [convention]
+/// Before the highest correlation is sought, this number of standard errors is subtracted from each correlation.
+/// Otherwise a shift with few lamps in its overlap would often have the highest correlation by chance. [convention]
 const STANDARD_ERRORS: f32 = 2.0;
 
 /// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
 /// [origin not recorded]
 const MIN_UNCHANGING: f32 = 0.95;
 
-/// A peak counts only if the correlation falls by `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of the peak,
-/// along the axis (x or y) that is closer to the direction of the shift. Otherwise the lights do not repeat along this
-/// axis, but are continuous.
+/// A peak counts only if the correlation falls by at least `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of it.
+/// Both sides lie along x or y, whichever is closer to the direction of the shift. If the correlation does not fall,
+/// the lights run along this axis without interruption and have no period along it.
 const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.
 pub struct Repeat {
+    /// In pixels of the correlated image; [`super::shifts`] converts it to unwarped pixels.
     pub shift: DVec2,
-    /// The correlation at this shift, and the number of pixels that are compared.
+    /// The correlation at this shift.
     pub value: f32,
+    /// The number of pixels of the image that the shift moves onto pixels of the image.
     pub overlap: f32,
 }
 
 impl Repeat {
     /// The correlation r minus [`STANDARD_ERRORS`] standard errors, because r may be too high by chance. The standard
-    /// error is (1 - r²) / √(n - 1), where n is `lights`, the number of lights that are compared.
+    /// error is (1 - r²) / √(n - 1), where n is `lights`, the number of lights in the overlap.
     pub fn lower_bound(&self, lights: f32) -> f32 {
         self.value - STANDARD_ERRORS * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 
-/// Whether the lights do not change under any shift along an axis. Shifts with an overlap of fewer than 2.5 `least`
-/// pixels are not tested.
+/// Whether the lights stay nearly the same under every shift along an axis, such as long tubes along their direction.
+/// Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `least` pixels overlap.
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
     !values.is_empty() && values.iter().all(|&v| v >= MIN_UNCHANGING)
 }
 
-/// Finds the local maxima of the correlation at sub-pixel precision, in one half-plane of shifts. `unchanging` is a
-/// direction along which the lights do not change. The maxima are ridges along that direction, so only shifts
-/// perpendicular to it are then tested.
+/// Finds the local maxima of the correlation at sub-pixel precision. Only one half-plane of shifts is searched, because
+/// opposite shifts have equal correlations. A maximum needs an overlap of `least` pixels and a correlation of
+/// `least_value`. `unchanging` is a direction, x or y, along which the lights do not change. The correlation then has
+/// ridges along this direction instead of peaks, so only shifts perpendicular to it are tested.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
@@ -75,8 +78,8 @@ pub fn peaks(
                 })
             });
             if is_peak && !is_flat {
-                // The vertex of the parabola through three values: its position, and its height above the middle
-                // value.
+                // Fit a parabola through the values at -1, 0 and 1, where the value at 0 is `value`. Return the
+                // position of its vertex, and the height of the vertex above `value`.
                 let vertex = |low: f32, high: f32| {
                     let (slope, curvature) = (high - low, low + high - 2.0 * value);
                     if curvature > -1e-6 {
@@ -95,8 +98,8 @@ pub fn peaks(
     found
 }
 
-/// Refines every shift. If there are also peaks at multiples of the shift, the shift is the position of the farthest
-/// such peak divided by its multiple, which divides the position error as well.
+/// Refines every shift s by peaks at its multiples. If there are peaks at about 2 s, 3 s, … n s, the position of the
+/// peak at n s, divided by n, replaces s. The division reduces the error of the position by the factor n.
 pub fn sharpen(peaks: &mut [Repeat]) {
     let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
     for Repeat { shift, .. } in peaks {

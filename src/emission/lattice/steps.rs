@@ -1,7 +1,7 @@
 //! Finds periods along the axes from the steps between lamps of equal size.
 //!
-//! Autocorrelation compares areas, so it misses a step between few lamps, and steps to lamps of which the photo shows
-//! only a part. The lamps' centres show these steps.
+//! Autocorrelation compares areas, so it misses a step that only few lamps show, and steps to lamps of which the photo
+//! shows only a part. The differences between the centres of lamps show these steps.
 
 use super::law::aligned;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
@@ -9,24 +9,26 @@ use glam::DVec2;
 
 /// Maximum number of lamps between which steps are compared: the lamps with most photo pixels. [bench emission:seconds]
 const MAX_LAMPS: usize = 48;
-/// Two steps count as equal if they differ by at most this share of their length, besides the lamps' blur.
+/// Two steps count as equal if they differ by at most this share of their length, plus the blur of both lamps.
 /// [judged on 50 photos]
 const MAX_DIFFERENCE: f64 = 0.04;
-/// A step is a period if at least this many pairs of lamps show it, because a single pair shows no repetition, and at
-/// least this many pairs per lamp, because some steps between scattered lamps are equal by chance. [convention]
+/// A step is a period if at least `MIN_PAIRS` pairs of lamps show it, because a single pair shows no repetition. The
+/// number of pairs must also be at least `MIN_PAIRS_PER_LAMP` times the number of lamps, because some steps between
+/// scattered lamps are equal by chance. [convention]
 const MIN_PAIRS: usize = 2;
 const MIN_PAIRS_PER_LAMP: f64 = 1.0 / 3.0;
 /// Maximum number of periods along each axis. [bench emission:seconds]
 const MAX_PERIODS: usize = 4;
 
-/// A step that one or more pairs of lamps show.
+/// A step that one or more pairs of lamps show, in unwarped pixels.
 struct Step {
     mean: DVec2,
     pairs: usize,
 }
 
-/// The periods along x and along y that most pairs of lamps show, the shorter one first among equals. Leaves out
-/// multiples of a period.
+/// The periods along x and along y, in unwarped pixels, at most [`MAX_PERIODS`] each. A period that more pairs of lamps
+/// show comes first; among equals, the shorter one. Leaves out multiples of an earlier period. `lamps` is in descending
+/// order of photo pixels.
 pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     let lamps = &lamps[..lamps.len().min(MAX_LAMPS)];
     let mut steps = steps(lamps);
@@ -49,7 +51,8 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     })
 }
 
-/// The steps between lamps of equal size that follow an axis, and how many pairs of lamps show each.
+/// The steps between lamps of about equal size that are parallel to the x or y axis, each with the number of pairs of
+/// lamps that show it.
 fn steps(lamps: &[MeasuredLamp]) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for (n, from) in lamps.iter().enumerate() {
@@ -87,7 +90,7 @@ mod tests {
     #[test]
     fn steps_that_two_pairs_show_are_periods_and_single_or_oblique_ones_are_not() {
         let lamps = [lamp(10.0, 10.0), lamp(50.0, 10.0), lamp(10.0, 41.0), lamp(50.0, 41.0), lamp(123.0, 10.0)];
-        // Every second lamp of a longer row is a multiple of the period.
+        // In this row, the steps to the second, third, … lamp are multiples of the period 30 and are left out.
         let row: Vec<MeasuredLamp> = (0..6).map(|k| lamp(30.0 * f64::from(k), 0.0)).collect();
         assert_eq!(periods(&row), [vec![30.0], vec![]]);
         assert_eq!(periods(&lamps), [vec![40.0], vec![31.0]]);
