@@ -181,7 +181,8 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
         }
     }
     println!(
-        "{texels} blocks and {} derivatives differ by up to {:.2} %, the widest interval is {:.2} %; all blocks {:.4} and {:.4}",
+        "{texels} blocks and {} derivatives differ by up to {:.2} %, the widest interval is {:.2} %; all blocks {:.4} \
+         and {:.4}",
         tests - texels,
         100.0 * worst,
         100.0 * widest,

@@ -12,7 +12,7 @@ use glam::{Mat3, Vec2, Vec3};
 const TILE: usize = 64;
 
 /// One feature channel of the pixels of a tile.
-type Plane = [f32; TILE];
+type ChannelPlane = [f32; TILE];
 
 /// Inputs of the geometric channels of a tile.
 struct Geometry<'a> {
@@ -50,7 +50,7 @@ pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y
 }
 
 /// Splits pixels into three colour planes; images with fewer than three channels repeat the first.
-fn spread(pixels: &[f32], channels: usize, [r, g, b]: [&mut Plane; 3]) {
+fn spread(pixels: &[f32], channels: usize, [r, g, b]: [&mut ChannelPlane; 3]) {
     if channels == 3 {
         for (k, p) in pixels.as_chunks::<3>().0.iter().enumerate().take(TILE) {
             (r[k], g[k], b[k]) = (p[0], p[1], p[2]);
@@ -63,13 +63,13 @@ fn spread(pixels: &[f32], channels: usize, [r, g, b]: [&mut Plane; 3]) {
 }
 
 widest! {
-    fn join(planes: &[Plane; CHANNELS], out: &mut [f32]) {
+    fn join(planes: &[ChannelPlane; CHANNELS], out: &mut [f32]) {
         interleave(planes, out);
     }
 }
 
 widest! {
-    fn place(from: &Geometry, planes: &mut [Plane; CHANNELS]) {
+    fn place(from: &Geometry, planes: &mut [ChannelPlane; CHANNELS]) {
         let [_, _, _, depth, px, py, pz, nx, ny, nz] = planes;
         let n = from.inverse_depth.len().min(TILE);
         let (inverse_depth, normals) = (&from.inverse_depth[..n], &from.normals[..3 * n]);

@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 const TILE: usize = 64;
 
 /// One feature of all pixels of a tile.
-type Plane = [f32; TILE];
+type ChannelPlane = [f32; TILE];
 
 pub struct Classified {
     pub mask: Image,
@@ -69,7 +69,7 @@ struct Classifier<'a> {
     /// The image channel of each column of the samples.
     channels: &'a [usize],
     /// Whether the image has [`CHANNELS`] channels and `channels` lists all of them.
-    is_usual: bool,
+    has_all_channels: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: QuadraticForm,
@@ -86,8 +86,8 @@ impl Classifier<'_> {
     /// Deinterleaves and standardises the channels of a tile. It is inlined into `classify`, which is compiled once
     /// per instruction set.
     #[inline(always)]
-    fn standardise(&self, pixels: &[f32], count: usize, tile: &mut Tile) {
-        if self.is_usual {
+    fn standardise(&self, pixels: &[f32], channel_count: usize, tile: &mut Tile) {
+        if self.has_all_channels {
             // For the usual ten channels, standardise in the same pass as deinterleaving.
             let mean: [f32; CHANNELS] = std::array::from_fn(|c| self.mean[c]);
             let scale: [f32; CHANNELS] = std::array::from_fn(|c| self.scale[c]);
@@ -96,7 +96,7 @@ impl Classifier<'_> {
             }
             return;
         }
-        deinterleave(pixels, &mut tile.raw[..count]);
+        deinterleave(pixels, &mut tile.raw[..channel_count]);
         for (plane, (&channel, (mean, scale))) in
             tile.all.iter_mut().zip(self.channels.iter().zip(self.mean.iter().zip(&self.scale)))
         {
@@ -139,7 +139,7 @@ impl QuadraticForm {
 
     /// Evaluates the form at all pixels of a tile; `planes` holds one plane per feature of the form.
     #[inline(always)]
-    fn evaluate(&self, planes: &[Plane]) -> Plane {
+    fn evaluate(&self, planes: &[ChannelPlane]) -> ChannelPlane {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
         for (i, (x, &b)) in planes.iter().zip(&self.b).enumerate() {
@@ -176,18 +176,24 @@ struct Answer {
 /// The features of a tile, one plane per channel.
 struct Tile {
     /// The channels as they are stored in the image.
-    raw: [Plane; MAX_CHANNELS],
+    raw: [ChannelPlane; MAX_CHANNELS],
     /// `all`: the standardised columns of the samples. `deciding`: the columns that the logit uses.
-    all: [Plane; MAX_CHANNELS],
-    deciding: [Plane; MAX_CHANNELS],
+    all: [ChannelPlane; MAX_CHANNELS],
+    deciding: [ChannelPlane; MAX_CHANNELS],
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels of `count` channels each; results after the last pixel are undefined. `likely`
-    /// is the index of the ellipsoid that contained all pixels of an earlier tile. This ellipsoid is tested first,
-    /// which saves time and does not change the result.
-    fn classify(classifier: &Classifier, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
-        classifier.standardise(pixels, count, tile);
+    /// Classifies up to [`TILE`] pixels of `channel_count` channels each; results after the last pixel are undefined.
+    /// `likely` is the index of the ellipsoid that contained all pixels of an earlier tile. This ellipsoid is tested
+    /// first, which saves time and does not change the result.
+    fn classify(
+        classifier: &Classifier,
+        pixels: &[f32],
+        channel_count: usize,
+        tile: &mut Tile,
+        likely: &mut usize,
+    ) -> Answer {
+        classifier.standardise(pixels, channel_count, tile);
         let planes = &tile.all[..classifier.channels.len()];
 
         // Find the squared distance from the nearer ellipsoid. If the first ellipsoid contains all pixels, `beyond` is
@@ -223,10 +229,10 @@ widest! {
             }
             classifier.logit.evaluate(&tile.deciding[..classifier.deciding.len()])
         };
-        let [familiar, unfamiliar] = classifier.calibration;
+        let [like_painted, unlike_painted] = classifier.calibration;
         let (mut mask, mut probability) = ([0.0; TILE], [0.0; TILE]);
         for k in 0..TILE {
-            let calibration = familiar + (unfamiliar - familiar) * beyond[k];
+            let calibration = like_painted + (unlike_painted - like_painted) * beyond[k];
             probability[k] = 1.0 / (1.0 + exp_f32(-calibration * logit[k]));
             mask[k] = if probability[k] > 0.5 { 1.0 } else { 0.0 };
         }
@@ -248,13 +254,13 @@ pub fn run(
     let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
     let classifier = Classifier {
         channels,
-        is_usual: features.channels == CHANNELS && channels.len() == CHANNELS,
+        has_all_channels: features.channels == CHANNELS && channels.len() == CHANNELS,
         mean: single(&chosen.standard.mean),
         scale: single(&chosen.standard.scale),
         logit: QuadraticForm::of_model(chosen),
         deciding: chosen.columns.clone(),
         seen: chosen.seen.each_ref().map(QuadraticForm::of_ellipsoid),
-        calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
+        calibration: [chosen.held_out_parts.scale as f32, chosen.held_out_strokes.scale as f32],
     };
     let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);

@@ -72,7 +72,7 @@ use crate::job::Job;
 use classify::Classified;
 use input::MAX_CHANNELS;
 use samples::Samples;
-use select::{Chosen, Question};
+use select::{Chosen, SelectionInput};
 
 /// Bits of the feature channels 3 to 6: screen depth and position.
 const POSITION: u32 = 0b111_1000;
@@ -157,7 +157,7 @@ fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: 
         mask: classified.mask,
         confidence: classified.confidence,
         unseen: classified.unseen,
-        error: chosen.familiar.error * (1.0 - unseen) + chosen.unfamiliar.error * unseen,
+        error: chosen.held_out_parts.error * (1.0 - unseen) + chosen.held_out_strokes.error * unseen,
         model: Some(chosen.model),
         channels: chosen.columns.iter().map(|&i| 1 << channels[i]).sum(),
         samples: samples.counts,
@@ -204,12 +204,12 @@ fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], jo
         return Err(not_finite(bad.iter().sum()));
     }
     let columns = |subset: &u32| (0..channels.len()).filter(|&i| subset >> channels[i] & 1 == 1).collect();
-    let question = Question {
+    let selection_input = SelectionInput {
         samples: &samples,
         subsets: &subsets.iter().map(columns).collect::<Vec<Vec<usize>>>(),
         probe: &probe,
         ridge: params.ridge,
     };
-    let chosen = select::choose(&question, job)?;
+    let chosen = select::choose(&selection_input, job)?;
     Ok((samples, chosen))
 }

@@ -40,17 +40,17 @@ pub struct Chosen {
     pub weights: Vec<f64>,
     /// Result of cross-validation that holds out parts of strokes. It applies to pixels whose features are like those
     /// of the strokes.
-    pub familiar: Trust,
+    pub held_out_parts: Validation,
     /// Result of cross-validation that holds out whole strokes. It applies to pixels whose features are unlike those
     /// of the strokes.
-    pub unfamiliar: Trust,
+    pub held_out_strokes: Validation,
     /// For each class, the ellipsoid around its samples in the space of all standardised features.
     pub seen: [Ellipsoid; 2],
 }
 
 /// The result of one kind of cross-validation.
 #[derive(Clone, Copy)]
-pub struct Trust {
+pub struct Validation {
     /// Weighted share of held-out samples that were classified wrongly. Both classes have equal weight, and so have
     /// all strokes of a class.
     pub error: f64,
@@ -61,7 +61,7 @@ pub struct Trust {
 }
 
 /// The input of [`choose`].
-pub struct Question<'a> {
+pub struct SelectionInput<'a> {
     pub samples: &'a Samples,
     /// Subsets of the features to choose from, as column indices of the samples.
     pub subsets: &'a [Vec<usize>],
@@ -78,8 +78,8 @@ struct Candidate {
     terms: Table,
     /// Weights fitted to the samples in `Trial::few`.
     weights: Vec<f64>,
-    familiar: Trust,
-    unfamiliar: Trust,
+    held_out_parts: Validation,
+    held_out_strokes: Validation,
 }
 
 /// The samples with their classes, and their folds for cross-validation.
@@ -102,8 +102,8 @@ struct Trial<'a> {
 /// The expected loss of pixels like the painted ones is the log loss on held-out parts of strokes; the expected loss of
 /// all other pixels is the log loss on held-out whole strokes. A price is added to the loss: number of terms / number
 /// of samples (Akaike's criterion). The simpler of two equally good models therefore wins.
-pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
-    let Question { samples, subsets, .. } = *question;
+pub fn choose(input: &SelectionInput, job: Job) -> Result<Chosen> {
+    let SelectionInput { samples, subsets, .. } = *input;
     let standard = Standard::of(samples);
     let positive: Vec<bool> = samples.origins.iter().map(|o| o.positive).collect();
     let trial = Trial {
@@ -113,11 +113,11 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         by_stroke: folds_of_strokes(samples),
         few: (0..positive.len()).filter(|&i| i % stride(samples, positive[i]) == 0).collect(),
         positive,
-        ridge: question.ridge,
+        ridge: input.ridge,
     };
 
     // For each subset of the features, compute how far the image's pixels lie outside the samples' ellipsoids.
-    let probe = standard.apply(question.probe)?;
+    let probe = standard.apply(input.probe)?;
     let spread = |class: bool| Spread::of(&trial.x, |i| trial.positive[i] == class);
     let (negative, positive) = exec::both(|| spread(false), || spread(true));
     let spreads = [negative, positive];
@@ -127,14 +127,14 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     })?;
 
     let candidate = cheapest(&trial, subsets, &unseen, job.part(0.1, 0.9))?;
-    let Candidate { model, columns, terms, weights, familiar, unfamiliar } = candidate;
+    let Candidate { model, columns, terms, weights, held_out_parts, held_out_strokes } = candidate;
     let all = balanced(&trial.positive, |_| true);
     let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
     let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
     // The ellipsoids use all features: a pixel may be unlike all strokes in a feature that the chosen model does not
     // use.
     let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
-    Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
+    Ok(Chosen { model, columns, standard, weights, held_out_parts, held_out_strokes, seen })
 }
 
 /// Finds the candidate with the smallest sum of expected loss over the image and price of its terms. `unseen` holds
@@ -160,8 +160,9 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
         })?;
         for (candidate, (terms, _, subset)) in candidates.into_iter().zip(batch) {
             let candidate = candidate?;
-            let (familiar, unfamiliar) = (candidate.familiar.loss, candidate.unfamiliar.loss);
-            let expected = familiar * (1.0 - unseen[*subset]) + unfamiliar * unseen[*subset] + price(*terms);
+            let (held_out_parts, held_out_strokes) = (candidate.held_out_parts.loss, candidate.held_out_strokes.loss);
+            let expected =
+                held_out_parts * (1.0 - unseen[*subset]) + held_out_strokes * unseen[*subset] + price(*terms);
             if best.as_ref().is_none_or(|(least, _)| expected < *least) {
                 best = Some((expected, candidate));
             }
@@ -177,9 +178,9 @@ impl Candidate {
         let few = Table::of_rows(&terms, &trial.few)?;
         let weights = trial.fit_few(&few, |_| true, &vec![0.0; terms.columns], job)?;
         let held_out = |fold_of| validate(trial, &terms, &few, &weights, fold_of, job);
-        let (familiar, unfamiliar) = exec::both(|| held_out(&trial.by_part), || held_out(&trial.by_stroke));
-        let (familiar, unfamiliar) = (familiar?, unfamiliar?);
-        Ok(Self { model, columns: columns.to_vec(), terms, weights, familiar, unfamiliar })
+        let (held_out_parts, held_out_strokes) = exec::both(|| held_out(&trial.by_part), || held_out(&trial.by_stroke));
+        let (held_out_parts, held_out_strokes) = (held_out_parts?, held_out_strokes?);
+        Ok(Self { model, columns: columns.to_vec(), terms, weights, held_out_parts, held_out_strokes })
     }
 }
 
@@ -222,7 +223,7 @@ fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
 /// Cross-validates a model. `all` holds the terms of all samples, `few` the terms of the samples in the subset
 /// `Trial::few`. For each fold, fits the model to the samples of the subset that lie outside the fold, and applies it
 /// to all samples in the fold. Each fit begins with the weights `start`, which were fitted to the whole subset.
-fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
+fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Validation> {
     let Trial { samples, positive, .. } = trial;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
     let held_out = exec::map(count, job, |fold| -> Result<Vec<(usize, f64)>> {
@@ -247,7 +248,7 @@ fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[u
     let error = wrong.fold(0.0, |sum, i| sum + shares[i]).min(1.0);
     let problem = Problem { terms: &Table::of(&logits, 1)?, positive, weights: &shares };
     let (scale, loss) = calibrate(&problem);
-    Ok(Trust { error, scale, loss })
+    Ok(Validation { error, scale, loss })
 }
 
 /// Finds the factor on logits that minimises the log loss of held-out samples (temperature scaling, Guo et al. 2017).

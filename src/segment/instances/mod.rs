@@ -7,8 +7,8 @@
 //! strokes ──────────────────────────────────────────────────┘
 //! ```
 //! 1. [`tree`] builds the component tree: the connected regions above every level of brightness, nested in each other.
-//! 2. [`regions`] measures them: size in the photo and on the plane ([`footprint`]), shape, colour, and the contrast
-//!    along the contour.
+//! 2. [`regions`] measures them: size in the photo and on the plane ([`footprint`]), shape, colour, and the mean
+//!    gradient across the contour.
 //! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it. Without
 //!    positive strokes, [`proposed`] chooses the regions most like lamps.
 //! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.

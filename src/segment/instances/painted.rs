@@ -17,15 +17,15 @@ const MIN_COVER: f64 = 0.03;
 const USUAL_EXTENT: f64 = 4.0;
 /// Exponent of the cover in the gain of a region (see `of_stroke`). The cover is the share of the stroke's pixels that
 /// the region holds. Because the exponent is above 1, a region has a larger gain than its parts together, at equal
-/// contrast. [judged on 44 photos]
+/// contour gradient. [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
 /// Exponent of the purity in the gain of a region (see `of_stroke`). The purity is the share of positive pixels among
 /// the painted pixels of the region. The exponent all but rules out regions with many negative pixels.
 /// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
-/// Minimum contrast of a region, relative to the region with the sharpest contour under the same stroke. Regions below
-/// it are fragments. [judged on 28 photos]
-const MIN_CONTRAST: f64 = 0.4;
+/// Minimum contour gradient of a region, relative to the region with the sharpest contour under the same stroke.
+/// Regions below it are fragments. [judged on 28 photos]
+const MIN_CONTOUR_GRADIENT: f64 = 0.4;
 
 /// The pixels under the strokes of each class. A pixel under several strokes belongs to the last one.
 pub struct Paint<'a> {
@@ -55,8 +55,8 @@ pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
 }
 
 /// Finds the disjoint nodes under a stroke with the largest sum of gains. The gain is the score by which the nodes
-/// compete: contrast × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²), where l is
-/// the length of the node and s the length of the stroke. `covered` holds zeros before and after the call.
+/// compete: contour gradient × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²),
+/// where l is the length of the node and s the length of the stroke. `covered` holds zeros before and after the call.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
     // Collect the nodes that hold pixels of the stroke, parents first, and count these pixels in `covered`.
     let mut nodes = Vec::new();
@@ -79,7 +79,7 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
         }
         let purity = covered[n] / (covered[n] + paint.negatives[n]);
         let excess = regions.axes(n)[0] / (USUAL_EXTENT * length);
-        regions.contrast(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
+        regions.contour_gradient(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
     };
 
     // From the leaves to the root, test whether a node gains at least as much as the best disjoint nodes inside it.
@@ -108,8 +108,8 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
             chosen.push(node);
         }
     }
-    let sharpest = chosen.iter().map(|&n| regions.contrast(n as usize)).fold(0.0, f64::max);
-    chosen.retain(|&n| regions.contrast(n as usize) >= MIN_CONTRAST * sharpest);
+    let sharpest = chosen.iter().map(|&n| regions.contour_gradient(n as usize)).fold(0.0, f64::max);
+    chosen.retain(|&n| regions.contour_gradient(n as usize) >= MIN_CONTOUR_GRADIENT * sharpest);
     chosen
 }
 

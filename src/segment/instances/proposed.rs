@@ -1,8 +1,8 @@
 //! Proposes lamps if no positive stroke lies on one: chooses the regions of the plane that are most like lamps.
 //!
 //! Lamps are compact regions with sharp contours among the brightest regions on their plane. Regions with these
-//! properties are ranked by worth, which is the contrast along the contour times a small power of the area. The region
-//! of highest worth is taken for a lamp, and so are regions of nearly equal worth.
+//! properties are ranked by worth, which is the contour gradient times a small power of the area. The region of highest
+//! worth is taken for a lamp, and so are regions of nearly equal worth.
 
 use super::painted::MIN_AREA;
 use super::similar::Search;
@@ -25,8 +25,8 @@ const MIN_SOLIDITY: f64 = 0.75;
 const MAX_SHARE: f64 = 0.25;
 /// At least this share of the ring of pixels around a lamp must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
-/// Minimum worth of a lamp (contrast along its contour times a power of its area), relative to the lamp of highest
-/// worth. [bench photos:nostrokes]
+/// Minimum worth of a lamp (contour gradient times a power of its area), relative to the lamp of highest worth.
+/// [bench photos:nostrokes]
 const NEARLY_BEST: f64 = 0.4;
 /// Exponent of a region's area in its worth. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;
@@ -53,7 +53,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         Some(surface) => surface.area[node] / surface.shown.max(f64::MIN_POSITIVE),
         None => regions.area[node] / plane_area,
     };
-    let worth = |node: usize| regions.contrast(node) * regions.area[node].powf(AREA_POWER);
+    let worth = |node: usize| regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
     let is_compact = |node: &usize| {
         regions.area[*node] >= MIN_AREA
             && share(*node) <= MAX_SHARE

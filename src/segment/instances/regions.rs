@@ -1,5 +1,5 @@
-//! Measures the regions of the component tree: size and shape through moments, mean colour, and the contrast along the
-//! contour.
+//! Measures the regions of the component tree: size and shape through moments, mean colour, and the mean gradient
+//! across the contour.
 
 use super::footprint::Footprint;
 use super::tree::Tree;
@@ -188,7 +188,7 @@ pub struct Regions {
     yy: Vec<f64>,
     xy: Vec<f64>,
     lab: [Vec<f64>; 3],
-    contour_gradient: Vec<f64>,
+    contour_gradient_sum: Vec<f64>,
     contour_length: Vec<f64>,
 }
 
@@ -204,7 +204,7 @@ impl Regions {
             yy: blank()?,
             xy: blank()?,
             lab: [blank()?, blank()?, blank()?],
-            contour_gradient: blank()?,
+            contour_gradient_sum: blank()?,
             contour_length: blank()?,
         };
         for y in 0..photo.height {
@@ -213,8 +213,8 @@ impl Regions {
             }
             sums.add_row(tree, photo, y);
         }
-        let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient, contour_length, .. } = &mut sums;
-        let all = [area, x, y, xx, yy, xy, l, a, b, contour_gradient, contour_length];
+        let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient_sum, contour_length, .. } = &mut sums;
+        let all = [area, x, y, xx, yy, xy, l, a, b, contour_gradient_sum, contour_length];
         all.into_iter().for_each(|values| tree.accumulate(values));
         Ok(sums)
     }
@@ -253,16 +253,16 @@ impl Regions {
         }
         let (bright, dark) = if photo.levels[i] > photo.levels[j] { (a, b) } else { (b, a) };
         let gradient = 0.5 * f64::from(photo.gradient[i] + photo.gradient[j]);
-        self.contour_gradient[bright] += gradient;
-        self.contour_gradient[dark] -= gradient;
+        self.contour_gradient_sum[bright] += gradient;
+        self.contour_gradient_sum[dark] -= gradient;
         self.contour_length[bright] += 1.0;
         self.contour_length[dark] -= 1.0;
     }
 
     /// Mean gradient across the contour, in L* per pixel: high at sharp edges, low where the contour is an arbitrary
     /// level line.
-    pub fn contrast(&self, node: usize) -> f64 {
-        if self.contour_length[node] > 0.0 { self.contour_gradient[node] / self.contour_length[node] } else { 0.0 }
+    pub fn contour_gradient(&self, node: usize) -> f64 {
+        if self.contour_length[node] > 0.0 { self.contour_gradient_sum[node] / self.contour_length[node] } else { 0.0 }
     }
 
     pub fn colour(&self, node: usize) -> [f64; 3] {

@@ -16,8 +16,8 @@ const DIMMER: f64 = 4.0;
 /// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along a lamp's contour, relative to the median contrast of the lamps under the strokes. It is
-/// below 1 because distant lamps are small and blurred. [judged on 28 photos]
+/// Minimum contour gradient of a lamp ([`Regions::contour_gradient`]), relative to the median of the lamps under the
+/// strokes. It is below 1 because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
 /// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps
 /// under the strokes. [judged on 28 photos]
@@ -68,7 +68,7 @@ const ROUND: f64 = 1.25;
 /// the ring around a lamp under a stroke. Up to this difference, the region may lie on a part of the plane that the
 /// given mask of the plane misses. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Candidates are tried in descending order of contour contrast × area ^ `AREA_POWER`. Of nested regions with almost
+/// Candidates are tried in descending order of contour gradient × area ^ `AREA_POWER`. Of nested regions with almost
 /// equally sharp contours, the largest is therefore tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
 /// Minimum likeness (see `Search::likeness`) of a doubtful region; a lamp must have a likeness of at least 1.
@@ -78,8 +78,8 @@ const NEARLY: f64 = 0.7;
 /// What a region must show to count as a lamp.
 #[derive(Clone, Copy)]
 struct Limits {
-    /// Minimum contrast along the contour, and minimum contrast to the ring around the region, as a share of the minima
-    /// in [`Model`].
+    /// Minimum contour gradient, and minimum contrast to the ring around the region, as a share of the minima in
+    /// [`Model`].
     contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
     negatives: f64,
@@ -127,8 +127,8 @@ struct Model {
     colours: Vec<[f64; 3]>,
     /// Median colours of the rings of pixels around the lamps under the strokes.
     rings: Vec<[f64; 3]>,
-    /// Minimum contrast along the contour and minimum contrast to the ring. Both hold for lamps so large that blur
-    /// does not reduce their contrast; for smaller lamps they are lowered.
+    /// Minimum contour gradient and minimum contrast to the ring. Both hold for lamps so large that blur does not
+    /// reduce their contrast; for smaller lamps they are lowered.
     contour: f64,
     ring: f64,
 }
@@ -183,7 +183,8 @@ impl Search<'_> {
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
             let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
-            let is_in_hole = is_beside && self.is_on_face(node as usize) && self.is_like_one(lamps(), node as usize);
+            let is_in_hole =
+                is_beside && self.is_on_face(node as usize) && self.resembles_known_lamp(lamps(), node as usize);
             let is_in_row = is_beside && self.continues_row(lamps(), node as usize);
             if is_in_hole || (is_on_plane && likeness >= 1.0) {
                 similar.found.push(node);
@@ -237,7 +238,7 @@ impl Search<'_> {
     /// Whether a node has the size and shape of a known lamp, lies on the plane or in a hole of the plane's mask, and
     /// has the contrast to its ring that [`ALIKE`] demands.
     fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
-        if !self.is_like_one(painted.iter().chain(&similar.found), node as usize) {
+        if !self.resembles_known_lamp(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
         }
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
@@ -263,7 +264,7 @@ impl Search<'_> {
             }
             let likeness = self.likeness(model, node, limits);
             if likeness >= NEARLY {
-                let rank = regions.contrast(node) * regions.area[node].powf(AREA_POWER);
+                let rank = regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
                 try_push(&mut candidates, (node as u32, likeness, rank))?;
             }
         }
@@ -308,7 +309,7 @@ impl Search<'_> {
             min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
             colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
             rings: colours_around,
-            contour: median(of(&|n| regions.contrast(n) / sharpness(regions.area[n]))) * CONTOUR,
+            contour: median(of(&|n| regions.contour_gradient(n) / sharpness(regions.area[n]))) * CONTOUR,
             ring: (median(rings) * RING).max(f64::MIN_POSITIVE),
         }))
     }
@@ -332,7 +333,11 @@ impl Search<'_> {
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
     /// the room has no box layout.
-    fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
+    fn lamps_of_equal_shape<'a>(
+        &self,
+        lamps: impl Iterator<Item = &'a u32>,
+        node: usize,
+    ) -> impl Iterator<Item = &'a u32> {
         let alike = self.regions.surface.as_ref();
         lamps.filter(move |&&lamp| {
             alike.is_some_and(|surface| {
@@ -344,14 +349,14 @@ impl Search<'_> {
 
     /// Whether a lamp has nearly the size and shape of a node, and the node is round or in a row with that lamp. Round
     /// lamps are often scattered, other lamps lie in rows.
-    fn is_like_one<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
+    fn resembles_known_lamp<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
-        self.like_ones(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
+        self.lamps_of_equal_shape(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
     }
 
     /// Whether a node lies in a row with a lamp of nearly its size and shape.
     fn continues_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
-        self.like_ones(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
+        self.lamps_of_equal_shape(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
     }
 
     fn is_in_row(&self, node: usize, lamp: u32) -> bool {
@@ -370,7 +375,7 @@ impl Search<'_> {
     }
 
     /// Likeness of a node to the lamps under the strokes, apart from its surroundings: the least of its likenesses in
-    /// brightness, colour and contour contrast. A value of at least 1 means that the node meets all limits. The
+    /// brightness, colour and contour gradient. A value of at least 1 means that the node meets all limits. The
     /// likeness is 0 if size, shape or negative strokes rule the node out.
     fn likeness(&self, model: &Model, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
@@ -379,7 +384,7 @@ impl Search<'_> {
             return 0.0;
         }
         let sharpness = sharpness(area);
-        let contour = regions.contrast(node) / (limits.contrast * model.contour * sharpness);
+        let contour = regions.contour_gradient(node) / (limits.contrast * model.contour * sharpness);
         if contour < NEARLY || regions.solidity(node) < model.min_solidity {
             return 0.0;
         }

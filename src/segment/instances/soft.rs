@@ -29,7 +29,7 @@ pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
     let distance = bounds.distance(pixels, photo.width)?;
     // The contour lies at the lightness of the region's dimmest pixel.
     let contour = contour_lightness(tree.pixels(node), photo);
-    let slope = 1.0 / (regions.contrast(node as usize) as f32).max(1.0);
+    let slope = 1.0 / (regions.contour_gradient(node as usize) as f32).max(1.0);
     for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
         let i = bounds.pixel(k, photo.width);
         if d > 0 && plane.is_some_and(|plane| plane.data[i] <= 0.5) {
