@@ -1,6 +1,6 @@
 //! The target room, which is to be lit: 6 × 4 m, 2.8 m high, furnished, without lights.
 
-use super::shapes::{ball, cuboid, flat, moved, pierced, sheet};
+use super::shapes::{ball, cuboid, mesh_of, moved, pierced, sheet};
 use super::{Builder, furniture, pattern};
 use crate::error::Result;
 use crate::scene::{Camera, Mesh, Scene};
@@ -33,22 +33,22 @@ fn shell(b: &mut Builder) -> Result<()> {
     let Vec3 { x, y, z } = SIZE;
     let cells = |a: f32, b: f32| [(a / CELL).ceil() as u32, (b / CELL).ceil() as u32];
     let floor = b.pattern("Floor planks", pattern::planks()?, Vec2::splat(1.6), 0.45);
-    b.add("Floor", floor, flat(|m| sheet(m, Vec3::Z * z, Vec3::X * x, Vec3::NEG_Z * z, cells(x, z))));
+    b.add("Floor", floor, mesh_of(|m| sheet(m, Vec3::Z * z, Vec3::X * x, Vec3::NEG_Z * z, cells(x, z))));
     let white = b.paint("White plaster", Vec3::splat(0.82), 1.0);
-    b.add("Ceiling", white, flat(|m| sheet(m, Vec3::Y * y, Vec3::X * x, Vec3::Z * z, cells(x, z))));
+    b.add("Ceiling", white, mesh_of(|m| sheet(m, Vec3::Y * y, Vec3::X * x, Vec3::Z * z, cells(x, z))));
 
     let bricks = b.pattern("White bricks", pattern::bricks(Vec3::new(0.72, 0.69, 0.64))?, Vec2::splat(0.9), 0.9);
-    let front = flat(|m| pierced(m, Vec3::ZERO, [Vec3::X, Vec3::Y], Vec2::new(x, y), &[WINDOW, DOOR], CELL));
+    let front = mesh_of(|m| pierced(m, Vec3::ZERO, [Vec3::X, Vec3::Y], Vec2::new(x, y), &[WINDOW, DOOR], CELL));
     b.add("Front wall", bricks, front);
     let terracotta = b.pattern("Terracotta", pattern::plaster(Vec3::new(0.56, 0.13, 0.06))?, Vec2::splat(1.5), 0.95);
-    b.add("Left wall", terracotta, flat(|m| sheet(m, Vec3::Z * z, Vec3::NEG_Z * z, Vec3::Y * y, cells(z, y))));
+    b.add("Left wall", terracotta, mesh_of(|m| sheet(m, Vec3::Z * z, Vec3::NEG_Z * z, Vec3::Y * y, cells(z, y))));
     let cream = b.pattern("Cream plaster", pattern::plaster(Vec3::new(0.74, 0.68, 0.56))?, Vec2::splat(1.5), 0.95);
-    b.add("Right wall", cream, flat(|m| sheet(m, Vec3::X * x, Vec3::Z * z, Vec3::Y * y, cells(z, y))));
+    b.add("Right wall", cream, mesh_of(|m| sheet(m, Vec3::X * x, Vec3::Z * z, Vec3::Y * y, cells(z, y))));
     let back = Vec3::new(x, 0.0, z);
-    b.add("Back wall", cream, flat(|m| sheet(m, back, Vec3::NEG_X * x, Vec3::Y * y, cells(x, y))));
+    b.add("Back wall", cream, mesh_of(|m| sheet(m, back, Vec3::NEG_X * x, Vec3::Y * y, cells(x, y))));
 
     let lacquer = b.paint("White lacquer", Vec3::splat(0.78), 0.4);
-    let skirting = flat(|m| {
+    let skirting = mesh_of(|m| {
         cuboid(m, Vec3::ZERO, Vec3::new(DOOR[0].x - 0.08, 0.09, 0.015));
         cuboid(m, Vec3::new(DOOR[1].x + 0.08, 0.0, 0.0), Vec3::new(x, 0.09, 0.015));
         cuboid(m, Vec3::new(0.0, 0.0, 0.015), Vec3::new(0.015, 0.09, z));
@@ -73,7 +73,7 @@ fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
 /// Adds the window with a frosted pane and curtains, and the door.
 fn openings(b: &mut Builder) {
     let lacquer = b.paint("Frame lacquer", Vec3::splat(0.80), 0.35);
-    let frames = flat(|m| {
+    let frames = mesh_of(|m| {
         frame(m, WINDOW, 0.06, true);
         frame(m, DOOR, 0.08, false);
         let [low, high] = WINDOW;
@@ -89,7 +89,7 @@ fn openings(b: &mut Builder) {
     b.add("Frames", lacquer, frames);
     let frosted = b.paint("Frosted glass", Vec3::new(0.50, 0.60, 0.68), 0.25);
     let pane = |[low, high]: [Vec2; 2]| {
-        flat(|m| {
+        mesh_of(|m| {
             let d = high - low;
             sheet(m, low.extend(-0.08), Vec3::X * d.x, Vec3::Y * d.y, [8, 6]);
         })
@@ -98,7 +98,7 @@ fn openings(b: &mut Builder) {
 
     let blue = b.paint("Door paint", Vec3::new(0.10, 0.19, 0.27), 0.5);
     let [low, high] = DOOR;
-    let leaf = flat(|m| {
+    let leaf = mesh_of(|m| {
         cuboid(m, low.extend(-0.09), high.extend(-0.04));
         for (y0, y1) in [(0.2, 0.95), (1.1, 1.85)] {
             cuboid(m, Vec3::new(low.x + 0.12, y0, -0.04), Vec3::new(high.x - 0.12, y1, -0.025));
@@ -114,13 +114,14 @@ fn openings(b: &mut Builder) {
     // Curtains: folded sheets.
     let mustard = b.paint("Curtain", Vec3::new(0.66, 0.40, 0.05), 1.0);
     for (from, to) in [(0.75, 1.25), (2.95, 3.45)] {
-        let mut mesh = flat(|m| sheet(m, Vec3::new(from, 0.12, 0.10), Vec3::X * (to - from), Vec3::Y * 2.3, [60, 6]));
+        let mut mesh =
+            mesh_of(|m| sheet(m, Vec3::new(from, 0.12, 0.10), Vec3::X * (to - from), Vec3::Y * 2.3, [60, 6]));
         for p in &mut mesh.positions {
             p.z += 0.035 * ((p.x - from) * 75.0).sin() * (1.15 - 0.1 * p.y);
         }
         b.add("Curtain", mustard, mesh);
     }
-    let rod = flat(|m| cuboid(m, Vec3::new(0.6, 2.42, 0.09), Vec3::new(3.6, 2.445, 0.115)));
+    let rod = mesh_of(|m| cuboid(m, Vec3::new(0.6, 2.42, 0.09), Vec3::new(3.6, 2.445, 0.115)));
     b.add("Curtain rod", brass, rod);
 }
 
@@ -159,7 +160,7 @@ fn dining_table(b: &mut Builder, paints: &Paints) -> Result<()> {
     let (centre, rug_size) = (Vec3::new(3.0, 0.0, 1.95), Vec2::new(2.9, 2.1));
     let rug = b.pattern("Rug", pattern::rug()?, rug_size, 1.0);
     let corner = centre + Vec3::new(-rug_size.x / 2.0, 0.012, rug_size.y / 2.0);
-    b.add("Rug", rug, flat(|m| sheet(m, corner, Vec3::X * rug_size.x, Vec3::NEG_Z * rug_size.y, [12, 8])));
+    b.add("Rug", rug, mesh_of(|m| sheet(m, corner, Vec3::X * rug_size.x, Vec3::NEG_Z * rug_size.y, [12, 8])));
     furniture::table(b, centre, Vec2::new(1.7, 0.9), paints.oak);
     for (x, z, degrees) in [(-0.42, 0.62, 180.0), (0.42, 0.66, 172.0), (-0.42, -0.64, 0.0), (0.45, -0.60, 8.0)] {
         furniture::chair(b, centre + Vec3::new(x, 0.0, z), degrees, paints.walnut, paints.cloth);
@@ -192,12 +193,12 @@ fn left_wall(b: &mut Builder, paints: &Paints) -> Result<()> {
     b.add(
         "Painting",
         canvas,
-        flat(|m| {
+        mesh_of(|m| {
             sheet(m, upper_left, Vec3::NEG_Z * 1.1, Vec3::NEG_Y * 0.75, [4, 4]);
             m.triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }),
     );
-    let border = flat(|m| {
+    let border = mesh_of(|m| {
         let (low, high) = (Vec3::new(0.0, 1.36, 2.36), Vec3::new(0.03, 2.19, 3.54));
         cuboid(m, low, high);
     });

@@ -8,7 +8,7 @@ use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};
 
 /// Creates a mesh and lets `build` add flat shapes to it.
-pub fn flat(build: impl FnOnce(&mut Mesh)) -> Mesh {
+pub fn mesh_of(build: impl FnOnce(&mut Mesh)) -> Mesh {
     let mut mesh = Mesh::default();
     build(&mut mesh);
     mesh

@@ -5,7 +5,7 @@
 //! that the object reflects onto the table, and the object's cast shadow with a soft edge.
 
 use super::Builder;
-use super::shapes::{ball, flat, lathe, moved, sheet};
+use super::shapes::{ball, lathe, mesh_of, moved, sheet};
 use crate::error::Result;
 use crate::scene::{Camera, Environment, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
@@ -56,10 +56,10 @@ fn stage() -> Builder {
     b.scene.materials[white].ior = 1.0;
     let side = Vec2::new(2.2, 1.9);
     let corner = Vec3::new(-side.x / 2.0, 0.0, 0.95);
-    b.add("Table", white, flat(|m| sheet(m, corner, Vec3::X * side.x, Vec3::NEG_Z * side.y, [4, 4])));
+    b.add("Table", white, mesh_of(|m| sheet(m, corner, Vec3::X * side.x, Vec3::NEG_Z * side.y, [4, 4])));
     let back = Vec3::new(-1.1, 0.0, -0.48);
     let along = Vec3::new(2.2, 0.0, -0.16);
-    b.add("Wall", white, flat(|m| sheet(m, back, along, Vec3::Y * 1.2, [4, 4])));
+    b.add("Wall", white, mesh_of(|m| sheet(m, back, along, Vec3::Y * 1.2, [4, 4])));
 
     let lamp = b.paint("Lamp", Vec3::ZERO, 1.0);
     b.scene.materials[lamp].emission = Vec3::new(1.0, 0.97, 0.9) * LAMP_LUMINANCE;
@@ -67,7 +67,7 @@ fn stage() -> Builder {
     let [low, high] = LAMP;
     // Tilt the lamp towards the object on the table.
     let (u, v) = (Vec3::new(high.x - low.x, high.y - low.y, 0.0), Vec3::Z * (high.z - low.z));
-    b.add("Lamp", lamp, flat(|m| sheet(m, low, u, v, [1, 1])));
+    b.add("Lamp", lamp, mesh_of(|m| sheet(m, low, u, v, [1, 1])));
     b.scene.environment = Some(Environment::Constant(SURROUNDINGS));
     b.scene.cameras.push(Camera {
         name: "Camera".into(),

@@ -17,7 +17,7 @@ pub const MAX_SEGMENTS: usize = 160;
 /// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
 /// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [origin not recorded]
-const IMPOSSIBLE: f64 = 1.5;
+const IMPOSSIBLE_PENALTY: f64 = 1.5;
 /// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [origin not recorded]
 const SEAM: f64 = 2.0;
 /// A segment lies on the seam of two faces if the distances to both faces along its rays differ by less than this
@@ -233,7 +233,7 @@ fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3
             let off = (first - second) / (first * SEAM_WIDTH);
             let near = 1.0 - off * off;
             let seam = if second >= own && near > 0.0 { SEAM * near } else { 0.0 };
-            sums[lane] += weight[lane] * if own > first { -IMPOSSIBLE } else { 1.0 + seam };
+            sums[lane] += weight[lane] * if own > first { -IMPOSSIBLE_PENALTY } else { 1.0 + seam };
         }
     }
     sums.iter().sum()
