@@ -165,7 +165,7 @@ impl Votes {
         (y - self.y.start) * self.x.len() + x - self.x.start
     }
 
-    /// Returns pixel `i` of the mean or the choice.
+    /// Returns the channels of pixel `i` in `of`, an image of this part.
     fn pixel<'a>(&self, of: &'a [f32], i: usize) -> &'a [f32] {
         &of[i * self.channels..(i + 1) * self.channels]
     }

@@ -69,7 +69,8 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// Returns the curve of the error that the solution contributes to a picture of the given contrast, against time.
+    /// Returns how the error that the solution contributes to a picture of the given contrast falls with the time for
+    /// the solution.
     pub fn curve(&self, contrast: f64) -> Curve {
         let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
         Curve::of_independent(

@@ -56,8 +56,8 @@ pub struct Output {
     pub error: Image,
     /// Number of points with a value.
     pub points: usize,
-    /// Smallest, mean and largest illuminance in lux; all 0 if there are no points. The uniformity of lighting
-    /// standards is `min / mean`.
+    /// Smallest, mean and largest illuminance in lux; all 0 if there are no points. Lighting
+    /// standards define uniformity as `min / mean`.
     pub min: f64,
     pub mean: f64,
     pub max: f64,

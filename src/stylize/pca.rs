@@ -12,8 +12,9 @@ const KEPT_VARIANCE: f64 = 0.995;
 /// Maximum number of components: together with three colour channels, they fill the eight lanes of a SIMD register.
 const MAX_COMPONENTS: usize = 5;
 
-/// Replaces the channels by principal components. Each component is stretched to `[0, 1]` and weighted by the square
-/// of its former range, so that weighted distances change only by the dropped components.
+/// Replaces more than [`MAX_COMPONENTS`] channels by their first principal components; fewer channels stay as they are.
+/// Each component is stretched to `[0, 1]` and weighted by the square of its former range, so that weighted distances
+/// change only by the dropped components.
 pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let n = guides.weights.len();
     if n <= MAX_COMPONENTS {

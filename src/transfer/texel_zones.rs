@@ -144,7 +144,7 @@ mod tests {
         let of = |margin: f64, zones: &[DVec4]| {
             find(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
         };
-        // 4 of 24 m² are hidden. The hidden part is smaller by a strip of one texel along the two inner edges.
+        // 4 of 24 m² are hidden. The texels found are fewer by a strip of one texel along the two inner edges.
         let cut = of(-1.0, &[]);
         assert!((share(&cut, TexelZone::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, TexelZone::KeepOut) == 0.0);
         // With a margin of 0.3 m, the open part is the L shrunk by the margin. Its inner corner is rounded with a

@@ -1,4 +1,4 @@
-//! The exemplar at working size: the resolution of the synthesis (Fig. 12d).
+//! The exemplar at working size: the resolution of the synthesis ("Lighting Style Transfer", Fig. 12d).
 
 use super::components::Components;
 use crate::error::Result;
