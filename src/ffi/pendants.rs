@@ -70,15 +70,16 @@ pub const LUXFER_DOUBT_HIDDEN: u32 = 16;
 /// Largest number of lamps, and of suspensions, that luxfer_pendants_find accepts.
 pub const LUXFER_MAX_PENDANTS: u32 = 16;
 
-/// Settings of the fit of bodies. Fill them with luxfer_pendants_params_init.
+/// Settings with which luxfer_pendants_find fits bodies to lamps. Fill them with luxfer_pendants_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_pendants_params {
     /// sizeof(luxfer_pendants_params), set by luxfer_pendants_params_init.
     pub struct_size: u32,
-    /// 1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own.
+    /// 1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its own.
     pub alike: u32,
-    /// 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height.
+    /// 1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its own
+    /// height.
     pub level: u32,
     /// 1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of the
     /// luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on the

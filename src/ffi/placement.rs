@@ -21,7 +21,7 @@ pub type luxfer_aim = i32;
 pub const LUXFER_AIM_MAX_LUMINANCE: luxfer_aim = 0;
 /// Make the luminance of the target as small as possible.
 pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
-/// Bring the mean radiance of the target, under the texture and all other light, nearest to
+/// Bring the mean radiance of the target, under the texture and all other light, as near as possible to
 /// luxfer_placement_params.radiance.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 

@@ -72,7 +72,7 @@ pub const LUXFER_AOV_ALPHA: u32 = 256;
 pub const LUXFER_AOV_LUMINANCE: u32 = 512;
 
 /// Letters that match emissive surfaces and the environment in expressions that start at the camera: a
-/// LUXFER_EMITTER_AS_ value.
+/// LUXFER_EMITTER_AS_ value. Punctual lights always match L.
 pub type luxfer_emitter_as = i32;
 /// Emissive surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light that is reflected
 /// diffusely. The default.

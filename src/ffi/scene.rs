@@ -132,7 +132,8 @@ impl SceneObject {
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
     }
 
-    /// Reads a scene from a file. Each part of the scene is counted in the memory budget before it is made.
+    /// Reads a scene from a file. Each part of the scene is counted in the memory budget before its memory is
+    /// allocated.
     pub(super) fn read(
         context: &Arc<Context>,
         read: impl FnOnce(&dyn gltf::Budget) -> Result<Scene>,

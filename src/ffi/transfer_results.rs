@@ -95,9 +95,9 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo are as
-    /// large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the caller gave
-    /// the texture.
+    /// Distance in metres of the photo's camera from the plane with the lights. Seen from this distance, the lamps on
+    /// the surface of the scene look as large as the lamps in the photo. NaN before the stage EMISSION has ended, and
+    /// if the caller gave the texture.
     pub plane_distance: f64,
     /// Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps, it is
     /// about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings determine the
