@@ -398,8 +398,7 @@ pub unsafe extern "C" fn luxfer_rectify_start(
 }
 
 /// Gets the image that kind, a LUXFER_RECTIFY_ value, selects: the unwarped plane or its mask. The caller releases
-/// *image.
-/// Any thread.
+/// *image. Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_image(

@@ -293,8 +293,8 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
 }
 
-/// Gets the image of the rendering that a LUXFER_RENDER_ value selects, in its current state. The caller releases
-/// *image. Any thread.
+/// Gets the image of the rendering that kind, a LUXFER_RENDER_ value, selects, in its current state. The caller
+/// releases *image. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
 /// 0.
 #[unsafe(no_mangle)]

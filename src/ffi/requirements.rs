@@ -26,7 +26,7 @@ pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
 /// At least one surface emits; the faces of luminaires count.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
-/// At least one surface has an emission texture.
+/// At least one emitting surface has an emission texture.
 pub const LUXFER_LIGHTS_TEXTURE: u32 = 2;
 /// At least one point light, or luminaire that shines from a point, has an intensity above 0.
 pub const LUXFER_LIGHTS_POINT: u32 = 4;

@@ -80,8 +80,8 @@ pub struct luxfer_stylize_params {
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
     pub guide_weight: f32,
-    /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The coarsest
-    /// level is at least 5 patches wide and high.
+    /// Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
+    /// The coarsest level is at least 5 patches wide and high.
     pub levels: u32,
     /// Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting.
     pub iterations: u32,
