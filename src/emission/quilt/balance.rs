@@ -1,20 +1,25 @@
 //! Balances the light in a texture, so that the lit share of the texture stays close to a target.
 //!
 //! Without balance, the amount of light and the number of missing lamps would depend on which parts of the exemplar
-//! match most often. So each block passes its excess or lack of light on to its unfilled neighbours, beside and below
-//! it, as in error diffusion (Floyd and Steinberg 1976). Then every part of the texture has the right share of light.
+//! happen to match most often. So each block passes its excess of light (or its lack, as a negative excess) on to its
+//! unfilled neighbours, as in error diffusion (Floyd and Steinberg 1976). A block that has received an excess prefers
+//! darker patches. Every part of the texture then has about the target share of light.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Weight of one surplus or missing lamp in the error of a patch, as a squared difference per pixel of the lamp.
-/// `ON_LATTICE` equals the squared difference that a lamp in the wrong position causes in colour, confidence and
-/// distances. `ANYWHERE`, for patterns without a lattice, must stay below 1/3: a larger weight would select patches
-/// with the right amount of light but wrong distances between lamps. [origin not recorded]
+/// Weight w of the penalty w e² / A, which is added to a patch's sum of squared differences. Here e is the excess light
+/// in pixels, and A is the mean area of a lamp in pixels. One surplus or missing lamp (e = A) costs w A, as much as a
+/// squared difference of w at each pixel of a lamp. [origin not recorded]
+///
+/// - `ON_LATTICE`: about the squared difference, in colour, confidence and distances, of a pixel at which one patch
+///   shows a lamp and the other none.
+/// - `ANYWHERE`, for patterns without a lattice: it must stay below 1/3. A larger weight would select patches with the
+///   right amount of light but wrong distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 
-/// The excess light of the blocks of a texture, in pixels. Blocks are filled row by row.
+/// The excess light of the blocks of a texture, as a number of lit pixels. Blocks are filled row by row.
 pub struct Balance {
     /// For each block of the current row (`row`) and of the next row (`below`), the excess light that earlier blocks
     /// have passed on to it.
@@ -33,26 +38,27 @@ impl Balance {
         Ok(Self { row: try_vec(columns, 0.0)?, below: try_vec(columns, 0.0)?, column: 0, lamp, weight })
     }
 
-    /// Moves on to the first block of the next row.
+    /// Makes the first block of the next row the current block.
     pub fn begin_row(&mut self) {
         std::mem::swap(&mut self.row, &mut self.below);
         self.below.fill(0.0);
         self.column = 0;
     }
 
-    /// Records that the current block has `excess` more light than its share.
+    /// Records that the current block has `excess` more lit pixels than its share.
     pub fn add(&mut self, excess: f64) {
         self.row[self.column] += excess;
     }
 
-    /// The penalty if the current block gets `excess` pixels more light than its share, as a sum of squared differences
-    /// over pixels.
+    /// The penalty if the current block gets `excess` more lit pixels than its share. It is comparable with a sum over
+    /// pixels of squared differences.
     pub fn penalty(&self, excess: f64) -> f64 {
         self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
     }
 
-    /// Passes the excess of the current block on to its neighbours, and moves on to the next block. At the sides of
-    /// the texture, the shares of missing neighbours go to the block below, so that no light is lost.
+    /// Passes the excess of the current block on to its neighbours, and makes the next block the current one. The
+    /// weights are those of Floyd and Steinberg: 7/16 to the right, 3/16, 5/16 and 1/16 below. At the sides of the
+    /// texture, the weights of missing neighbours are added to that of the block below, so that no excess is lost.
     pub fn pass_on(&mut self) {
         let (column, excess) = (self.column, self.row[self.column] / 16.0);
         let (has_left, has_right) = (column > 0, column + 1 < self.row.len());

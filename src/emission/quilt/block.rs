@@ -2,7 +2,8 @@
 
 use super::patch_map::NONE;
 
-/// A rectangle of working pixels, the pixels at the reduced size of the synthesis.
+/// A rectangle of the texture in working pixels, the pixels at the reduced size of the synthesis. `x` and `y` are its
+/// first column and row.
 #[derive(Clone, Copy)]
 pub struct Rect {
     pub x: usize,
@@ -11,9 +12,9 @@ pub struct Rect {
     pub h: usize,
 }
 
-/// A run of adjacent pixels in a row of a block. `source` is the index of the exemplar pixel that the first pixel of
-/// the run shows; the further pixels show the exemplar pixels that follow. `source` is [`NONE`] in a run of empty
-/// pixels.
+/// A run of adjacent pixels in a row of a block, which starts at the texture's pixel (`x`, `y`). `source` is the index
+/// of the exemplar pixel that the first pixel of the run shows; the next pixel shows the exemplar pixel `source` + 1,
+/// and so on. In a run of empty pixels, `source` is [`NONE`].
 #[derive(Clone, Copy)]
 pub struct Run {
     pub x: usize,

@@ -1,5 +1,5 @@
-//! Scores how well a shift of the exemplar fills a block: coverage, agreement with the known pixels, and balance of
-//! light.
+//! Scores how well a shift of the exemplar fills a block of the texture. Three criteria count: how many empty pixels it
+//! fills, how well it agrees with the known pixels, and how well it balances the amount of light.
 
 use super::balance::Balance;
 use super::block::{Block, Rect, Run, count};
@@ -11,30 +11,34 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// A patch counts as equally good as the best one if its error is at most a · e + b. Here e is the lowest error, a is
-/// the first value (Efros and Freeman 2001 allow 10 %), and b is the second value or, on a lattice,
-/// `Comparison::slack` if that is larger. [paper: Efros and Freeman 2001]
+/// A patch counts as equally good as the best one if its error is at most a e + b, where e is the lowest error. The
+/// first value is a; Efros and Freeman (2001) also allow 10 %. The second value is the minimum of b, which is
+/// `Comparison::slack`. [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
-/// Number of quantisation steps of a pixel's lit share, so that light can be summed in integers. [rounding]
+/// The lit share of a pixel, in [0, 1], is multiplied by this and rounded, so that light can be summed in integers.
+/// [rounding]
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches are compared by their error only if they fill enough pixels of a block: at least this share of the largest
-/// number of pixels that any candidate patch fills. The other patches are discarded. [origin not recorded]
+/// Let n be the largest number of empty pixels of a block that any candidate patch fills. Patches that fill fewer than
+/// this share of n are discarded; the others are compared by their error. [origin not recorded]
 const ENOUGH_COVERAGE: f64 = 0.95;
 
-/// If a block has more than this many candidate patches, a first comparison uses only every `ROW_STEP`-th row of the
-/// block, and only the `FINALISTS` best patches are then compared in all rows.
+/// If a block has more than `FINALISTS` candidate patches, they are first compared in every `ROW_STEP`-th row of the
+/// block only. Only the `FINALISTS` best ones are then compared in all rows.
 const FINALISTS: usize = 16;
 
 const ROW_STEP: usize = 4;
 
-/// Minimum number of pixels that a parallel task compares.
+/// A parallel task compares about this number of pixels, so that its work takes much longer than starting the task.
 const TASK: usize = 1 << 16;
 
-/// A shift with its score for a block. `fills`: number of empty pixels of the block that the shift fills. `excess`:
-/// how much the light in these pixels exceeds its target, as a number of lit pixels. `error`: mean squared difference
-/// from the known pixels, plus the penalty for the excess.
+/// A shift with its score for a block.
+///
+/// - `fills`: number of empty pixels of the block that the shift fills.
+/// - `excess`: number of lit pixels among these, minus the target number.
+/// - `error`: mean squared difference from the known pixels of the block, plus the penalty for the excess divided by
+///   the number of known pixels.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -48,13 +52,14 @@ pub struct Comparison<'a> {
     pub guide: &'a Guide<'a>,
     pub features: Vec<Feature>,
     pub turns: Vec4,
-    /// Summed-area tables of the usable pixels, and of their light.
+    /// `usable`: summed-area table of the exemplar's usable pixels. `light`: summed-area table of the lit share of its
+    /// pixels, in units of 1 / [`LIGHT_STEPS`].
     pub usable: AreaSums,
     light: AreaSums,
     /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// Absolute difference in error that is tolerated in addition to the factor in [`TOLERANCE`].
+    /// The value b in [`TOLERANCE`]: the difference in error that is tolerated in addition to the factor a.
     slack: f32,
 }
 
@@ -63,8 +68,9 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels. The rounding alone changes the x and the y distance in the
-        // metadata by √(1/6) of a pixel each (root mean square).
+        // Lattice shifts are rounded to whole pixels. Even between perfect matches, the x and y distances in the
+        // metadata then differ by √(1/6) pixel each (root mean square). The error from both is
+        // 2 · (1/6) · weight / cap² = weight / (3 cap²).
         let slack = match is_lattice {
             true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -81,8 +87,9 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The part of a run that lies within the exemplar after a shift; `None` if there is no such part. Returns the
-    /// number of pixels before the part, its length, and the position of its first pixel in the exemplar.
+    /// The part of a run of the texture for which a shift gives pixels inside the exemplar. Returns the number of
+    /// pixels of the run before this part, the length of the part, and the exemplar's pixel [x, y] that its first pixel
+    /// shows. `None` if no pixel of the run has a source.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
@@ -92,8 +99,9 @@ impl<'a> Comparison<'a> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// For each shift, returns the number of empty pixels of a block that it fills, or 0 if another shift fills far
-    /// more pixels. Also returns whether the shift would show usable pixels in the whole block.
+    /// Returns two values for each shift: the number of empty pixels of a block that the shift fills, and whether it
+    /// would show usable pixels in the whole block. The number is not computed, and is 0, if another shift certainly
+    /// fills far more pixels.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -103,7 +111,8 @@ impl<'a> Comparison<'a> {
                 .map(|(_, length, [x, y])| self.usable.count(x, y, length, 1))
                 .sum()
         };
-        // Usable pixels in the whole block are an upper bound for the number of pixels that a shift can fill.
+        // The number of usable pixels that a shift shows in the whole block, filled pixels included, is an upper bound
+        // for the number of empty pixels that it fills.
         let most_of = |shift: &Shift| {
             let working = self.guide.working;
             let side = |at: usize, by: i32, length: usize, side: usize| {
@@ -131,10 +140,12 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// Scores how well shifts agree with the known pixels of a block. Leaves out shifts that fill too few empty
-    /// pixels: fewer than `least` or, if `least` is `None`, fewer than [`ENOUGH_COVERAGE`] times the largest number
-    /// that a shift fills. A shift gets an infinite error if its error is not equally good as `limit` or as the lowest
-    /// error so far.
+    /// Scores how well shifts agree with the known pixels of a block.
+    ///
+    /// - Leaves out shifts that fill fewer than `least` empty pixels. If `least` is `None`, the minimum is
+    ///   [`ENOUGH_COVERAGE`] times the largest number that any shift fills.
+    /// - Stops comparing a shift early, and gives it an infinite error, as soon as it cannot be equally good as the
+    ///   error `limit`, or as the lowest error found so far.
     pub fn score(
         &self,
         block: &Block,
@@ -161,7 +172,7 @@ impl<'a> Comparison<'a> {
                 |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
             let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
             ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            // Without known pixels, all shifts score alike, so keep all of them.
+            // If these rows have no known pixels, there is no difference by which to rank shifts, so keep all of them.
             ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
             covering = ranked.into_iter().map(|r| r.1).collect();
         }
@@ -182,9 +193,9 @@ impl<'a> Comparison<'a> {
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference between the known pixels of a block and the pixels that a shift shows there; infinite
-    /// if it exceeds `limit`. `filled` is the number of known pixels. `is_whole` states that the shift shows usable
-    /// pixels in the whole block.
+    /// Mean squared difference between the known pixels of a block and the usable pixels that a shift shows there; 0 if
+    /// it shows none there. May return infinity if the mean exceeds `limit`. `known` are the runs of known pixels, and
+    /// `filled` is their number of pixels. `is_whole` states that the shift shows usable pixels in the whole block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
@@ -208,7 +219,8 @@ impl<'a> Comparison<'a> {
                     at += part.len();
                 }
             }
-            // Stop if the mean exceeds `limit` even when the sum is divided by all `filled` pixels.
+            // Stop if the sum so far, divided by `filled`, exceeds `limit`. The final mean would exceed it too: the sum
+            // can only grow, and it is divided by at most `filled` pixels.
             if sum > most {
                 return f32::INFINITY;
             }
@@ -216,10 +228,12 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// For each shift, the number of lit pixels that it adds to the empty pixels of a block, minus an expected number.
-    /// The expected number is a lit share times the number of pixels that the shift fills. On a lattice, lamps lie at
-    /// the same positions of the block whatever the shift, so the lit share is that of all given shifts together.
-    /// Otherwise it is that of the exemplar.
+    /// For each shift, the number of lit pixels that it adds to the empty pixels of a block, minus the target number.
+    /// The target is the number of pixels that the shift fills, times a lit share:
+    ///
+    /// - On a lattice, every shift puts lamps at the same positions of the block, although some lamps may be missing.
+    ///   The lit share is the mean of all given shifts.
+    /// - Without a lattice, it is the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));

@@ -1,12 +1,13 @@
-//! The pixel features by which patches are compared: weighted colour and metadata (confidence, x and y distance to the
-//! nearest light; "Lighting Style Transfer", §6).
+//! The features of a pixel by which patches are compared: colour, and metadata. The metadata are the confidence that
+//! the pixel is light, and its x and y distance to the nearest light ("Lighting Style Transfer", §6).
 
 use crate::emission::exemplar::working::Working;
 use crate::image::Image;
 use glam::{Vec3, Vec4};
 
-/// The features of a pixel: colour and metadata (confidence, distances), scaled by the square roots of their weights,
-/// so that the squared differences of features add up to the weighted error.
+/// The features of a pixel: one vector for the colour, one for the metadata; their last channel is 0. Each channel is
+/// multiplied by the square root of its weight. The sum of the squared differences between two features is then the
+/// weighted error.
 pub type Feature = [Vec4; 2];
 
 /// Colour and metadata (confidence, x and y distance to the nearest light) of the exemplar, and the settings of the
@@ -15,8 +16,8 @@ pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
     pub metadata_weight: f32,
-    /// `cap`: distance to a light at which the x and y distances in the metadata saturate at 1. `lamp`: mean area of a
-    /// lamp. Both in pixels at the reduced size of the synthesis.
+    /// `cap`: the metadata contain distances divided by `cap`, clamped to [-1, 1]. `lamp`: mean area of a lamp. Both
+    /// are in working pixels, the pixels at the reduced size of the synthesis.
     pub cap: f64,
     pub lamp: f64,
     /// Number of candidate shifts per patch if there is no lattice.
@@ -24,6 +25,7 @@ pub struct Guide<'a> {
 }
 
 impl Guide<'_> {
+    /// The features of each pixel of the exemplar.
     pub fn features(&self) -> Vec<Feature> {
         let (colour, metadata) = self.scales();
         let pixels = self.working.colour.data.chunks_exact(3).zip(self.metadata.data.chunks_exact(3));
@@ -37,24 +39,24 @@ impl Guide<'_> {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// The period of each metadata channel (confidence, x and y distance to the nearest light); infinite for the
-    /// confidence. Values that differ by a period are equivalent: a distance of `cap` to the left of a light means the
-    /// same as a distance of `cap` to its right.
+    /// The period of each metadata channel (confidence, x and y distance to the nearest light) of a feature. Values
+    /// that differ by a period are equivalent: at the distances `cap` and -`cap` alike, no light is near. The
+    /// confidence is not periodic, so its period is infinite.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-/// Sum of squared differences between two rows of pixels, over colour and metadata (confidence, x and y distance to
-/// the nearest light). Metadata channels are periodic, with the periods `turns`.
+/// Sum of squared differences between the features of two rows of pixels, over pixels and channels. `turns` holds the
+/// periods of the metadata channels ([`Guide::turns`]); a difference d counts as the smaller of |d| and period - |d|.
 pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
         let apart = apart.min(turns - apart);
         [colour + off * off, metadata + apart * apart]
     };
-    // Add two pixels at once, so that two independent chains of additions run in parallel.
+    // Sum even and odd pixels separately, so that the CPU can execute two independent chains of additions in parallel.
     let (mut even, mut odd) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
     let (a, b) = (a.chunks_exact(2), b.chunks_exact(2));
     if let ([a], [b]) = (a.remainder(), b.remainder()) {

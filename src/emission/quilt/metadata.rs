@@ -1,10 +1,14 @@
-//! The three metadata channels that guide the synthesis through empty space: confidence, and the signed x and y
-//! distance to the nearest light ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
+//! The three metadata channels of a pixel: the confidence that it is light, and its signed x and y distance to the
+//! nearest light ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006). In the dark space between
+//! lamps, where colours are all equal, the distances tell patches apart.
 //!
-//! The paper does not define "horizontal and vertical distance" for pixels whose nearest lamp in the row is not the
-//! nearest lamp in the plane. Here the distances are the components of the offset from a pixel to its *nearest lit
-//! pixel* in the plane. Both distances then always belong to one lamp, vary continuously except at the bisectors
-//! between lamps, and exist in rows without light.
+//! The paper does not say whether "horizontal and vertical distance" are measured to the nearest lamp in the pixel's
+//! row and column, or to the nearest lamp in the plane. Here, they are the components of the offset from the pixel to
+//! the *nearest lit pixel* in the plane. The reasons:
+//!
+//! - Both distances always belong to one lamp.
+//! - They vary continuously, except at the bisectors between lamps.
+//! - They also exist in rows and columns without light.
 
 use crate::error::Result;
 use crate::exec;
@@ -14,9 +18,9 @@ use crate::job::Job;
 /// Marks that there is no lit pixel.
 const NONE: u32 = u32::MAX;
 
-/// Computes the metadata. Channel 0 is the confidence. Channels 1 and 2 are the x and y offset to the nearest lit
-/// pixel, divided by `cap` and clamped to [-1, 1]; both are 1 if there is no light at all. The values -1 and 1 are
-/// equivalent: no light is near.
+/// Computes the metadata of each pixel of a `width` × `height` image. Channel 0 is the confidence. Channels 1 and 2 are
+/// the x and y offset to the nearest lit pixel, divided by `cap` pixels and clamped to [-1, 1]; both are 1 if there is
+/// no light at all. The values -1 and 1 mean the same: no light is near.
 pub fn compute(
     confidence: &[f32],
     is_lit: impl Fn(usize) -> bool,
@@ -65,8 +69,9 @@ fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, 
         }
     }
 
-    // Find the nearest of these pixels across all columns: the lower envelope of the parabolas (x - c)² + d(c)², as a
-    // list of parabolas with the positions from which each is lowest.
+    // Each column c now proposes one lit pixel, at the vertical distance d(c). Find the column with the least squared
+    // distance (x - c)² + d(c)² for every x: the lower envelope of these parabolas. `hull` lists the parabolas of the
+    // envelope as pairs of c and the x from which the parabola is the lowest.
     let mut nearest = try_vec(width * height, NONE)?;
     exec::for_rows(&mut nearest, width, job, |y, out| {
         let rows = &row_of[y * width..(y + 1) * width];

@@ -1,14 +1,16 @@
-//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata (the confidence, and the x and y
-//! distance to the nearest light; "Lighting Style Transfer", §6).
+//! Places patches by image quilting (Efros and Freeman 2001). Patches are compared by colour and metadata: the
+//! confidence, and the x and y distance to the nearest light ("Lighting Style Transfer", §6).
 //!
-//! A patch is a shift of the exemplar. Blocks of the texture are filled in scanline order:
+//! A patch is a shift of the exemplar: position in the texture minus position in the exemplar. The texture is filled
+//! block by block, row by row:
 //!
 //! 1. Of the shifts that cover most of the block, keep those that agree best with the pixels already placed.
 //! 2. Choose one of them at random.
 //! 3. If pixels remain empty, because the photo does not show their source, fill them by further patches.
 //!
-//! On a lattice, only lattice vectors are tried as shifts, so the lamps stay in phase whichever shift is chosen.
-//! Errors do not accumulate from patch to patch, because every shift is measured from the origin.
+//! On a lattice, only lattice vectors are tried as shifts. The lamps of all patches then lie on one lattice, whichever
+//! shifts are chosen. Rounding errors do not accumulate from patch to patch, because every shift is computed from the
+//! origin of the lattice, not from the neighbouring patch.
 
 pub mod balance;
 pub mod block;
@@ -36,32 +38,34 @@ use std::collections::BTreeMap;
 /// Maximum number of candidate shifts per patch on a lattice. [bench emission:seconds]
 const LATTICE_CANDIDATES: usize = 128;
 
-/// Cost added to a seam where it crosses a lamp: more than any path around the lamp costs. [convention]
+/// Cost added to a pixel of a seam if it lies on a lamp. It exceeds the cost of any path around the lamp. [convention]
 const LAMP_COST: f32 = 1e4;
 
+/// A texture while it is filled with patches.
 struct Quilt<'a> {
     comparison: Comparison<'a>,
-    /// The finished rows, which no further block changes, and all shifts used so far.
+    /// The finished rows, which no later block changes, and all shifts used so far.
     patch_map: PatchMap,
     /// Index of the first unfinished row (`first`), and for each pixel of the unfinished rows the label of its shift
     /// (`open`).
     first: usize,
     open: Vec<u32>,
-    /// For each shift used so far, its label: its index in the patch map's list of shifts.
+    /// For each shift used so far, its label: its index in the patch map's list of shifts. The key is
+    /// (`Shift::working`, bits of `Shift::exact`).
     labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
     law: Law,
     /// Position of the lattice's origin, in unwarped pixels.
     offset: DVec2,
-    /// `bounds`: bounding box of the usable pixels. `admissible`, only without a lattice: the top left corner of every
-    /// position at which a block consists of usable pixels only.
+    /// `bounds`: bounding box of the exemplar's usable pixels. `admissible`: indices of the exemplar's pixels at which
+    /// the upper left corner of a block may lie, so that the block contains usable pixels only; empty on a lattice.
     bounds: [usize; 4],
     admissible: Vec<u32>,
     balance: Balance,
     seed: u64,
 }
 
-/// Fills a texture of `width` × `height` working pixels with patches of side `block`. `offset` is the position of the
-/// lattice's origin in unwarped pixels.
+/// Fills a texture of `width` × `height` working pixels with patches, in blocks of at most `block` × `block` pixels.
+/// `offset` is the position of the lattice's origin in the texture, in unwarped pixels.
 pub fn place(
     guide: &Guide,
     law: Law,
@@ -85,7 +89,7 @@ pub fn place(
         comparison: Comparison::new(guide, usable, is_lattice)?,
         patch_map: PatchMap::new(width, height),
         first: 0,
-        // Allocate a row of blocks, and the row of pixels above it.
+        // Allocate one row of blocks, and one row of pixels above it for the comparison with neighbours.
         open: try_vec(width * (h + 1), NONE)?,
         labels: BTreeMap::new(),
         law,
@@ -110,9 +114,9 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// Returns the sides of a block, and the top left corner of every position in the exemplar at which the block consists
-/// of usable pixels only. Patches without a lattice need at least one such position, so the block shrinks until there
-/// is one.
+/// Returns the sides of a block, and all positions in the exemplar at which the block contains usable pixels only, as
+/// the indices of its upper left pixel. Patches without a lattice need at least one such position, so the sides shrink
+/// by a quarter until there is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -133,11 +137,12 @@ fn admissible_corners(
 }
 
 impl Quilt<'_> {
+    /// The label of a pixel in an unfinished row.
     fn label(&self, x: usize, y: usize) -> u32 {
         self.open[(y - self.first) * self.patch_map.width + x]
     }
 
-    /// Moves the finished rows, above row `y`, into the patch map.
+    /// Moves the rows above row `y`, which are finished, into the patch map.
     fn close(&mut self, y: usize) {
         let width = self.patch_map.width;
         let done = (y - self.first) * width;
@@ -176,7 +181,8 @@ impl Quilt<'_> {
             let start = (y - self.first) * self.patch_map.width + rect.x;
             let mut x = rect.x;
             for labels in self.open[start..start + rect.w].chunk_by(|a, b| a == b) {
-                // Adjacent pixels with one shift show adjacent pixels of the exemplar.
+                // Adjacent pixels that have the same shift show adjacent pixels of the exemplar, so store them as one
+                // run.
                 let source = self.patch_map.source(x, y, labels[0], self.comparison.guide.working);
                 let run = Run { x, y, length: labels.len(), source: source.unwrap_or(NONE as usize) };
                 match source {
@@ -190,7 +196,8 @@ impl Quilt<'_> {
         block
     }
 
-    /// The distinct shifts of the pixels around a block.
+    /// The distinct shifts at the upper left, upper right and lower left corner of a block: those of the corner pixels,
+    /// and of the pixels diagonally above and to the left of them.
     fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
@@ -208,8 +215,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// Returns the candidate shifts for a block. Some are the shifts of the pixels around the block, which continue
-    /// the patches already placed. The others are new: lattice vectors or, without a lattice, random shifts.
+    /// Returns the candidate shifts for a block. Some are the shifts of pixels at its corners, which continue the
+    /// patches that are already placed. The others are new: lattice vectors or, without a lattice, random shifts.
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;
@@ -228,7 +235,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The lattice vectors that move some usable pixel into a block; a random subset if there are too many.
+    /// The shifts to lattice positions that move the exemplar's usable pixels into a block, at least in part. If there
+    /// are more than [`LATTICE_CANDIDATES`], a random subset of about this size.
     fn lattice_shifts(&self, rect: &Rect, basis: [DVec2; 2]) -> Vec<Shift> {
         let pitch = self.comparison.guide.working.pitch;
         let point = |x: usize, y: usize| DVec2::new(x as f64, y as f64);
@@ -259,9 +267,10 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts that are equally good: their error exceeds the lowest error by no more than
-    /// the tolerance. In a row of lamps, the first block takes the shift nearest to the start of the exemplar, and
-    /// each later block keeps the shift of a neighbour if that shift is equally good.
+    /// Chooses at random among the shifts that are equally good, which means that their error exceeds the lowest error
+    /// by no more than the tolerance ([`Comparison::equally_good`]). A row of lamps is the exception: its first block
+    /// takes the shift nearest to `offset`, and each later block keeps the shift of a neighbour if this is equally
+    /// good.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.law, Law::Row(_)) && self.patch_map.shifts.is_empty() {
@@ -280,8 +289,8 @@ impl Quilt<'_> {
         equal.get(rng.below(equal.len().max(1))).map(|s| **s)
     }
 
-    /// Moves a patch to the best position in its neighbourhood, by steps of decreasing length; only for patterns
-    /// without a lattice.
+    /// Refines the shift of a patch by local search: moves it by 4, then 2, then 1 working pixels in the best of eight
+    /// directions, if this lowers the error. Used only without a lattice.
     fn improve(&self, block: &Block, start: Scored, job: Job) -> Result<Scored> {
         let mut best = start;
         for step in [4, 2, 1] {
@@ -299,8 +308,9 @@ impl Quilt<'_> {
         Ok(best)
     }
 
-    /// Writes a shift to the empty pixels of a block. If an overlap is given, also overwrites the known pixels on the
-    /// new patch's side of the seams.
+    /// Writes a shift to the empty pixels of a block. If `overlap`, the width and height of the overlap with earlier
+    /// patches, is given, seams are cut through the overlap. Known pixels right of the vertical seam and below the
+    /// horizontal seam are then overwritten as well.
     fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
         let (working, rect, known) = (self.comparison.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {
@@ -321,7 +331,8 @@ impl Quilt<'_> {
             }
         };
 
-        // Find the seams: for each row the first column of the new patch, and for each column its first row.
+        // Find the seams: `from_column` holds the new patch's first column in each row, `from_row` its first row in
+        // each column.
         let mut from_column = vec![0; rect.h];
         let mut from_row = vec![0; rect.w];
         if let Some([ow, oh]) = overlap {
@@ -357,6 +368,7 @@ impl Quilt<'_> {
     }
 }
 
+/// A shift by whole working pixels, for textures without a lattice.
 fn free_shift(working: [i32; 2], pitch: DVec2) -> Shift {
     Shift { working, exact: DVec2::new(f64::from(working[0]), f64::from(working[1])) * pitch }
 }

@@ -20,15 +20,16 @@ pub struct Shift {
 }
 
 /// For each working pixel of the texture (a pixel at the reduced size of the synthesis), the shift of the patch that
-/// covers it. A label stands for a shift. Patches are wide, so a row is stored as runs of equal labels.
+/// covers it. A pixel holds a label, the index of the shift in `shifts`, or [`NONE`]. Patches are wide, so a row is
+/// stored as runs of equal labels.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,
     pub height: usize,
     pub shifts: Vec<Shift>,
-    /// End (exclusive) and label of each run, row by row.
+    /// For each run, row by row: the column after its last pixel, and its label.
     runs: Vec<(u32, u32)>,
-    /// For each row, the end of its runs in `runs`.
+    /// For each row, the index in `runs` after its last run.
     ends: Vec<usize>,
 }
 
@@ -57,7 +58,7 @@ impl PatchMap {
         Self { width, height, shifts: Vec::new(), runs: Vec::new(), ends: Vec::new() }
     }
 
-    /// A patch map that shows one shift everywhere.
+    /// A patch map whose pixels all have the given shift.
     pub fn single(width: usize, height: usize, shift: Shift) -> Self {
         let runs = vec![(width as u32, 0); height];
         Self { width, height, shifts: vec![shift], runs, ends: (1..=height).collect() }
@@ -73,8 +74,9 @@ impl PatchMap {
         self.ends.push(self.runs.len());
     }
 
-    /// Repeats the patch map over `width` × `height` pixels, along one axis. `across` is the period in unwarped
-    /// pixels. Equal shifts from different repetitions get one label.
+    /// Repeats the patch map over `width` × `height` working pixels. `across` is the period in unwarped pixels, a
+    /// vector along x or y; the map repeats along this axis only. In the n-th repetition, n `across` is added to every
+    /// shift. Shifts that become equal get one label. A working pixel is `pitch` unwarped pixels wide and high.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
         let mut shifts = Shifts::default();
@@ -83,7 +85,8 @@ impl PatchMap {
             None => NONE,
         };
         let period = across.abs() / pitch;
-        // The index of the repetition that contains a position, and the position within the repetition.
+        // Returns the index of the repetition that contains the column or row `at`, and the corresponding column or row
+        // of the original map.
         let place = |at: usize, period: f64, side: usize| {
             let times = if period > 0.0 { (at as f64 / period + 1e-9) as usize } else { 0 };
             (times, (at - (times as f64 * period).round().min(at as f64) as usize).min(side - 1))
@@ -106,7 +109,7 @@ impl PatchMap {
         out
     }
 
-    /// The runs of a row, from left to right: end (exclusive) and label.
+    /// The runs of a row, from left to right: the column after the last pixel, and the label.
     pub fn row(&self, y: usize) -> &[(u32, u32)] {
         let start = y.checked_sub(1).map_or(0, |above| self.ends[above]);
         &self.runs[start..self.ends[y]]
@@ -157,7 +160,8 @@ mod tests {
                 assert_eq!(patch_map.shift(x, y), patch_map.shifts.get(label as usize));
             }
         }
-        // Repeat every 7 working pixels, which are 14 unwarped pixels: the shift grows by 7 with each repetition.
+        // Repeat the first 7 columns. A working pixel is 2 unwarped pixels wide, so the period is 14 unwarped pixels.
+        // The shift grows by 7 working pixels with each repetition.
         let part = PatchMap { width: 7, ..patch_map.clone() };
         let again = part.repeated((30, height), DVec2::X * 14.0, DVec2::splat(2.0));
         for (x, y) in [(0, 0), (6, 3), (7, 3), (29, 11)] {

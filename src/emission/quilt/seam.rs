@@ -1,12 +1,13 @@
 //! Computes the minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
 
-/// Finds the cheapest path from the top row to the bottom row of a `width` × `height` grid of costs, which moves by at
-/// most one column per row. Returns its column in each row; of equal paths, the leftmost.
+/// Finds the cheapest path from the top row to the bottom row of a `width` × `height` grid of costs. The path moves by
+/// at most one column from row to row. Returns its column in each row. Among equally cheap paths, the leftmost one is
+/// chosen.
 pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     if width == 0 || height == 0 {
         return vec![0; height];
     }
-    // Compute the least cost of any path from the top that ends at each cell.
+    // Compute for each cell the lowest cost of the paths from the top row to this cell.
     let mut total: Vec<f64> = cost.iter().map(|&c| f64::from(c)).collect();
     let best_above = |total: &[f64], x: usize, y: usize| {
         let row = &total[(y - 1) * width..y * width];
@@ -33,7 +34,7 @@ pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     path
 }
 
-/// Finds the cheapest path from left to right, and returns its row in each column.
+/// Finds the cheapest path from the left column to the right column, and returns its row in each column.
 pub fn horizontal_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     let transposed: Vec<f32> = (0..width * height).map(|i| cost[(i % height) * width + i / height]).collect();
     vertical_cut(&transposed, height, width)
@@ -44,7 +45,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// Cost of the cheapest path that starts at `(x, y)`, found by trying all paths.
+    /// Cost of the cheapest path from `(x, y)` to the bottom row, found by trying all paths.
     fn brute_force(cost: &[f32], width: usize, height: usize, x: usize, y: usize) -> f64 {
         let here = f64::from(cost[y * width + x]);
         if y + 1 == height {

@@ -1,4 +1,5 @@
-//! Adapts the patch map to a stretched lattice, for the lights that are copied patch by patch.
+//! Adapts the patch map to a stretched lattice. Lights that are copied patch by patch, not as whole lamps, are drawn by
+//! this map.
 
 use super::patch_map::{NONE, PatchMap, Shift, Shifts};
 use crate::emission::exemplar::Exemplar;
@@ -8,10 +9,12 @@ use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
 
-/// Adapts the patch map to the lattice `stretched` in place of the exemplar's lattice `own`; both begin at `offset` in
-/// the texture. Each cell of the stretched lattice shows the patch at its centre. Where the exemplar has no usable
-/// pixel for this, a pixel of the texture keeps its own patch. The texture, of `size` unwarped pixels, holds a whole
-/// number of cells, so opposite sides match without a seam. An axis along which the lights do not change is not
+/// Adapts a patch map that was made for the exemplar's lattice, with the periods `own`, to the lattice with the periods
+/// `stretched`. In the texture, the origin of both lattices is at `offset`. Lengths are in unwarped pixels.
+///
+/// Each cell of the stretched lattice shows the patch at its centre. If the exemplar has no usable pixel for a pixel of
+/// the cell, this pixel keeps its own patch. The sides of the texture, given by `size`, are lattice vectors of the
+/// stretched lattice, so opposite sides match without a seam. An axis along which the lights do not change is not
 /// divided into cells.
 pub fn stretch(
     exemplar: &Exemplar,
@@ -36,14 +39,15 @@ pub fn stretch(
     for y in 0..patch_map.height {
         for (x, label) in row.iter_mut().enumerate() {
             let place = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
-            // Find the centre of the pixel's cell, and wrap it into the texture.
+            // Find the centre of the cell that contains the pixel (`at`). If it lies outside the texture, `within` is
+            // the equivalent point inside, at a distance of whole sides of the texture.
             let cells = to_cells * (place - start);
             let at = start + stretched * (cells.round() * has_cells + cells * (DVec2::ONE - has_cells));
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // The cells of the stretched lattice and of the exemplar's lattice differ in size. Add this difference to
-            // the patch's shift for every cell from the patch's origin to `at`.
+            // A cell of the stretched lattice differs from one of the exemplar's lattice by `stretched` - `own`. Add
+            // this difference to the patch's shift once for each cell between the origin of the patch and `at`.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)
