@@ -156,50 +156,18 @@ impl Sites {
 
     /// Finds the positions in full view where the lattice predicts a lamp of this site but the light mask shows none.
     /// Sets the site's `unmarked`, `missing`, `holes`, `hole_count` and `cells` from them. `all` holds the lamps of all
-    /// sites. A position also counts as empty if the lamp that covers it has the size of this site's lamps but belongs
-    /// to another site.
+    /// sites.
     fn with_empty_positions(&self, mut site: Site, all: &[MeasuredLamp], exemplar: &Exemplar) -> Site {
+        let empty = self.empty_positions(&site, all, exemplar);
         let Site { at, ref lamps, .. } = site;
-        let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
-        let is_shown = |p: DVec2| {
-            let inside = p.cmpge(DVec2::ZERO).all() && p.cmplt(size).all();
-            inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
-        };
-        let corners = [DVec2::ZERO, half, -half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y)];
-        // A lamp of similar size that is not at this site contradicts the lattice, even if it covers the position.
-        let contradicts = |component: usize| {
-            let is_displaced = |l: &MeasuredLamp| {
-                l.component == component
-                    && l.may_be_like(&lamps[0])
-                    && !lamps.iter().any(|own| own.component == component)
-            };
-            all.iter().any(is_displaced)
-        };
-        let label_at = |p: DVec2| exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize];
-        let is_lit = |p: DVec2| match label_at(p) {
-            0 => false,
-            label => !contradicts(label as usize - 1),
-        };
-        let is_taken = |p: DVec2| {
-            is_lit(p)
-                || lamps.iter().any(|l| {
-                    let off = self.residual(l.centre - at);
-                    (l.centre - off - p).abs().max_element() < 1.0 + MAX_OFF_SITE * half.max_element()
-                })
-        };
-        let steps = cells::between(self.to_cells, DVec2::ZERO - at, size - at);
-        let along = steps.filter(|[_, j]| !self.is_row || *j == 0).take(MAX_SITES);
-        let empty = along
-            .map(|[i, j]| at + self.basis[0] * i as f64 + self.basis[1] * j as f64)
-            .filter(|&p| corners.iter().all(|c| is_shown(p + *c)) && !is_taken(p));
         let contrast = |p: DVec2| exemplar.working.contrast(p, half);
         let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
         let brightest = of_lamps.fold(0.0, f64::max);
         let shines = |p: &DVec2| {
-            label_at(*p) == 0 && brightest > 0.0 && contrast(*p).is_some_and(|c| c >= MIN_SHINING * brightest)
+            label_at(exemplar, *p) == 0 && brightest > 0.0 && contrast(*p).is_some_and(|c| c >= MIN_SHINING * brightest)
         };
-        let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.partition(shines);
+        let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.into_iter().partition(shines);
 
         // A dark position is a hole if it lies between the first and the last lamp along both periods. Beyond them, it
         // ends the pattern on that side.
@@ -221,6 +189,45 @@ impl Sites {
         (site.unmarked, site.missing, site.holes, site.hole_count, site.cells) =
             (unmarked, missing, holes, hole_count, cells);
         site
+    }
+
+    /// The positions in full view where the lattice predicts a lamp of `site` but the light mask shows none. A position
+    /// also counts as empty if the lamp that covers it has the size of this site's lamps but belongs to another site.
+    fn empty_positions(&self, site: &Site, all: &[MeasuredLamp], exemplar: &Exemplar) -> Vec<DVec2> {
+        let Site { at, ref lamps, .. } = *site;
+        let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
+        let half = lamps[0].size / 2.0;
+        let is_shown = |p: DVec2| {
+            let inside = p.cmpge(DVec2::ZERO).all() && p.cmplt(size).all();
+            inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
+        };
+        let corners = [DVec2::ZERO, half, -half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y)];
+        // A lamp of similar size that is not at this site contradicts the lattice, even if it covers the position.
+        let contradicts = |component: usize| {
+            let is_displaced = |l: &MeasuredLamp| {
+                l.component == component
+                    && l.may_be_like(&lamps[0])
+                    && !lamps.iter().any(|own| own.component == component)
+            };
+            all.iter().any(is_displaced)
+        };
+        let is_lit = |p: DVec2| match label_at(exemplar, p) {
+            0 => false,
+            label => !contradicts(label as usize - 1),
+        };
+        let is_taken = |p: DVec2| {
+            is_lit(p)
+                || lamps.iter().any(|l| {
+                    let off = self.residual(l.centre - at);
+                    (l.centre - off - p).abs().max_element() < 1.0 + MAX_OFF_SITE * half.max_element()
+                })
+        };
+        let steps = cells::between(self.to_cells, DVec2::ZERO - at, size - at);
+        let along = steps.filter(|[_, j]| !self.is_row || *j == 0).take(MAX_SITES);
+        along
+            .map(|[i, j]| at + self.basis[0] * i as f64 + self.basis[1] * j as f64)
+            .filter(|&p| corners.iter().all(|c| is_shown(p + *c)) && !is_taken(p))
+            .collect()
     }
 
     /// How well the lattice predicts the lamps: (P / A) (1 - s / n), in [0, 1].
@@ -254,4 +261,9 @@ impl Sites {
         }
         predicted / all * (1.0 - self.list.len() as f64 / lamps as f64)
     }
+}
+
+/// The label of the component that covers a point of the exemplar; 0 if there is none.
+fn label_at(exemplar: &Exemplar, p: DVec2) -> u32 {
+    exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize]
 }

@@ -127,8 +127,7 @@ impl Layer {
         };
         let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
         let (law, scale) = (placement.law, params.scale);
-        let is_copied = |component: usize| is_copied_by_pixel(has_pieces, &exemplar, component);
-        let lit_blocks = LitBlocks::new(&exemplar, input.light, is_copied)?;
+        let lit_blocks = LitBlocks::new(&exemplar, input.light, |i| is_copied_by_pixel(has_pieces, &exemplar, i))?;
         let smaller_photos = smaller_photos(input, &exemplar, scale, job)?;
         Ok(Self {
             exemplar,

@@ -83,15 +83,7 @@ impl Autocorrelation {
                 continue;
             }
             overlap[i] = n as f32;
-            let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
-            let least = 1e-9 * n;
-            // The correlation is undefined if the image, or its shifted copy, is constant in the overlap. Then take 1
-            // if both are constant and equal, and 0 otherwise.
-            value[i] = if var1 > least && var2 > least {
-                ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
-            } else {
-                f32::from(var1 <= least && var2 <= least && (m1 - m2).abs() < 1e-3 * n)
-            };
+            value[i] = coefficient(n, mm, [m1, s1], [m2, s2]);
         }
         Ok(Self { width, height, columns, rows, value, overlap })
     }
@@ -111,6 +103,20 @@ impl Autocorrelation {
     /// The correlation at a shift, in [-1, 1]; `None` if fewer than `least` pixels overlap.
     pub fn at(&self, x: isize, y: isize, least: f32) -> Option<f32> {
         self.index(x, y).filter(|&i| self.overlap[i] >= least).map(|i| self.value[i])
+    }
+}
+
+/// The correlation coefficient of `n` pairs of values, from the sum `mm` of their products and, of the first and of the
+/// second values, the sums and the sums of squares.
+fn coefficient(n: f64, mm: f64, [m1, s1]: [f64; 2], [m2, s2]: [f64; 2]) -> f32 {
+    let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
+    let least = 1e-9 * n;
+    // The coefficient is undefined if the first or the second values are constant. Then take 1 if both are constant and
+    // equal, and 0 otherwise.
+    if var1 > least && var2 > least {
+        ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
+    } else {
+        f32::from(var1 <= least && var2 <= least && (m1 - m2).abs() < 1e-3 * n)
     }
 }
 

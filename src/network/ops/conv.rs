@@ -44,8 +44,7 @@ impl Conv {
         }
         let zeros;
         let bias = match bias {
-            Some(bias) if bias.len() == out_channels => bias.as_floats()?,
-            Some(bias) => return Err(wrong_biases(bias.len(), out_channels)),
+            Some(bias) => biases(bias, out_channels)?,
             None => {
                 zeros = call.budget.vec(out_channels, 0.0)?;
                 &zeros
@@ -115,10 +114,7 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
         let (values, weights) = (x.as_floats()?, weights.as_floats()?);
-        let bias = bias.map(Tensor::as_floats).transpose()?;
-        if let Some(bias) = bias.filter(|bias| bias.len() != out_channels) {
-            return Err(wrong_biases(bias.len(), out_channels));
-        }
+        let bias = bias.map(|bias| biases(bias, out_channels)).transpose()?;
         let per_group = channels / self.groups;
         exec::for_rows(&mut out, out_height * out_width, call.job, |k, out| {
             let (image, channel) = (k / out_channels, k % out_channels);
@@ -188,8 +184,12 @@ struct Planes<'a> {
     width: usize,
 }
 
-fn wrong_biases(count: usize, channels: usize) -> Error {
-    Error::format(format!("{count} biases for {channels} channels"))
+/// The values of a tensor of biases, one for each channel.
+fn biases(tensor: &Tensor, channels: usize) -> Result<&[f32]> {
+    if tensor.len() != channels {
+        return Err(Error::format(format!("{} biases for {channels} channels", tensor.len())));
+    }
+    tensor.as_floats()
 }
 
 struct Weights<'a> {
