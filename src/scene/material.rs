@@ -48,7 +48,7 @@ pub struct Material {
     /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength` of glTF.
     pub emission: Vec3,
     pub emission_texture: Option<TextureRef>,
-    /// Whether back faces reflect and emit as front faces do. Back faces of single-sided materials still block light.
+    /// Whether back faces emit as front faces do. Back faces always reflect and block light as front faces do.
     pub double_sided: bool,
     /// Share of the light entering through the dielectric surface that is transmitted rather than reflected diffusely;
     /// in `[0, 1]`.
