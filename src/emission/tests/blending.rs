@@ -1,5 +1,5 @@
-//! Tests of blending two exemplars: lamps and light follow the weights, and a weight of 1 gives the bits of one
-//! exemplar alone.
+//! Tests of blending two exemplars: the shares of lamps and light follow the weights, and with a weight of 0 or 1 the
+//! texture has the same bits as that of one exemplar alone.
 
 use super::*;
 
@@ -12,6 +12,7 @@ fn exemplar(is_round: bool, start: f64) -> Design {
     })
 }
 
+/// A map with the same weight everywhere.
 fn even(weight: f32) -> Image {
     Image::from_fn(1, 1, |_, _| [weight]).unwrap()
 }
@@ -39,7 +40,8 @@ fn a_weight_of_one_is_the_exemplar_alone_bit_by_bit() {
 
 #[test]
 fn lamps_and_light_follow_the_weights() {
-    // With equal phases the lamps of both exemplars coincide; with other phases some of them would overlap.
+    // At a start of 0, the lamps of both exemplars have the same centres. At other starts, the second exemplar's lamps
+    // are shifted, and lamps of both exemplars would overlap if all were drawn.
     let first = exemplar(false, 0.0);
     let params = Params { width: 1200, height: 1200, working_side: 128, ..Params::default() };
     let (square, round) = (196.0, std::f64::consts::PI * 121.0);
@@ -54,7 +56,8 @@ fn lamps_and_light_follow_the_weights() {
         // The shapes must be listed as two kinds; the kind with more lamps has number 1.
         let of_rounds = if rounds > 0.5 * lamps.len() as f64 { 1 } else { 2 };
         assert!(lamps.iter().all(|l| (l.kind == of_rounds) == (l.area > 300.0) && (1..=2).contains(&l.kind)));
-        // The choices are independent, so allow three standard deviations of the share.
+        // At each of the 30 × 30 = 900 places, a lamp is round with probability `weight`, independently of the others.
+        // Allow three standard deviations of the share of round lamps.
         let weight = f64::from(weight);
         let places = 900.0;
         let deviation = (weight * (1.0 - weight) / places).sqrt();
@@ -73,7 +76,8 @@ fn weights_differ_from_place_to_place() {
     let ramp = Image::from_fn(2, 1, |x, _| [x as f32]).unwrap();
     let params = Params { width: 1600, height: 600, working_side: 128, ..Params::default() };
     let result = blended(&first, &second, &ramp, &params);
-    // The weight rises from 0 to 1 between the centres of the map's two pixels, which lie at 1/4 and 3/4 of the width.
+    // The weight rises linearly from 0 at 1/4 of the width to 1 at 3/4: these are the centres of the map's two pixels.
+    // Compare the mean weight in each quarter of the texture.
     for (strip, expected) in [(0, 0.0f64), (1, 0.25), (2, 0.75), (3, 1.0)] {
         let range = f64::from(strip) * 400.0..f64::from(strip + 1) * 400.0;
         let lamps: Vec<&Luminaire> =
@@ -86,8 +90,8 @@ fn weights_differ_from_place_to_place() {
 
 #[test]
 fn panes_side_by_side_change_from_patch_to_patch() {
-    // The panes of both exemplars cover most of the plane, with different periods. If each pane were chosen
-    // separately, no pane of one exemplar would find space.
+    // The panes of both exemplars cover most of the plane, and their periods differ. So a pane of one exemplar hardly
+    // ever fits between panes of the other, and the exemplar must be chosen for a whole patch, not pane by pane.
     let pane = |period: f64, side: f64| {
         Design::new(280, 280, move |x, y| x.rem_euclid(period) > period - side && y.rem_euclid(period) > period - side)
     };

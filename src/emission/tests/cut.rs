@@ -1,5 +1,5 @@
-//! Tests of what a photo shows only in part: lamps that its border cuts, single lamps, which show no spacing, and
-//! patterns that end in view.
+//! Tests of photos that show the pattern of lamps incompletely: the border cuts lamps, a single lamp shows no spacing,
+//! or the pattern ends in view.
 
 use super::*;
 use crate::emission::lamps::design::Designs;
@@ -7,14 +7,15 @@ use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::spacing;
 use crate::geometry::polygon;
 
-/// The texture of an exemplar that is a photo seen straight on.
+/// The texture of 500 × 400 texels of an exemplar. The exemplar serves as the photo as well, so unwarping changes
+/// nothing.
 fn continued(exemplar: &Design) -> Emission {
     let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));
     let params = Params { width: 500, height: 400, ..Params::default() };
     run(&Input { photo, ..exemplar.input() }, &params, Monitor::default().job()).unwrap()
 }
 
-/// An exemplar whose upper right corner, beyond a slanted line, the photo does not show.
+/// An exemplar whose photo does not show the right part: pixels right of the line x = 70 + 1.5 y are invalid.
 fn slanted(lamp: impl Fn(f64, f64) -> bool) -> Design {
     let mut design = Design::new(160, 90, lamp);
     for (i, valid) in design.valid.data.iter_mut().enumerate() {
@@ -31,7 +32,8 @@ fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
     assert!(lamps.len() >= 4, "{}", lamps.len());
     for lamp in lamps {
         assert!((lamp.area - 1200.0).abs() < 40.0, "{}", lamp.area);
-        // The texels of the hidden part have the colour of the visible part.
+        // The upper right corner of the lamp is hidden in the photo. In the texture, it has the colour of the visible
+        // part.
         let at = lamp.centre + DVec2::new(17.0, -12.0);
         let texel = result.texture.rgb(at.x as usize, at.y as usize);
         assert!(texel.distance(Vec3::new(0.85, 0.75, 0.65)) < 0.12, "{texel}");
@@ -40,7 +42,7 @@ fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
 
 #[test]
 fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
-    // A triangle with its tip at the top and a horizontal base. The slanted line cuts its right side off.
+    // A triangle with its tip at the top and a horizontal base. The border of the photo cuts its right side off.
     let is_lamp = |x: f64, y: f64| (y - 10.0) * 2.0 > (x - 80.0).abs() && (10.0..45.0).contains(&y);
     let design = slanted(is_lamp);
     assert!(design.light.data.iter().zip(&design.valid.data).any(|(l, v)| *l >= 0.5 && *v < 0.5));
@@ -56,7 +58,7 @@ fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
 
 #[test]
 fn a_single_lamp_repeats_at_equal_distances_along_both_axes() {
-    // A strip of 160 × 40 pixels with one lamp: a square of equal area has sides of 80 pixels.
+    // A strip of 160 × 40 pixels with one lamp. The lamp repeats in squares of equal area, whose sides are 80 pixels.
     let design = Design::new(160, 40, |x, y| (x - 70.0).abs() < 9.0 && (y - 22.0).abs() < 8.0);
     let result = continued(&design);
     let centres: Vec<DVec2> = inner(&result.luminaires, 500, 400).iter().map(|lamp| lamp.centre).collect();
@@ -68,7 +70,8 @@ fn a_single_lamp_repeats_at_equal_distances_along_both_axes() {
     assert!((across - 80.0).abs() < 1.0 && (down - 80.0).abs() < 1.0, "{across} {down}");
 }
 
-/// Windows of 2 × 2 panes with thin bars inside and wide bars between them are no lattice of panes.
+/// Each window consists of 2 × 2 panes. Bars of 4 pixels separate the panes of a window, and bars of 20 pixels separate
+/// the windows. The lattice must have the period of the windows, not that of the panes.
 #[test]
 fn windows_of_panes_keep_the_wide_bars_between_them() {
     let is_lit = |n: f64| {
@@ -85,7 +88,7 @@ fn windows_of_panes_keep_the_wide_bars_between_them() {
 }
 
 /// Columns of windows at unequal distances have a period along y only. Along x, the texture repeats the whole exemplar
-/// with its dark margins. If the windows fill the exemplar from border to border, a bar separates the repetitions.
+/// with its dark margins. If the margins are narrower than the bars, repetitions are kept apart by the width of a bar.
 #[test]
 fn columns_of_windows_at_unequal_distances_repeat_as_one() {
     let along = |n: f64| {
@@ -94,8 +97,8 @@ fn columns_of_windows_at_unequal_distances_repeat_as_one() {
     };
     let cases: [(&[f64], usize, f64); 2] = [
         (&[40.0, 94.0, 128.0], 200, 200.0),
-        // A single column shows no bar along x. It repeats at its width of 30 pixels, plus the 20 pixels of the wide
-        // bars along y.
+        // A single column has no bar beside it. It repeats along x after its width of 30 pixels plus 20 pixels, the
+        // width of the widest bar along y.
         (&[5.0], 40, 50.0),
     ];
     for (columns, width, expected) in cases {
@@ -109,7 +112,7 @@ fn columns_of_windows_at_unequal_distances_repeat_as_one() {
 
 #[test]
 fn lamps_that_the_border_cuts_show_a_period() {
-    // Two whole lamps, and above them two of which the photo shows the lower half.
+    // Two whole lamps, and above them two lamps of which the photo shows only the lower half.
     let design = Design::new(160, 90, |x, y| {
         [40.0, 105.0].iter().any(|at| (x - at).abs() < 12.0) && ((y - 55.0).abs() < 8.0 || y < 8.0)
     });
@@ -125,7 +128,8 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
     let design =
         Design::new(160, 90, |x, y| [40.0, 105.0].iter().any(|at| (x - at).abs() < 12.0) && (y - 45.0).abs() < 8.0);
     let exemplar = Exemplar::new(&design.input(), 160.0, 0.0, Monitor::default().job()).unwrap();
-    // The gap between the lamps is 41 pixels, so a gap of 21 between copies is allowed, and one of 20 is not.
+    // The gap between the lamps of the exemplar is 41 pixels. Copies must keep at least half of it: a gap of 21 pixels
+    // is allowed, and one of 20 is not.
     let copies = [0.0, 44.0, 45.0, 90.0, 0.5].map(|x| Instance { component: 0, shift: DVec2::new(x, 0.0) });
     let kept = spacing::keep_apart(&exemplar, &Designs::default(), copies.to_vec());
     let shifts: Vec<f64> = kept.iter().map(|copy| copy.shift.x).collect();
@@ -134,7 +138,8 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
 
 #[test]
 fn a_pattern_continues_where_the_photo_shows_its_end() {
-    // The first three columns of lamps are missing, so the left part of the ceiling is dark.
+    // The first three columns of lamps are missing, so the photo shows that the pattern ends at the left. The texture
+    // must have lamps everywhere all the same.
     let lamp = grid(40.0, 36.0, 14.0, 10.0);
     let exemplar = Design::new(280, 180, |x, y| x > 110.0 && lamp(x, y));
     let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));

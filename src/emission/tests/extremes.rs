@@ -48,7 +48,8 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
         for centred in [false, true] {
             let result = exemplar.run(&Params { width, height, centred, ..Params::default() }).unwrap();
             let lit = result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0;
-            // The texture is a single line of texels, which runs either through lamps or between them.
+            // The texture is a single line of texels. It runs either between lamps or through them; `share` is then the
+            // side of a lamp divided by the period.
             assert!(lit == 0.0 || (lit - share).abs() < 0.02, "{width} x {height}: {lit}");
         }
     }
@@ -64,8 +65,8 @@ fn a_period_longer_than_the_exemplar_is_its_extent() {
     assert!(repeats(&exemplar, &result));
 }
 
-/// Rows that fan out, as on a curved ceiling, form no lattice: their regularity must be lower and their error larger
-/// than those of straight rows.
+/// Rows that fan out, as on a curved ceiling, form no lattice. The regularity must be lower, and the error of the
+/// texture larger, than with straight rows.
 #[test]
 fn a_pattern_that_bends_is_no_lattice() {
     let straight = Design::new(420, 320, |x, y| x.rem_euclid(30.0) < 10.0 && y.rem_euclid(30.0) < 10.0);

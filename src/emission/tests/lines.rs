@@ -1,5 +1,5 @@
-//! Tests of lights that run through the exemplar: they must join at the borders of a tileable texture, and a lamp list
-//! must contain them.
+//! Tests of lights that run through the whole exemplar, such as long lines. Where a tileable texture repeats, they must
+//! join. A lamp list must contain them.
 
 use super::*;
 
@@ -8,7 +8,8 @@ fn lines(along_x: bool) -> Design {
     Design::new(200, 190, move |x, y| (if along_x { y } else { x } - 5.0).rem_euclid(24.0) < 6.0)
 }
 
-/// The runs of lit texels in a closed ring of texels: start and length of each.
+/// The runs of lit texels in a cyclic row of texels, whose last texel is followed by the first. Returns the start and
+/// the length of each run.
 fn runs(lit: &[bool]) -> Vec<(usize, usize)> {
     let n = lit.len();
     let starts = (0..n).filter(|&i| lit[i] && !lit[(i + n - 1) % n]);
@@ -30,9 +31,9 @@ fn lines_meet_where_the_texture_repeats() {
         let across = if along_x { height } else { width };
         let count = (across as f64 * scale / 24.0).round() as usize;
         let period = across as f64 / count as f64;
-        // Widths are compared in exemplar pixels; one texel is `scale` pixels. Rounding both edges to whole texels
-        // changes a width by at most one texel. If texels are larger than pixels, allow one pixel more, because the
-        // pattern is stretched to a whole number of periods.
+        // `slack` is the tolerance for the width of a line, in exemplar pixels; one texel is `scale` pixels. Rounding
+        // both edges to whole texels changes a width by at most one texel. If texels are larger than pixels, allow one
+        // pixel more, because the pattern is stretched to a whole number of periods.
         let slack = if scale > 1.0 { scale + 1.0 } else { 1.0 };
         for k in 0..width * height / across {
             let at = |i: usize| if along_x { i * width + k } else { k * width + i };

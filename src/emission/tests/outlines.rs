@@ -3,12 +3,12 @@
 use super::*;
 use crate::geometry::polygon;
 
-/// A shape given by its corners, rotated about the origin by `angle`, scaled by `radius` and moved to `at`.
+/// The corners of a shape, rotated about the origin by `angle` in radians, scaled by `radius` and then moved by `at`.
 fn turned(corners: &[[f64; 2]], angle: f64, radius: f64, at: DVec2) -> Vec<DVec2> {
     corners.iter().map(|&[x, y]| at + DVec2::from_angle(angle).rotate(DVec2::new(x, y)) * radius).collect()
 }
 
-/// A polygon that approximates a disc to less than a thousandth of its radius.
+/// A polygon that differs from a disc by less than a thousandth of the radius.
 fn disc(radius: f64, at: DVec2) -> Vec<DVec2> {
     (0..96).map(|i| at + DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 96.0) * radius * 1.0003).collect()
 }
@@ -45,8 +45,8 @@ fn design(width: usize, height: usize, shapes: &[Vec<DVec2>]) -> Design {
     Design { unwarped, light, valid }
 }
 
-/// The maximum distance of a point on the outline `from` to the outline `to` (one-sided Hausdorff distance). Points
-/// closer than `spared` to one of `corners` are ignored.
+/// The maximum distance from a point of the outline `from` to the outline `to` (one-sided Hausdorff distance). Ignores
+/// points that are closer than `spared` to one of `corners`.
 fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64 {
     let sides = || to.iter().copied().zip(to.iter().copied().cycle().skip(1));
     let nearest = |p: DVec2| {
@@ -63,8 +63,8 @@ fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64
     points.filter(|p| corners.iter().all(|c| c.distance(*p) >= spared)).map(nearest).fold(0.0, f64::max)
 }
 
-/// Errors of a lamp against the true shape: the distance of the outlines along the sides, in texels; the distance
-/// including corners, in texels; and the relative error of the area.
+/// Three errors of a lamp, compared with its true shape: the maximum distance between the outlines apart from the
+/// corners, in texels; the maximum distance including corners, in texels; and the relative error of the area.
 fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
     let both = |corners: &[DVec2]| {
         distance(truth, &lamp.outline, corners, 1.5).max(distance(&lamp.outline, truth, corners, 1.5))
@@ -74,12 +74,13 @@ fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
 
 #[test]
 fn outlines_lie_within_a_quarter_of_a_texel() {
-    // If texels are smaller than pixels, the limit is a quarter of a pixel.
+    // If texels are smaller than unwarped pixels (`scale` < 1), the limit is a quarter of a pixel.
     for scale in [0.5, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
         let side = (112.0 * scale) as usize;
         let mut worst = [0.0f64; 3];
         for k in 0..5 {
-            // Four shapes of 11 to 16 texels, each rotated, and at a different position relative to the texels.
+            // Four shapes with sides or diameters of 11 to 17 texels. From case to case, they are rotated, enlarged,
+            // and moved by fractions of a texel.
             let aside = |n: f64| DVec2::new((n * 0.618).fract(), (n * 0.755).fract());
             let centre = |n: usize| {
                 (DVec2::new((n % 2) as f64 + 0.5, (n / 2) as f64 + 0.5) * 56.0 + aside((4 * k + n) as f64)) * scale
@@ -104,8 +105,8 @@ fn outlines_lie_within_a_quarter_of_a_texel() {
             }
         }
         let [sides, all, area] = worst;
-        // A corner of at least 90° may be cut at up to one texel from its tip on both sides. It is then off by at most
-        // half the diagonal of a texel.
+        // An outline may cut off a corner of 90° or more, at up to one texel from its tip on both sides. The tip is
+        // then at most half the diagonal of a texel, √2/2, from the outline.
         let quarter = if scale < 1.0 { 0.25 / scale } else { 0.25 };
         assert!(sides < quarter, "{scale}: {sides}");
         assert!(all < 2.0 * quarter * 2f64.sqrt(), "{scale}: {all}");
@@ -129,14 +130,14 @@ fn a_mirrored_exemplar_has_the_mirrored_outline() {
     for p in &one {
         assert!(other.iter().any(|q| q.distance(mirror(p)) < 1e-9), "{p} {other:?}");
     }
-    // Both outlines must run from x towards y.
+    // Both outlines must run in the direction from x towards y, in which the signed area is positive.
     assert!(polygon::area(&one) > 0.0 && polygon::area(&other) > 0.0);
 }
 
 #[test]
 fn a_mask_that_is_nowhere_sure_tells_nearly_the_same() {
-    // If no pixel of a lamp has a confidence above 0.8, the lamp must lose no more than the edge pixels that fall
-    // below 0.5.
+    // Scale the light mask by 0.8, so that no pixel is fully light. This may only remove edge pixels whose value falls
+    // below 0.5. The second case has no edge pixels with intermediate values, so nothing may change.
     let shapes = [turned(&SQUARE, 0.3, 7.2, DVec2::new(16.3, 14.9)), disc(7.7, DVec2::new(42.6, 16.2))];
     let whole = [turned(&SQUARE, 0.0, 6.0, DVec2::new(15.0, 16.0))];
     let params = Params { width: 60, height: 32, ..Params::default() };
@@ -158,7 +159,7 @@ fn a_mask_that_is_nowhere_sure_tells_nearly_the_same() {
 #[test]
 fn a_corner_that_the_border_cuts_stays_cut() {
     for k in 0..8 {
-        // A square on its corner, which reaches over the border by up to about one texel.
+        // A square that stands on a corner. Its left corner reaches over the border by 0 to about 1 texel.
         let beyond = 0.15 * k as f64;
         let shape = turned(&SQUARE, std::f64::consts::FRAC_PI_4, 9.0, DVec2::new(9.0 * 2f64.sqrt() - beyond, 25.3));
         let result = design(40, 50, &[shape]).run(&Params { width: 40, height: 50, ..Params::default() }).unwrap();

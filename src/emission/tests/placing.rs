@@ -1,4 +1,4 @@
-//! Tests of the position of patterns: offsets, centred lattices, tileable textures, and places where no lamp may be.
+//! Tests of where the lamps of a pattern lie: offsets, centred lattices, tileable textures, and zones without lamps.
 
 use super::*;
 
@@ -9,8 +9,8 @@ fn an_offset_shifts_the_lattice_and_the_copy() {
         let result = exemplar.run(&params).unwrap();
         inner(&result.luminaires, params.width, params.height).iter().map(|l| l.centre).collect()
     };
-    // The periods are 40 along x and 36 along y. So the two offsets below are equivalent: they differ by one period
-    // along x and two along y.
+    // The periods are 40 along x and 36 along y. The two offsets below differ by one period along x and two along y, so
+    // they give the same lattice. The smaller texture is a copy of a part of the exemplar.
     for (width, height) in [(400, 400), (120, 100)] {
         for offset in [DVec2::new(11.0, 25.0), DVec2::new(-29.0, -47.0)] {
             let params = Params { width, height, ..Params::default() };
@@ -55,7 +55,7 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
     {
         let params = Params { width, height, centred: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
-        // The texture must be symmetric under a rotation by half a turn, and no lamp may be cut.
+        // The texture must be symmetric under a rotation by 180° about its centre, and no lamp may be cut.
         let size = DVec2::new(width as f64, height as f64);
         for lamp in &result.luminaires {
             let opposite = size - lamp.centre;
@@ -92,8 +92,8 @@ fn lamps_without_a_place_are_left_out() {
     let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
     assert_eq!(lit(&touched), lit(&result) - 196.0);
     assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
-    // No partly covered texel at the rim of the removed lamp may remain either. Only textures with coarser texels have
-    // such rims.
+    // Partly covered texels at the rim of the removed lamp must be removed as well. Such texels exist only if texels
+    // are larger than unwarped pixels.
     let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
@@ -132,8 +132,9 @@ fn tileable_textures_repeat_without_a_seam() {
         let params = Params { width, height, scale, tileable: true, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
         assert_eq!(matches!(result.law, Law::Free), name == "free");
-        // Repeat the texture twice along each axis. In the central part of one period, each lamp must appear exactly
-        // once, and complete.
+        // Lay two copies of the texture side by side along each axis, and take the lamps whose centres lie in the
+        // central quarter, which is as large as the texture. These must be all lamps of the texture, once each and
+        // complete.
         let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
         let repeated = components::find(2 * width, 2 * height, |i| result.mask.data[again(i)] > 0.5).unwrap();
         let size = DVec2::new(width as f64, height as f64);
@@ -145,12 +146,14 @@ fn tileable_textures_repeat_without_a_seam() {
         let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
         assert_eq!(areas.iter().sum::<f64>(), result.mask.data.iter().sum::<f32>() as f64, "{name}");
         match name {
-            // The radii are 4 to 7 pixels, and the exemplar's border may cut lamps.
+            // The radii are 4 to 7 pixels, so a disc has 50 to 154 texels. The exemplar's border may cut discs
+            // slightly.
             "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
             _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
         }
         if let Some([a, b]) = result.law.lattice() {
-            // All lamps must lie on the stretched lattice, one in each cell, and not at the distances of the exemplar.
+            // Each cell of the stretched lattice must contain one lamp. The lamps must be stretched with the lattice,
+            // not keep the distances that they have in the exemplar.
             let lamps = inner(&result.luminaires, width, height);
             let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
             let basis = [a / scale, b / scale];
@@ -171,7 +174,7 @@ fn tileable_textures_repeat_without_a_seam() {
 
 #[test]
 fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
-    // A column of seven panes of which the first and the last are short, as in a skylight between walls.
+    // A column of seven panes. The first and the last are shorter than the others, as in a skylight between walls.
     let exemplar = Design::new(100, 480, |x, y| {
         let pane = ((y - 60.0) / 50.0).floor();
         let along = (y - 60.0).rem_euclid(50.0);
@@ -184,7 +187,7 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
     for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
         assert_eq!(m, result.mask.data[i - 100]);
     }
-    // The column must begin like the exemplar, with all seven panes, and no pane may be cut.
+    // The texture must begin like the exemplar, with all seven panes and a short one at each end. No pane may be cut.
     let first: Vec<f64> = (result.luminaires.iter())
         .filter(|l| l.centre.x < 100.0 && l.centre.y < 480.0)
         .map(|l| (l.area / 40.0).round())
@@ -196,8 +199,8 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
 
 #[test]
 fn rows_at_both_borders_go_on_at_their_own_distance() {
-    // Two columns of lamps, 76 pixels apart, at the left and the right border: copies beside each other would put the
-    // right column of one copy 4 pixels beside the left column of the next.
+    // Two columns of lamps, with a gap of 76 pixels, near the left and the right border. If the exemplar repeated with
+    // its width, the gap between the right column of one copy and the left column of the next would be only 4 pixels.
     let exemplar = Design::new(100, 480, |x, y| {
         ((2.0..12.0).contains(&x) || (88.0..98.0).contains(&x)) && (y - 7.0).rem_euclid(50.0) < 30.0
     });

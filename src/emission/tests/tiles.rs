@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
-    // Three cases need special rendering: lights that the border cuts are copied as one piece; without `whole_lamps`,
-    // lights are copied patch by patch; large lamps in fine texels have crumbs at their edges.
+    // Three cases need special rendering. At a scale of 0.11, the edges of lamps may have crumbs. Without
+    // `whole_lamps`, lights are copied patch by patch. The border cuts `lines`, which are copied as one piece each.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [
@@ -82,8 +82,8 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         for lamp in &shown {
             let apart = |l: &&Luminaire| l.centre.distance(lamp.centre);
             let same = listed.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-            // For lamps inside the texture with one pixel per texel, allow rounding errors only; otherwise allow about
-            // one texel.
+            // If the lamp lies inside the texture and a texel is one unwarped pixel, allow only rounding errors.
+            // Otherwise allow about one texel.
             let size = DVec2::new(params.width as f64, params.height as f64);
             let is_inside = lamp.outline.iter().all(|p| p.min_element() > 0.0 && p.cmplt(size).all());
             if params.scale == 1.0 && is_inside {
@@ -94,8 +94,8 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
             }
             let (off, perimeter) = (same.centre.distance(lamp.centre), 2.0 * lamp.size.element_sum());
             assert!(off < 1.0 && (same.area - lamp.area).abs() < 0.6 * perimeter, "{params:?} {same:?} {lamp:?}");
-            // The size of a lamp that the border cuts is measured along the axes of the complete lamp, so do not
-            // compare it.
+            // Do not compare sizes of lamps that the border cuts: the list measures them along the axes of the complete
+            // lamp, the texture along the axes of the visible part.
             let size_off = (same.size - lamp.size).abs().max_element();
             assert!(!is_inside || size_off < 2.5, "{} {}", same.size, lamp.size);
             assert!(!is_inside || (same.kind, lamp.kind) == (1, 1), "{} {}", same.kind, lamp.kind);
@@ -126,7 +126,7 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
     let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
     let shown = areas(&mut shown.iter().map(|l| l.area));
     assert!(listed.len() == shown.len() && listed.iter().zip(&shown).all(|(a, b)| (a - b).abs() < 1e-9));
-    // The confidence of edge pixels has noise of up to a tenth, which changes the areas slightly.
+    // The lamps have 8² = 64 and 18² = 324 pixels. Noise of up to 0.1 in the light mask changes the areas slightly.
     assert!((listed[0] / 64.0 - 1.0).abs() < 0.02 && (listed[listed.len() - 1] / 324.0 - 1.0).abs() < 0.01);
     assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
 }

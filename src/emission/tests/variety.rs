@@ -1,4 +1,4 @@
-//! Variation between lamps of the exemplar must be kept in the texture, even when the lamps lie on a lattice.
+//! Tests that a texture keeps the variation between the lamps of its exemplar, even if the lamps lie on a lattice.
 
 use super::*;
 
@@ -14,6 +14,7 @@ fn of_levels(side: usize, level: impl Fn([i64; 2]) -> f32) -> Design {
     exemplar
 }
 
+/// Mean and standard deviation.
 fn deviation(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt())
@@ -36,16 +37,17 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     };
     let sources: Vec<usize> = lamps.iter().map(|lamp| source(lamp)).collect();
 
-    // Most lamps of the exemplar must be used, and none far more often than the others.
+    // The texture must show most lamps of the exemplar, and no lamp far more often than the others.
     let mut times = [0; 100];
     sources.iter().for_each(|&k| times[k] += 1);
     let shown = times.iter().filter(|&&n| n > 0).count();
     assert!(shown >= 60, "{shown} of 100 are shown");
     assert!(times.iter().max().unwrap() * 15 < sources.len(), "{times:?}");
 
-    // Mean and standard deviation of the brightness must agree with the exemplar. Patches copy groups of lamps, so
-    // both are only as precise as in a sample of as many lamps as the exemplar has. Allow three standard errors of
-    // each; for uniform levels, the standard error of the deviation is half that of the mean.
+    // The mean and the standard deviation of the brightness must agree with the exemplar. Patches copy groups of lamps,
+    // so both are only as precise as in a random sample of 100 lamps, the number of the exemplar. Allow three standard
+    // errors of such a sample. The levels are uniformly distributed, for which the standard error of the deviation is
+    // about half that of the mean.
     let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
     let (expected, exact) = deviation(&known);
     let standard = exact / (known.len() as f64).sqrt();
@@ -74,15 +76,16 @@ fn lamps_off_their_places_stay_as_far_off_and_no_farther() {
     };
     let own = exemplar.run(&Params { width: 480, height: 480, ..Params::default() }).unwrap();
     let (own, made) = (phase(&own, 480, 480), phase(&result, 1200, 1000));
-    // The offsets are uniform in a square: their root mean square is √(2/3) of half its side. Drift would accumulate
-    // to more over thirty periods.
+    // The offsets are uniform in a square with sides of 2 `most`, so their root mean square is √(2/3) `most`. The
+    // texture must have the same value. If position errors accumulated over its thirty periods, the value would be
+    // larger.
     assert!((own / ((2.0f64 / 3.0).sqrt() * most / period) - 1.0).abs() < 0.15, "{own}");
     assert!((made / own - 1.0).abs() < 0.15, "{made} {own}");
 }
 
 #[test]
 fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
-    // Square lamps with period 48, and round lamps at random positions that keep clear of them.
+    // Square lamps with a period of 48, and round lamps at random positions that do not touch the squares.
     let square = |p: DVec2| (p.rem_euclid(DVec2::splat(48.0)) - 24.0).abs().max_element();
     let mut rng = Rng::new(31, &[]);
     let mut discs: Vec<DVec2> = Vec::new();
@@ -116,8 +119,9 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
 
 #[test]
 fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
-    // Some shifts correlate well by chance, because they compare hardly any lamps. Subtracting two standard errors
-    // leaves about one wrong result in twenty draws.
+    // A tenth of the lamps is missing. Shifts with a small overlap compare few lamps and may correlate well by chance,
+    // so the lattice search subtracts two standard errors from each correlation. About one wrong result in twenty draws
+    // of the missing lamps remains.
     let mut wrong = Vec::new();
     for draw in 0..24 {
         let exemplar = Design::new(480, 300, |x, y| {
@@ -136,7 +140,7 @@ fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
 
 #[test]
 fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
-    // A quarter of the 9 × 9 sites has no lamp; the border cuts the outer sites in half.
+    // About a quarter of the 9 × 9 sites has no lamp. The border cuts the outermost sites in half.
     let has_lamp = |i: i64, j: i64| Rng::new(3, &[i as u64, j as u64]).next_f64() < 0.75;
     let exemplar = Design::new(320, 320, |x, y| {
         let (u, v) = (x + 10.0, y + 10.0);
@@ -150,11 +154,11 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
     for seed in seeds.clone() {
         let result = exemplar.run(&Params { width: 800, height: 800, seed, ..Params::default() }).unwrap();
         assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
-        // Divide the light by the area of a lamp and by the number of cells, 20 × 20.
+        // Divide the lit area by the area of a lamp, 20 × 20, and by the number of cells, also 20 × 20.
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }
     let filled = sum / seeds.count() as f64;
-    // If patches could show the dark sites at the border but not the lit ones, an eighth of the lamps would be
-    // missing.
+    // If patches could show the dark sites at the border, but not the lit ones, the texture would lack an eighth more
+    // lamps.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
 }

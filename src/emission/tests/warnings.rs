@@ -6,7 +6,7 @@ use crate::image::Image;
 use crate::job::Monitor;
 use glam::DVec2;
 
-/// A texture of four lamps, with the fields of a texture that was made from a photo.
+/// A texture of four lamps. Its fields are set as if it had been made from a photo.
 fn made() -> Emission {
     let lamps = Image::from_fn(32, 32, |x, y| [f32::from(x % 16 < 6 && y % 16 < 6); 3]).unwrap();
     let own = from_texture(&lamps, Monitor::default().job()).unwrap();
@@ -36,7 +36,7 @@ fn a_large_error_raises_a_warning() {
     let far = Emission { error: 0.64, ..made() };
     assert_eq!(codes(&far), [Code::PatternUncertain]);
     assert!(far.warnings()[0].message.contains("64 %"));
-    // The warning is raised even if sampling error explains the difference.
+    // The warning is raised even if the error is hardly larger than the sampling error.
     assert_eq!(codes(&Emission { sampling_error: 0.6, ..far }), [Code::PatternUncertain]);
     assert_eq!(codes(&Emission { error: f64::NAN, ..made() }), [Code::PatternUncertain]);
 }
