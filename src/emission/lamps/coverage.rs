@@ -42,8 +42,9 @@ impl<'a> Lights<'a> {
         self.index(at).map(|i| self.labels[i])
     }
 
-    /// Coverage of a texel divided by the largest coverage of its lamp or, for an unlit texel, of the lamps beside it.
-    /// `None` outside the texture.
+    /// The coverage of a texel relative to full coverage. For a texel of a lamp, full coverage is the largest coverage
+    /// of this lamp's texels, and the result is at least 0.5. For any other texel, it is the largest value of the lamps
+    /// beside it, and the result is at most 0.5. `None` outside the texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));

@@ -442,12 +442,13 @@ impl Design {
         }
     }
 
-    /// Share of a square that lies within the design. `p` is the square's centre relative to the design's centre.
+    /// Share of an axis-aligned square that lies within the design. `p` is the square's centre relative to the design's
+    /// centre, and `side` the length of its sides.
     pub fn coverage(&self, p: DVec2, side: f64) -> f64 {
         let q = DVec2::new(p.dot(self.axis), p.dot(self.axis.perp()));
         let half = self.size / 2.0;
         match self.shape {
-            // Exact if the square is aligned with the rectangle.
+            // Exact if the rectangle's axis is parallel to x or y.
             Shape::Rectangle => {
                 let along = |q: f64, half: f64| {
                     let (low, high) = ((q - side / 2.0).max(-half), (q + side / 2.0).min(half));

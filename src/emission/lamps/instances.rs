@@ -132,8 +132,8 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     let inverse = DMat2::from_cols(a, b).inverse();
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // Find the range of shifts for which the lamp lies at least partly in the texture, then the lattice vectors in
-        // this range.
+        // Find the range of shifts for which the lamp lies at least partly in the texture or, in a tileable texture,
+        // the range in which the repetition begins in the texture. Then find the lattice positions in this range.
         let (first, last) = lamp.bounds();
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-last, size - first) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {

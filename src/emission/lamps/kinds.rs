@@ -56,7 +56,8 @@ impl Measures {
     }
 }
 
-/// A bin of lamps of nearly equal shape.
+/// A bin of lamps of nearly equal shape. `shape` is that of the first lamp. `count` is the number of lamps in the
+/// texture that the bin stands for.
 struct Bin<'a> {
     shape: Measures,
     lamps: Vec<&'a mut Luminaire>,
@@ -139,7 +140,8 @@ mod tests {
 
     #[test]
     fn discs_squares_however_turned_and_bars_are_kinds() {
-        // Squares, every other one rotated by 45°; discs with the width of the squares; a bar.
+        // A row of eight lamps: squares, of which every second one is rotated by 45°, alternate with discs of the same
+        // width. The last lamp is a bar. The expected kinds are 1 for squares, 2 for discs and 3 for the bar.
         let size = DVec2::new(640.0, 200.0);
         let what = |cell: i64| match cell {
             0 | 2 | 4 | 6 => 1,

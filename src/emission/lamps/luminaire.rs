@@ -13,7 +13,7 @@ pub struct Luminaire {
     pub orientation: f64,
     /// Area in texels. A texel at the lamp's edge counts only with the share that light covers.
     pub area: f64,
-    /// Mean linear colour.
+    /// Mean linear RGB of the lamp's texels.
     pub colour: Vec3,
     /// Share of the luminous flux of all lamps in the texture, in `[0, 1]`.
     pub flux_share: f64,

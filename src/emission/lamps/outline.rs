@@ -94,8 +94,8 @@ impl Ring {
         Self { crossings, corners, is_soft, narrow, origin: DVec2::new(origin[0] as f64, origin[1] as f64) }
     }
 
-    /// Returns the corners of the outline within a texture of the given size, and the lamp's extents along and across
-    /// `axis`.
+    /// Returns the corners of the outline in a texture of the given size, and the lamp's extents along and across
+    /// `axis`. Both are in texels.
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > MAX_NARROW_WIDTH {
@@ -192,7 +192,8 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let Some(begin) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
     let is_within = |corner: &DVec2| corner.distance(corner.clamp(first, last)) < ROUNDING;
 
-    // Go around once, from the end of each side to the beginning of the next.
+    // Go around the outline once. In each step, replace the part between the end of one long side and the start of the
+    // next long side by a corner, if possible.
     let mut out = Vec::new();
     let mut side = begin;
     while side < begin + n {
@@ -220,7 +221,8 @@ fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Op
     if length == 0.0 || length > MAX_BLUNT || u.dot(v) > COS_CORNER {
         return None;
     }
-    // Solve end + s u = start - t v for s and t.
+    // Extend the first side by s along its direction u, and the second side backwards by t along its direction v. They
+    // meet where end + s u = start - t v.
     let (gap, cross) = (start - end, u.perp_dot(v));
     let (s, t) = (gap.perp_dot(v) / cross, u.perp_dot(gap) / cross);
     let is_near = |d: f64| (0.0..=MAX_EXTENDED).contains(&d);

@@ -25,7 +25,7 @@ const MIN_RIM: f64 = 8.0;
 /// [origin not recorded]
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
-/// The colours of lamps, read from their rims, which replace clipped pixels.
+/// The colours of lamps as read from their rims. They replace the colours of clipped pixels.
 pub struct RimColours {
     /// Channel values of at least this are clipped.
     level: f32,
@@ -46,7 +46,8 @@ impl RimColours {
             return None;
         }
 
-        // Sum up the colours of each rim; entry 0 is the sum over all rims, for lamps without a rim of their own.
+        // Sum up the colours and count the pixels of each rim. Entry 0 is for all rims together; lamps whose own rim
+        // has too few pixels use it.
         let mut sums = vec![(DVec3::ZERO, 0.0); components.list.len() + 1];
         for (i, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
             let value = colour(i);

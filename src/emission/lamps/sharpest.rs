@@ -50,8 +50,8 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp in the photo by a sharp
-/// lamp of its kind, with the same centre.
+/// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp, or that the photo does
+/// not show completely, by a sharp and whole lamp of its kind. The centre stays.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let area = |k: usize| exemplar.photo_area[k];
     let clear = |kind: usize| {

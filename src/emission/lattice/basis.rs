@@ -7,7 +7,7 @@ use glam::{DMat2, DVec2};
 /// smallest sufficient k. [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
-/// share of the first period. [bench emission:patterns]
+/// share of the first period's length. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 /// If the pattern does not change along an axis, the search for lattices returns a shift of one pixel along the axis in
 /// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]

@@ -87,7 +87,7 @@ pub struct Correlated {
     correlation: Autocorrelation,
     width: usize,
     height: usize,
-    /// Number of valid pixels.
+    /// Number of valid pixels of the reduced image.
     valid: usize,
     /// Unwarped pixels per pixel of the reduced image.
     to_unwarped: DVec2,

@@ -23,7 +23,8 @@ pub struct Run {
     pub source: usize,
 }
 
-/// A block as runs of empty pixels, and runs of filled pixels, which show pixels of the exemplar.
+/// A block of the texture. `empty` and `filled` list its pixels as runs: those without a patch, and those that show
+/// pixels of the exemplar.
 pub struct Block {
     pub rect: Rect,
     /// For each pixel of the block, row by row, the index of the exemplar pixel that it shows, or [`NONE`].

@@ -54,7 +54,7 @@ struct Quilt<'a> {
     /// (`Shift::working`, bits of `Shift::exact`).
     labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
     law: Law,
-    /// Position of the lattice's origin, in unwarped pixels.
+    /// Position of the lattice's origin in the texture, in unwarped pixels.
     offset: DVec2,
     /// `bounds`: bounding box of the exemplar's usable pixels. `admissible`: indices of the exemplar's pixels at which
     /// the upper left corner of a block may lie, so that the block contains usable pixels only; empty on a lattice.
@@ -243,7 +243,7 @@ impl Quilt<'_> {
         let low = (point(rect.x, rect.y) - point(self.bounds[2], self.bounds[3])) * pitch;
         let high = (point(rect.x + rect.w, rect.y + rect.h) - point(self.bounds[0], self.bounds[1])) * pitch;
 
-        // Find the range of lattice cells that contains these shifts.
+        // Find the range of lattice cells that contains all shifts between `low` and `high`.
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         let corners =
             [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - self.offset));

@@ -1,4 +1,4 @@
-//! The patch map stores which pixel of the exemplar each pixel of the texture shows, as a shift.
+//! The patch map. Each pixel of the texture shows a pixel of the exemplar; the map stores the shift between the two.
 
 use crate::emission::exemplar::working::Working;
 use glam::DVec2;

@@ -1,5 +1,5 @@
-//! Adapts the patch map to a stretched lattice. Lights that are copied patch by patch, not as whole lamps, are drawn by
-//! this map.
+//! Adapts the patch map to a stretched lattice. The result is used for lights that are copied patch by patch, not as
+//! whole lamps.
 
 use super::patch_map::{NONE, PatchMap, Shift, Shifts};
 use crate::emission::exemplar::Exemplar;

@@ -108,7 +108,7 @@ fn lamps_without_a_place_are_left_out() {
             .filter(|&i| !near(i))
             .all(|i| without.texture.pixel(i % 150, i / 150) == coarse.texture.pixel(i % 150, i / 150))
     );
-    // Hidden parts of a lamp are cut off.
+    // A hidden zone cuts off the part of a lamp that lies in it.
     let half =
         restricted(&|x, _| if x < lamp.centre.x as usize { TexelZone::Hidden } else { TexelZone::Open }).unwrap();
     assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
@@ -187,7 +187,7 @@ fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
     for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
         assert_eq!(m, result.mask.data[i - 100]);
     }
-    // The texture must begin like the exemplar, with all seven panes and a short one at each end. No pane may be cut.
+    // The texture must begin like the exemplar: a short pane, five long ones and a short one. No pane may be cut.
     let first: Vec<f64> = (result.luminaires.iter())
         .filter(|l| l.centre.x < 100.0 && l.centre.y < 480.0)
         .map(|l| (l.area / 40.0).round())

@@ -1,4 +1,5 @@
-//! Tests that a texture rendered in tiles equals the texture rendered at once.
+//! Tests that a texture rendered in tiles has the same bits as the texture rendered at once, and that a lamp list
+//! agrees with the rendered texture.
 
 use super::*;
 
@@ -74,7 +75,8 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
         assert!(list.get(&plan, list.count()).is_none());
         let shown = exemplar.run(&params).unwrap().luminaires;
-        // Slivers of less than a texel at the border may appear in one of the two lists only, so compare larger lamps.
+        // `listed` or `shown` alone may contain a sliver of a lamp at the border. So compare only lamps of more than 8
+        // texels.
         let large = |list: &[Luminaire]| list.iter().filter(|l| l.area > 8.0).cloned().collect::<Vec<_>>();
         let (listed, shown) = (large(&listed), large(&shown));
         assert_eq!(listed.len(), shown.len(), "{params:?}");
