@@ -54,8 +54,9 @@ const MIDDLE_SHARE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the unwarped photo if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
 const MAX_ALIGNED_ANGLE: f64 = 0.07;
-/// `SIDE_NOISE`: standard deviation of a measured side, in photo pixels. `BLOOM`: standard deviation of the prior of
-/// the bloom, the distance in photo pixels by which each edge is moved outwards. [judged on 20 photos]
+/// `SIDE_NOISE`: standard deviation of the error of a measured side, in photo pixels. Bloom moves each edge of a lamp
+/// outwards by a number of photo pixels; `BLOOM` is the standard deviation of its prior, which has mean 0.
+/// [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
 /// The wider prior `SHOWN_BLOOM`, in photo pixels, replaces `BLOOM` if the lamps show their bloom, which means:

@@ -45,7 +45,7 @@ pub struct Ring {
     crossings: Vec<DVec2>,
     /// For each texel edge, the texel corner at which it begins.
     corners: Vec<DVec2>,
-    /// Whether light covers any texel beside the boundary partly.
+    /// Whether any texel at the boundary is covered only in part.
     is_soft: bool,
     /// Width or height of the lamp, whichever is smaller.
     narrow: f64,

@@ -158,7 +158,7 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }
     let filled = sum / seeds.count() as f64;
-    // If patches could show the dark sites at the border, but not the lit ones, the texture would lack an eighth more
-    // lamps.
+    // If patches could show the dark sites at the border, but not the lit ones, the number of lamps would be lower by
+    // about an eighth.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
 }
