@@ -527,7 +527,7 @@ typedef struct luxfer_photo_metadata {
     /**
      * Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), from the definition of
      * the saturation-based speed in ISO 12232. N, t and S are the three fields above. 0 = unknown. Valid only for the
-     * image that the camera wrote: editors that change the brightness keep these tags.
+     * image that the camera wrote: an editor that changes the brightness keeps the tags, so the value is then wrong.
      */
     double white_luminance;
     /**

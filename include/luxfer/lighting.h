@@ -620,7 +620,8 @@ typedef struct luxfer_placement_params {
     double min_offset[2];
     /**
      * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
-     * allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the fields below.
+     * allows every offset. If min_offset and max_offset are equal, the offset is fixed; the same holds for scale and
+     * rotation.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
@@ -661,9 +662,9 @@ typedef struct luxfer_placement {
     /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The error
-     * of response that comes from the size of the cells is about a third of this difference, which also contains
-     * noise.
+     * The response computed with cells of twice the width and height, minus the field response, in cd/m² per channel.
+     * About a third of this difference is the error of response that comes from the size of the map's cells. The
+     * difference also contains noise.
      */
     double band_error[3];
 } luxfer_placement;
@@ -675,7 +676,7 @@ typedef struct luxfer_placement {
 #define LUXFER_AIM_MIN_LUMINANCE 1
 
 /**
- * Bring the mean radiance of the target, under the texture and all other light, nearest to
+ * Bring the mean radiance of the target, under the texture and all other light, as near as possible to
  * luxfer_placement_params.radiance.
  */
 #define LUXFER_AIM_RADIANCE 2
@@ -727,10 +728,10 @@ typedef struct luxfer_glare_report {
     /** Solid angle of all sources in steradians. */
     double solid_angle;
     /**
-     * Number of point lights, spot lights and luminaires of the rendered scene that shine from points. They are
-     * invisible in the image, and ugr leaves them out. Known only for images of luxfer_render_get_image and
-     * luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
-     * LUXFER_WARNING_NOT_IN_PICTURE.
+     * Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires without
+     * faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+     * luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the
+     * scene has LUXFER_WARNING_NOT_IN_PICTURE.
      */
     uint32_t unseen_lights;
     /** Reserved; always 0. */
@@ -1048,44 +1049,48 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
  * cable or rod on which the lamp hangs) meets the ceiling.
  * ==================================================================================================================== */
 
-/** No length determines the size: drop, diameter and height hold only bounds. */
+/**
+ * No length determines the size, or only with a standard deviation above half of the size. The fields drop, diameter
+ * and height then hold only bounds.
+ */
 #define LUXFER_DOUBT_SIZE 1
 
 /** The probability of the kind is below 0.9. */
 #define LUXFER_DOUBT_KIND 2
 
 /**
- * The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its glare may
- * enlarge the outline.
+ * The photo clips more than a tenth of the lamp's pixels (see luxfer_pendant.clipped): the lamp may be brighter than
+ * it appears, and its glare may enlarge the outline.
  */
 #define LUXFER_DOUBT_CLIPPED 4
 
 /** The border of the photo cuts off a part of the outline. */
 #define LUXFER_DOUBT_CUT 8
 
-/**
- * The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of the largest
- * diameter.
- */
+/** The body hides a part of its own profile. At least one value of luxfer_pendant.profile_error exceeds 0.05. */
 #define LUXFER_DOUBT_HIDDEN 16
 
 /** Largest number of lamps, and of suspensions, that luxfer_pendants_find accepts. */
 #define LUXFER_MAX_PENDANTS 16
 
-/** The length that determines the size of lamps: a LUXFER_KNOWN_ value. */
+/** The length that determines the size of the lamps: a LUXFER_KNOWN_ value. */
 typedef int32_t luxfer_known;
 
-/** Settings of the fit of bodies. Fill them with luxfer_pendants_params_init. */
+/** Settings with which luxfer_pendants_find fits bodies to lamps. Fill them with luxfer_pendants_params_init. */
 typedef struct luxfer_pendants_params {
     /** sizeof(luxfer_pendants_params), set by luxfer_pendants_params_init. */
     uint32_t struct_size;
-    /** 1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own. */
+    /** 1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its own. */
     uint32_t alike;
-    /** 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height. */
+    /**
+     * 1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its own
+     * height.
+     */
     uint32_t level;
     /**
-     * 1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the luminances
-     * inside and outside the lamp; 0: the outline is that of the mask.
+     * 1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of the
+     * luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on the
+     * outline of the mask. 0: all points stay on the outline of the mask.
      */
     uint32_t refine;
     /** Meaning of known_length: a LUXFER_KNOWN_ value; default LUXFER_KNOWN_NOTHING. */
@@ -1098,8 +1103,8 @@ typedef struct luxfer_pendants_params {
      */
     double known_length;
     /**
-     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in multiples
-     * of the true height.
+     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
+     * the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
      */
     double ceiling;
     /** Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1. */
@@ -1110,8 +1115,9 @@ typedef struct luxfer_pendants_params {
      */
     double focal;
     /**
-     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a rectification
-     * is given, the rectification's own error is used if its focal length was assumed or read from metadata.
+     * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
+     * for the standard deviation that the rectification has; it has one only for a focal length that was assumed or
+     * read from metadata.
      */
     double focal_error;
     /**
@@ -1137,9 +1143,9 @@ static inline luxfer_status luxfer_pendants_params_init(luxfer_pendants_params *
 typedef int32_t luxfer_body;
 
 /**
- * A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value, and the
- * lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are the known
- * bounds, which may be 0 and infinity. A value without an estimate is NaN.
+ * A hanging lamp: its body, its place and the doubts about them. Fields called an interval hold three numbers: the
+ * value, and the lower and the upper end of its 95 % confidence interval. If the photo does not determine the value,
+ * the ends are the known bounds of the value, which may be 0 and infinity. A value without an estimate is NaN.
  */
 typedef struct luxfer_pendant {
     /** sizeof(luxfer_pendant), set by the function that fills the struct. */
@@ -1170,7 +1176,10 @@ typedef struct luxfer_pendant {
     double residual;
     /** Share of the outline that the photo's border cuts off, in [0, 0.3]. */
     double cut;
-    /** Share of the lamp's pixels that the photo clips, in [0, 1]. */
+    /**
+     * Share of the lamp's pixels that the photo clips, in [0, 1]. A pixel counts as clipped if a channel is at least
+     * 98 % of the photo's largest value.
+     */
     double clipped;
     /**
      * Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the largest
@@ -1178,8 +1187,8 @@ typedef struct luxfer_pendant {
      */
     float profile[65][2];
     /**
-     * Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is large where
-     * the body hides its own profile.
+     * Half-width of the 95 % confidence interval of each radius of the profile, in multiples of the largest diameter.
+     * It is large where the body hides its own profile.
      */
     float profile_error[65];
     /**
@@ -1231,15 +1240,16 @@ typedef struct luxfer_pendant {
 
 /**
  * Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
- * 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp; lamps are numbered in the
- * order of their topmost pixels. view is a rectification of the photo whose job has succeeded; NULL: the camera is
- * that of params. params may be NULL for the defaults.
+ * 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp, except regions with less than
+ * 2 % of the largest region's pixels, which are ignored. Lamps are numbered in the order of their topmost pixels. view
+ * is a rectification of the photo whose job has succeeded; NULL: the camera is that of params. params may be NULL for
+ * the defaults.
  *
  * suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
- * there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp may have one point.
- * pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps, even if
- * it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp, and
- * more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+ * there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at most one
+ * point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps,
+ * even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp,
+ * and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
  * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
  * of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
  * LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
@@ -1257,12 +1267,13 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    uint32_t *count);
 
 /**
- * Adds count meshes, 1 to 1024, to a scene, each with the body of a lamp that luxfer_pendants_find has found. places
- * has the coordinates x, y and z in metres of the middle of each body's upper end. diameter is the largest diameter in
- * metres, in [0.001, 1e4]; 0: the diameter found. The meshes share a new material, which emits light with the photo's
- * colours along the height of the body. Where the photo clips the lamp, this emission is too dark. luminance is the
- * luminance in cd/m² of a surface that has the value 1 in the photo, in [0, 1e9]. *first_mesh and *material receive
- * the index of the first new mesh and that of the material; each pointer may be NULL. Any thread.
+ * Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
+ * found. places holds x, y and z in metres of count points; each point becomes the centre of the upper end of one
+ * body. diameter is the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The
+ * meshes share a new material. Its emission follows the colours of the photo along the height of the body. Where the
+ * photo clips the lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value
+ * 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and that of the
+ * material; each pointer may be NULL. Any thread.
  * LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */

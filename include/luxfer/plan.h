@@ -149,9 +149,10 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
 
 /**
  * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
- * The plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings,
- * where NULL stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the
- * plan gives the settings that come nearest to it. The caller releases *job. Any thread.
+ * The plan chooses only the numbers of rounds and sweeps (the fields iterations, coarse_iterations, finest_iterations,
+ * polish and sweeps). The resolution and all other values come from settings, where NULL stands for the defaults.
+ * params gives the goal, a time or an error. If no settings reach the goal, the plan gives the settings that come
+ * nearest to it. The caller releases *job. Any thread.
  *
  * The error is the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in
  * colours and guides, whose values are in [0, 1].

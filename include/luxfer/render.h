@@ -50,9 +50,9 @@ typedef struct luxfer_render_params {
      * of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
      * pixel, even if it then misses the target.
      *
-     * The relative error of a pixel is half the width of the 95 % confidence interval of its luminance, divided by
-     * its luminance or by a tenth of the image's mean, whichever is larger. The relative error of a block is the root
-     * mean square over its pixels.
+     * The relative error of a pixel is e / max(Y, m / 10). Here e is half the width of the 95 % confidence interval of
+     * the pixel's luminance Y, and m is the mean of the image. The relative error of a block is the root mean square
+     * over its pixels.
      */
     float pixel_error;
     /** Must be 0. */
@@ -92,8 +92,9 @@ typedef struct luxfer_render_report {
     /** Number of paths that were discarded because their radiance was not finite. */
     uint64_t discarded;
     /**
-     * Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root mean
-     * square over all blocks, divided by the image's mean. 0 without a preview.
+     * Estimated bias of the preview. The bias of a block of 8 x 8 pixels is the expected value of the block's mean
+     * minus its true mean. This field is the root mean square of the bias over all blocks, divided by the image's
+     * mean. 0 without a preview.
      */
     double preview_bias;
     /**
@@ -130,19 +131,19 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined with those
- * neighbours that differ from it by no more than the noise explains. It stays as it is where that is estimated to be
- * more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+ * The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged with those
+ * neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value where this value is
+ * estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
  * luxfer_render_report.preview_error estimates the remaining error. The image exists only if
  * luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
 /**
- * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It includes the
- * bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too narrow: with 8 paths
- * it may contain the true value of only 86 % of the pixels. The image exists only if luxfer_render_params.preview is
- * not 0.
+ * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval
+ * includes the bias of the filter. It is infinite where a pixel has fewer than four paths. With few paths it is too
+ * narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image exists only if
+ * luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW_INTERVAL 5
 
@@ -170,8 +171,8 @@ luxfer_status luxfer_render_start(luxfer_render *render,
                                   luxfer_job **job);
 
 /**
- * Gets the image of the rendering that a LUXFER_RENDER_ value selects, in its current state. The caller releases
- * *image. Any thread.
+ * Gets the image of the rendering that kind, a LUXFER_RENDER_ value, selects, in its current state. The caller
+ * releases *image. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
  * 0.
  */
@@ -180,8 +181,8 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
- * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. It also tells how many
- * lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
+ * Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. The text also tells how
+ * many lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
  * rendering learns this from its first paths. Later paths hardly ever sample these lamps, which does not change the
  * expected image. Any thread.
  *
@@ -211,31 +212,40 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  * the order of their flags. Layers do not change the main image by a single bit.
  *
  * AOVs describe the first surface that a path from the camera meets; clear panes and mirrors count as surfaces. Depth,
- * distance, position and normals are means over the samples of the pixel that meet a surface.
+ * distance, position and normals are means over the samples of the pixel that meet a surface; a mean normal is scaled
+ * to unit length. The comment of each LUXFER_AOV_ flag names the layer and its channels.
  *
  * A light path expression is a regular expression over the events of a path; the characters . [..] [^..] * + ? {n,m}
  * | ( ) have their usual meaning. It has one of two forms.
  *
- * From a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is any light, D is a
- * diffuse event, S is every other scattering event.
+ * The first form runs from a light (L) to the eye (E), for example "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE". L is
+ * any light, D is a diffuse event, S is every other scattering event.
  *
- * From the camera (C) to a light, as in Open Shading Language, for example "C<RD>L", "C[GS]+.*<L.'Lamp'>". An event
- * has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such as G, matches any event with
- * this type or mode. The types are R (reflection), T (transmission) and V (volume, never occurs here). The modes are D
- * (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as.
+ * The second form runs from the camera (C) to a light, as in Open Shading Language, for example "C<RD>L",
+ * "C[GS]+.*<L.'Lamp'>". An event has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such
+ * as G, matches any event with this type or mode. The types are R (reflection), T (transmission) and V (volume, never
+ * occurs here). The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane only). Lights are L,
+ * O and B; see luxfer_emitter_as.
  *
- * A label in quotes restricts an event to an object or a light. It is the name of a mesh or of its material; Name#0,
- * Name#1, ... for the patches of its emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... for
- * the scene's punctual lights in their order; environment for the scene's environment.
+ * A label in quotes restricts an event to an object or a light. The label is the name of a mesh or of its material.
+ * Name#0, Name#1, ... are the lamps (connected patches) in the emission texture of the mesh or material Name, numbered
+ * as luxfer_lamps numbers them. light0, light1, ... are the scene's punctual lights in their order, and environment is
+ * the scene's environment.
  *
  * Arnold's built-in names work too: beauty, direct, indirect, emission, background, and diffuse, specular,
  * transmission, each alone or with _direct or _indirect.
  * ==================================================================================================================== */
 
-/** Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z. */
+/**
+ * Distance of the surface from the camera along the viewing direction (depth z), in metres; infinite where there is no
+ * surface. Layer Depth, channel Z.
+ */
 #define LUXFER_AOV_DEPTH 1
 
-/** Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z. */
+/**
+ * Distance of the surface from the camera along the pixel's ray, in metres; infinite where there is no surface. Layer
+ * Distance, channel Z.
+ */
 #define LUXFER_AOV_DISTANCE 2
 
 /** Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z. */
@@ -251,26 +261,26 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 #define LUXFER_AOV_GEOMETRIC_NORMAL 16
 
 /**
- * Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo, channels R
- * G B.
+ * Reflectance plus transmittance at normal incidence: the mean over all samples of the pixel, where samples that meet
+ * no surface count as 0. Layer Albedo, channels R G B.
  */
 #define LUXFER_AOV_ALBEDO 32
 
 /**
- * Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of any mesh
- * that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights have
- * the number of meshes plus i plus 1. Layer IndexOB, channel X.
+ * 1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
+ * mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights
+ * have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
  */
 #define LUXFER_AOV_OBJECT 64
 
 /**
- * Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority, of any
- * material that was hit. 0 where there is no surface. The faces of luminaires have the number of materials plus 1.
- * Layer IndexMA, channel X.
+ * 1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
+ * material that was hit. 0 where there is no surface. The faces of luminaires have the value n + 1, where n is the
+ * number of materials. Layer IndexMA, channel X.
  */
 #define LUXFER_AOV_MATERIAL 128
 
-/** Share of the pixel that surfaces cover. Layer Alpha, channel A. */
+/** Share of the pixel that surfaces cover, in [0, 1]. Layer Alpha, channel A. */
 #define LUXFER_AOV_ALPHA 256
 
 /** Luminance of the main image, in cd/m². Layer Luminance, channel Y. */
@@ -278,7 +288,7 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 
 /**
  * Letters that match emissive surfaces and the environment in expressions that start at the camera: a
- * LUXFER_EMITTER_AS_ value.
+ * LUXFER_EMITTER_AS_ value. Punctual lights always match L.
  */
 typedef int32_t luxfer_emitter_as;
 

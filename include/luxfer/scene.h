@@ -131,9 +131,10 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
                                         float blue);
 
 /**
- * Finds the planar surface that faces the room among the triangles of an object or material. name is the name of the
- * object or material, in UTF-8. If no name is equal to it, a name that differs only in upper and lower case is taken;
- * if there is none, the only name that contains it. size is sizeof *found. Any thread.
+ * Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
+ * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. If no name is
+ * equal to it, a name that differs only in upper and lower case is taken; if there is none either, the only name that
+ * contains it. size is sizeof *found. Any thread.
  * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
  * there is no planar surface.
  */
@@ -187,7 +188,8 @@ typedef struct luxfer_scene_load_params {
     /**
      * 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are made
      * relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative to the
-     * origin of the file; far from it, the rounding of coordinates to floats moves them.
+     * origin of the file; in a scene far from that origin, the rounding of coordinates to floats visibly moves
+     * vertices.
      */
     uint32_t keep_origin;
     /**
@@ -270,8 +272,8 @@ typedef struct luxfer_material_params {
     /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
     uint32_t struct_size;
     /**
-     * 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block light in
-     * both cases.
+     * 1, the default: back faces emit as front faces do; 0: only front faces emit. In both cases, back faces reflect
+     * and block light as front faces do.
      */
     uint32_t double_sided;
     /** Name in UTF-8, copied; NULL, the default: no name. */
@@ -740,10 +742,10 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
 
 /**
  * Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
- * distribution. *index, unless NULL, receives its index among the punctual lights. It shines from the faces of its
- * luminous opening. Faces that do not emit are black: they block light and reflect none. If its file states no size,
- * or with LUXFER_LUMINAIRE_POINT, it shines from a point, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be
- * NULL for the defaults. Any thread.
+ * distribution. *index, unless NULL, receives its index among the punctual lights. The luminaire shines from the faces
+ * of its luminous opening. Faces that do not emit are black: they block light and reflect none. If the file of the
+ * distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point instead,
+ * and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
@@ -791,8 +793,8 @@ typedef struct luxfer_hit {
 /**
  * Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
  * two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
- * that are not finite or whose direction is 0 hit nothing. The first call after a scene is loaded or changed prepares
- * the scene for tracing, which takes longer. Any thread.
+ * whose origin or direction is not finite, or whose direction is 0, hit nothing. The first call after a scene is
+ * loaded or changed prepares the scene for tracing, which takes longer. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
  */
 luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
@@ -826,7 +828,7 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /** At least one surface emits; the faces of luminaires count. */
 #define LUXFER_LIGHTS_SURFACE 1
 
-/** At least one surface has an emission texture. */
+/** At least one emitting surface has an emission texture. */
 #define LUXFER_LIGHTS_TEXTURE 2
 
 /** At least one point light, or luminaire that shines from a point, has an intensity above 0. */
@@ -852,10 +854,10 @@ typedef struct luxfer_requirements {
     /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * Number n of bounces that matter: light with more than n bounces is at most the share error of all scattered
-     * light, where error is the argument of luxfer_scene_get_requirements. n is the smallest positive integer with a^n
-     * <= error, where a is the largest channel of the field albedo. 0 if there is no such number. For information
-     * only: no rendering ends paths at this number.
+     * Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest channel
+     * of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more than n bounces
+     * is then at most the share error of all scattered light. 0 if there is no such n. For information only: no
+     * rendering ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */

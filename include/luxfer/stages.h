@@ -103,9 +103,9 @@ typedef struct luxfer_rectify_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Largest magnification in the unwarped image, relative to the part of the plane that the photo shows largest, in
-     * (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the camera, are cut
-     * off.
+     * Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from the
+     * camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest part by
+     * more than this factor are cut off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -134,7 +134,7 @@ typedef struct luxfer_rectify_report {
      * at infinity.
      */
     double vanishing_points[3][3];
-    /** Standard deviations of the directions of the vanishing points in camera space, in radians. */
+    /** Standard deviation of the direction to each vanishing point in camera space, in radians. */
     double vanishing_errors[3];
     /**
      * Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
@@ -175,10 +175,10 @@ typedef struct luxfer_rectify_report {
     /** Standard deviation of the field distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two axes is
-     * estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not square or the
-     * principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field axes are always
-     * orthogonal.
+     * For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of the
+     * two axes is estimated only from the lines that run along it. The value differs from 0 if walls are oblique,
+     * pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of
+     * the field axes are always orthogonal.
      */
     double squareness[3];
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
@@ -197,7 +197,10 @@ typedef struct luxfer_rectify_report {
  */
 #define LUXFER_LINES_HOUGH 1
 
-/** Finds three orthogonal directions and the focal length together, then refines each direction with its own lines. */
+/**
+ * Finds three orthogonal directions and the focal length together, then refines each direction with the lines that run
+ * along it.
+ */
 #define LUXFER_SEARCH_MANHATTAN 0
 
 /**
@@ -212,7 +215,10 @@ typedef struct luxfer_rectify_report {
  */
 #define LUXFER_METRIC_SEGMENT 0
 
-/** The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected segment. */
+/**
+ * The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that the photo
+ * shows, instead of the detected segment.
+ */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
 /** Set by the caller. */
@@ -238,7 +244,9 @@ typedef struct luxfer_rectify_report {
 /** The plane in frontal view, linear RGB. */
 #define LUXFER_RECTIFY_UNWARPED 0
 
-/** 1 where the photo shows the plane, else 0; 1 channel. */
+/**
+ * The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0; 1 channel.
+ */
 #define LUXFER_RECTIFY_VALID 1
 
 /** Creates a rectification. It has no inputs yet. The caller releases *rectify. Any thread. */
@@ -267,8 +275,8 @@ luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
                                    luxfer_job **job);
 
 /**
- * Gets the image that a LUXFER_RECTIFY_ value selects: the unwarped plane or its mask. The caller releases *image.
- * Any thread.
+ * Gets the image that kind, a LUXFER_RECTIFY_ value, selects: the unwarped plane or its mask. The caller releases
+ * *image. Any thread.
  * LUXFER_NOT_READY before a job with a mask has succeeded.
  */
 luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
@@ -514,8 +522,9 @@ typedef struct luxfer_segment_params {
      * Channels of the features to use, bit i for channel i; default 0. With the ten channels of luxfer_features, 0
      * tries four sets (colour; colour and position; colour and normal; all channels) and uses the set with the
      * smallest error on held-out strokes. Sets with position are left out if the mask will be restricted to a wall,
-     * floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. For
-     * lights use 7, colour only, since lights and their plane have the same geometry.
+     * floor or ceiling of a room that was fitted as a box. With another number of channels, 0 uses all channels. If
+     * you segment lights as LUXFER_SUBJECT_SURFACE, use 7 (colour only), since lights and their plane have the same
+     * geometry.
      */
     uint32_t channels;
     /**
@@ -532,8 +541,8 @@ typedef struct luxfer_segment_params {
     /** Seed of the samples that are drawn; default 1. */
     uint64_t seed;
     /**
-     * The refinement treats neighbouring pixels as one surface if their first three channels differ by less than
-     * this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+     * Difference between neighbouring pixels in the first three channels below which the refinement treats them as one
+     * surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
     /**
@@ -577,7 +586,7 @@ typedef struct luxfer_segment_report {
 
 /**
  * How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions that resemble
- * the painted lamps but not closely enough for the mask, else 0. Where it is high, another stroke helps.
+ * the painted lamps but not closely enough for the mask, else 0. Another stroke helps where the value is high.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
@@ -644,7 +653,7 @@ luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    luxfer_job **job);
 
 /**
- * Gets the image of the result that a LUXFER_SEGMENT_ value selects, for example the mask. The caller releases
+ * Gets the image of the result that kind, a LUXFER_SEGMENT_ value, selects, for example the mask. The caller releases
  * *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
@@ -1077,13 +1086,13 @@ typedef struct luxfer_relight_params {
     /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the scale,
-     * in [0, 1]; default 0.01; 0: do not stop for this reason.
+     * Stop when luxfer_relight_report.error is at most this value, in [0, 1]; default 0.01; 0: do not stop for this
+     * reason.
      */
     float target_error;
     /** Stop after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
-    /** LUXFER_FIT_ value; default LUXFER_FIT_MEAN. */
+    /** How the light of the target is compared with its target value: a LUXFER_FIT_ value; default LUXFER_FIT_MEAN. */
     luxfer_fit fit;
     /** Seed of the paths; default 1. */
     uint64_t seed;
@@ -1121,8 +1130,9 @@ typedef struct luxfer_relight_report {
      */
     double error;
     /**
-     * Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its actual
-     * colour and the wanted colour is below this value, at the exposure that shows the target as middle grey.
+     * Uncertainty of the target's colour under the solution. With a probability of 95 %, the CIEDE2000 difference
+     * between the actual and the wanted colour is below this value. Both colours are taken at the exposure that shows
+     * the target as middle grey.
      */
     double delta_e;
 } luxfer_relight_report;
@@ -1141,9 +1151,9 @@ typedef struct luxfer_relight_report {
 
 /**
  * The sum, over all points of the target surface, of the squared difference between light and target value should be
- * smallest. A gradient descent on the texels of the emission has this aim too. Bright points count more, so the
+ * smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points count more, so the
  * emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
- * the coefficient of variation of the light over the target surface.
+ * the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
@@ -1218,8 +1228,9 @@ luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
  * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
  * caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
- * LUXFER_UNREACHABLE if no emitted light reaches the target or the other lights alone exceed it, LUXFER_DEGENERATE if
- * the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ * LUXFER_UNREACHABLE if in each channel no emitted light reaches the target or the other lights alone exceed it,
+ * LUXFER_DEGENERATE if the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
+ * of range.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,

@@ -137,7 +137,7 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
  * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ==================================================================================================================== */
 
-/** How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value. */
+/** How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value. */
 typedef int32_t luxfer_stylize_mode;
 
 /** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
@@ -165,8 +165,8 @@ typedef struct luxfer_stylize_params {
      */
     float guide_weight;
     /**
-     * Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The coarsest
-     * level is at least 5 patches wide and high.
+     * Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
+     * The coarsest level is at least 5 patches wide and high.
      */
     uint32_t levels;
     /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
@@ -206,7 +206,10 @@ typedef struct luxfer_stylize_params {
      * LUXFER_STYLIZE_VOTE_WEIGHTED.
      */
     luxfer_stylize_vote vote;
-    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_ADAPTIVE. */
+    /**
+     * How a pixel of the final picture is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
+     * LUXFER_STYLIZE_VOTE_ADAPTIVE.
+     */
     luxfer_stylize_vote final_vote;
     /**
      * 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
@@ -241,8 +244,8 @@ typedef struct luxfer_stylize_params {
     uint32_t coarse_iterations;
     /**
      * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty
-     * is added to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over
+     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The
+     * penalty is added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over
      * the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
      * lambda.
      */
@@ -500,9 +503,9 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  *
  * The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
  * the inverse mask and the artwork. The painted pixels stay as they are. The new paint continues strokes across the
- * border of the painted part, and at this border its colours change hardly more abruptly than elsewhere. Hardly any
- * patch of the artwork is used more than 100 times as often as the mean. If the painted part lacks light that the rest
- * shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
+ * border of the painted part, and this border is hardly visible. Hardly any patch of the artwork is used more than 100
+ * times as often as the average patch. If the painted part lacks light that the rest shows, the result has the warning
+ * LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */
@@ -608,7 +611,7 @@ typedef struct luxfer_stylize_pass {
 #define LUXFER_STYLIZE_IMAGE_SOURCES 2
 
 /**
- * Gets the image of the result that a LUXFER_STYLIZE_IMAGE_ value selects, for example the picture.
+ * Gets the image of the result that kind, a LUXFER_STYLIZE_IMAGE_ value, selects, for example the picture.
  * luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
  * The caller releases *image. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last

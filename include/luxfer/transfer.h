@@ -66,7 +66,8 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
 
 /**
  * The distance of the photo's camera from the plane with the lights. It is plane_distance of luxfer_transfer_params,
- * or if that is 0, an estimate from the size of the lamps.
+ * or if that is 0, an estimate. The estimate comes from the size of the lamps if they are rectangular; otherwise it is
+ * a usual distance with a large error.
  */
 #define LUXFER_PATTERN_DISTANCE 0
 
@@ -103,7 +104,10 @@ typedef int32_t luxfer_stage;
 /** The part of the photo whose mean colour is matched: a LUXFER_TARGET_ value. */
 typedef int32_t luxfer_target;
 
-/** Settings of a transfer. Fill them with luxfer_transfer_params_init. Its pointers are used during the call only. */
+/**
+ * Settings of a transfer. Fill them with luxfer_transfer_params_init. The library reads the structs to which the
+ * pointers lead only during the call that gets the settings.
+ */
 typedef struct luxfer_transfer_params {
     /** sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init. */
     uint32_t struct_size;
@@ -206,20 +210,20 @@ luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
  * Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
  * transfer never changes the scene; each job uses the scene as it is when the job starts. Any thread.
  *
- * Of the planes of that object or material, the transfer takes the plane that faces most of the room. The parts of
- * this plane, for example between the beams of a ceiling, share one pattern that continues from part to part.
- * Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
+ * If the object or material has triangles in several planes, the transfer takes the plane from which most of the room
+ * is visible. The parts of this plane, for example between the beams of a ceiling, share one pattern that continues
+ * from part to part. Triangles in other planes stay unchanged; light them by another transfer with its own pattern.
  */
 luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
                                         const char *surface);
 
 /**
- * Sets the triangles of the scene that receive the lights, instead of the named surface. The array triangles holds
- * the mesh index and the triangle index of each of count triangles. If they lie in several planes, the transfer takes
- * the plane that faces most of the room, as for a named surface. These triangles replace the triangles of an earlier
- * call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and the named surface
- * receives the lights again. Any thread.
+ * Sets the triangles of the scene that receive the lights, instead of the named surface. The array triangles holds the
+ * mesh index and the triangle index of each of count triangles. If the triangles lie in several planes, the transfer
+ * takes the plane from which most of the room is visible, as for a named surface. These triangles replace the
+ * triangles of an earlier call, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be NULL, and
+ * the named surface receives the lights again. Any thread.
  * A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
  */
 luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
@@ -343,8 +347,8 @@ typedef struct luxfer_transfer_report {
     /** Largest expected error of a corner of the unwarped image, in unwarped pixels. */
     double unwarp_error;
     /**
-     * luxfer_emission_report.error: largest relative difference between texture and photo in three statistics of
-     * their lamps.
+     * luxfer_emission_report.error: largest relative difference between texture and photo in the lit share, the size
+     * or the spacing of their lamps.
      */
     double emission_error;
     /** luxfer_relight_report.error: largest relative half-width of the solution's 95 % confidence intervals. */
@@ -358,9 +362,9 @@ typedef struct luxfer_transfer_report {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo are as
-     * large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the caller gave
-     * the texture.
+     * Distance in metres of the photo's camera from the plane with the lights. Seen from this distance, the lamps on
+     * the surface of the scene look as large as the lamps in the photo. NaN before the stage EMISSION has ended, and
+     * if the caller gave the texture.
      */
     double plane_distance;
     /**
@@ -404,7 +408,7 @@ typedef struct luxfer_fixture {
     float axis[3];
     /** Mean emission of the lamp: linear RGB in cd/m². */
     float radiance[3];
-    /** Number of the lamp's kind, as in luxfer_luminaire. */
+    /** Number of the lamp's kind, from 1, as in luxfer_luminaire.kind; 0 if the border of the texture cuts the lamp. */
     uint32_t kind;
     /** Lengths of the lamp along its long axis and across it, in metres. */
     double size[2];
@@ -436,7 +440,9 @@ typedef struct luxfer_fixture {
 /** The unwarped image: the plane in frontal view, linear RGB. */
 #define LUXFER_TRANSFER_UNWARPED 5
 
-/** 1 where the photo shows the plane of the unwarped image, else 0; 1 channel. */
+/**
+ * The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0; 1 channel.
+ */
 #define LUXFER_TRANSFER_UNWARPED_VALID 6
 
 /** The emissive texture: linear RGB, where 1 is the photo's white. */
@@ -470,7 +476,7 @@ typedef struct luxfer_fixture {
 #define LUXFER_SCENE_WHITE 2
 
 /**
- * Gets the image that a LUXFER_TRANSFER_ value selects, which a stage has made. The caller releases *image. Any
+ * Gets the image that kind, a LUXFER_TRANSFER_ value, selects; a stage has made it. The caller releases *image. Any
  * thread.
  * LUXFER_NOT_READY before the stage that makes the image has ended; LUXFER_NOT_FOUND for a preview if
  * luxfer_render_params.preview was 0.
@@ -480,7 +486,7 @@ luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
                                         luxfer_image **image);
 
 /**
- * Gets the scene that a LUXFER_SCENE_ value selects, which the transfer has made. The scene is independent of the
+ * Gets the scene that kind, a LUXFER_SCENE_ value, selects; the transfer has made it. The scene is independent of the
  * transfer. The caller releases *scene. Any thread.
  * LUXFER_NOT_READY if the stage that makes the scene has not ended: EMISSION for LUXFER_SCENE_UNSOLVED, RELIGHT for
  * the other scenes.
@@ -606,8 +612,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_SQUARE 4
 
 /**
- * There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
- * confidence of the fit, which is below the limit.
+ * There is no depth map, and the room that was fitted to the lines of the photo is uncertain. The severity is the
+ * confidence of the fit, in [0, 1], which is below the limit; 0 if no room could be fitted.
  */
 #define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
 
@@ -646,8 +652,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_ALMOST_ALL_LIT 12
 
 /**
- * Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
- * strongly magnified. The warning points to the point with the largest magnification.
+ * Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of the plane
+ * that is magnified so much. The warning points to the point with the largest magnification.
  */
 #define LUXFER_WARNING_MAGNIFIED 13
 
@@ -722,8 +728,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_FAR_FROM_ORIGIN 25
 
 /**
- * A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does
- * not rate them. The severity is their number; the message lists the first ones with their positions.
+ * A scene has luminaires that shine from points: they are invisible in renderings, and luxfer_image_get_glare does not
+ * rate them. The severity is the number of these luminaires; the message lists the first few with their positions.
  */
 #define LUXFER_WARNING_NOT_IN_PICTURE 26
 
@@ -738,14 +744,15 @@ typedef struct luxfer_warning {
  * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
  * surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
  * motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
- * the motion; without such guides, or in a preview, no error is found. The severity is the share of pixels with wrong
- * motion among the pixels that were compared. The warning points to the pixel with the largest error.
+ * the motion; without such guides, or in a preview, nothing is compared and the warning never occurs. The severity is
+ * the share of pixels with wrong motion among the pixels that were compared. The warning points to the pixel with the
+ * largest error.
  */
 #define LUXFER_WARNING_MOTION_DISAGREES 28
 
 /**
  * The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
- * painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of these
+ * painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of such
  * pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
  * the target where most of them lie.
  */
@@ -753,7 +760,7 @@ typedef struct luxfer_warning {
 
 /**
  * Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
- * the share of the exemplar with such light. The warning points to a place of the artwork with such light.
+ * the share of the exemplar that such places cover. The warning points to one of them in the artwork.
  */
 #define LUXFER_WARNING_AMBIGUOUS_PAINT 30
 
@@ -795,7 +802,7 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
  * - a luxfer_features;
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
- * - a luxfer_emission: about the texture; a plan has no warnings;
+ * - a luxfer_emission: about the texture; none if luxfer_emission_start_plan has only planned a texture;
  * - a luxfer_relight;
  * - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
  * - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;

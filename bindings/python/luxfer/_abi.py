@@ -981,7 +981,8 @@ class luxfer_pattern_params(Structure):
 
 
 class luxfer_transfer_params(Structure):
-    """Settings of a transfer. Its pointers are used during the call only."""
+    """Settings of a transfer. The library reads the structs to which the pointers lead only during the call
+    that gets the settings."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1359,7 +1360,7 @@ class luxfer_preset(Structure):
 
 
 class luxfer_pendants_params(Structure):
-    """Settings of the fit of bodies."""
+    """Settings with which luxfer_pendants_find fits bodies to lamps."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1382,9 +1383,10 @@ class luxfer_pendants_params(Structure):
 
 
 class luxfer_pendant(Structure):
-    """A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value,
-    and the lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are
-    the known bounds, which may be 0 and infinity. A value without an estimate is NaN."""
+    """A hanging lamp: its body, its place and the doubts about them. Fields called an interval hold three
+    numbers: the value, and the lower and the upper end of its 95 % confidence interval. If the photo does not
+    determine the value, the ends are the known bounds of the value, which may be 0 and infinity. A value
+    without an estimate is NaN."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -210,21 +210,21 @@ class RenderImage(IntEnum):
     """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
     where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is combined
-    with those neighbours that differ from it by no more than the noise explains. It stays as it is where that
-    is estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be
-    blurred; RenderReport.preview_error estimates the remaining error. The image exists only if
+    """The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged
+    with those neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value
+    where this value is estimated to be more accurate. Details that come from the light alone, such as soft
+    shadows, can be blurred; RenderReport.preview_error estimates the remaining error. The image exists only if
     RenderParams.preview is not 0."""
     PREVIEW_INTERVAL = 5
-    """Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. It
-    includes the bias of the filter; infinite where a pixel has fewer than four paths. With few paths it is too
-    narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image exists only if
-    RenderParams.preview is not 0."""
+    """Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The
+    interval includes the bias of the filter. It is infinite where a pixel has fewer than four paths. With few
+    paths it is too narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image
+    exists only if RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
     """Letters that match emissive surfaces and the environment in expressions that start at the camera: a
-    EmitterAs."""
+    EmitterAs. Punctual lights always match L."""
 
     BOTH = 0
     """Emissive surfaces match L and O, the environment matches L and B, so C<RD>L is all direct light that is
@@ -250,8 +250,8 @@ class Search(IntEnum):
     """The search for vanishing points."""
 
     MANHATTAN = 0
-    """Finds three orthogonal directions and the focal length together, then refines each direction with its own
-    lines."""
+    """Finds three orthogonal directions and the focal length together, then refines each direction with the
+    lines that run along it."""
     SUCCESSIVE = 1
     """The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not
     run to an earlier vanishing point."""
@@ -264,8 +264,8 @@ class Metric(IntEnum):
     """The distance of the detected segment's end points from the line through its midpoint and the vanishing
     point; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """The paper's distance as printed (Eq. 2), measured for the whole visible line instead of the detected
-    segment."""
+    """The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that
+    the photo shows, instead of the detected segment."""
 
 
 class RectifyImage(IntEnum):
@@ -274,7 +274,8 @@ class RectifyImage(IntEnum):
     UNWARPED = 0
     """The plane in frontal view, linear RGB."""
     VALID = 1
-    """1 where the photo shows the plane, else 0; 1 channel."""
+    """The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0;
+    1 channel."""
 
 
 class FocalSource(IntEnum):
@@ -373,8 +374,8 @@ class SegmentImage(IntEnum):
     """The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
     UNSEEN = 2
     """How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions
-    that resemble the painted lamps but not closely enough for the mask, else 0. Where it is high, another
-    stroke helps."""
+    that resemble the painted lamps but not closely enough for the mask, else 0. Another stroke helps where the
+    value is high."""
 
 
 class EmissionLaw(IntEnum):
@@ -447,9 +448,10 @@ class Fit(IntEnum):
     """The mean of the light over the target surface should equal the target value."""
     LEAST_SQUARES = 1
     """The sum, over all points of the target surface, of the squared difference between light and target value
-    should be smallest. A gradient descent on the texels of the emission has this aim too. Bright points count
-    more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
-    1/(1+CV²), where CV is the coefficient of variation of the light over the target surface."""
+    should be smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points
+    count more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
+    1/(1+CV²), where CV is the coefficient of variation (standard deviation divided by mean) of the light over
+    the target surface."""
 
 
 class Outcome(IntEnum):
@@ -473,7 +475,8 @@ class PatternScale(IntEnum):
 
     DISTANCE = 0
     """The distance of the photo's camera from the plane with the lights. It is plane_distance of
-    TransferParams, or if that is 0, an estimate from the size of the lamps."""
+    TransferParams, or if that is 0, an estimate. The estimate comes from the size of the lamps if they are
+    rectangular; otherwise it is a usual distance with a large error."""
     LAMP = 1
     """The length of the lamps: the pattern is scaled until the median of their longer sides is
     PatternParams.length."""
@@ -535,7 +538,8 @@ class TransferImage(IntEnum):
     UNWARPED = 5
     """The unwarped image: the plane in frontal view, linear RGB."""
     UNWARPED_VALID = 6
-    """1 where the photo shows the plane of the unwarped image, else 0; 1 channel."""
+    """The mask of the plane in frontal view: 1 where the mask is set and the photo's values are finite, else 0;
+    1 channel."""
     EMISSION = 7
     """The emissive texture: linear RGB, where 1 is the photo's white."""
     EMISSION_MASK = 8
@@ -577,8 +581,8 @@ class WarningCode(IntEnum):
     """The walls do not meet at right angles, or the pixels are not square; the severity is the largest
     deviation of an angle between two room axes from a right angle, in radians."""
     LAYOUT_UNCERTAIN = 5
-    """There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity
-    is the confidence of the fit, which is below the limit."""
+    """There is no depth map, and the room that was fitted to the lines of the photo is uncertain. The severity
+    is the confidence of the fit, in [0, 1], which is below the limit; 0 if no room could be fitted."""
     UNSEEN = 6
     """Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly
     resemble the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the
@@ -599,8 +603,8 @@ class WarningCode(IntEnum):
     ALMOST_ALL_LIT = 12
     """Lights cover much of their plane; the severity is the share of the plane that they cover."""
     MAGNIFIED = 13
-    """Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane
-    that is strongly magnified. The warning points to the point with the largest magnification."""
+    """Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of
+    the plane that is magnified so much. The warning points to the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
     """The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the
     viewing ray, the median over the plane; it is below the limit. The warning points to the point with the
@@ -643,8 +647,8 @@ class WarningCode(IntEnum):
     rounding in metres."""
     NOT_IN_PICTURE = 26
     """A scene has luminaires that shine from points: they are invisible in renderings, and
-    luxfer_image_get_glare does not rate them. The severity is their number; the message lists the first ones
-    with their positions."""
+    luxfer_image_get_glare does not rate them. The severity is the number of these luminaires; the message lists
+    the first few with their positions."""
     NO_COUNTERPART = 27
     """Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles
     there. Their motion is unknown and therefore NaN. The severity is the share of the picture that shows these
@@ -653,18 +657,18 @@ class WarningCode(IntEnum):
     """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
     shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
     compared with the exact motion of their scenes. Otherwise the GuideRange.DATA guides, such as object codes
-    or normals, are compared along the motion; without such guides, or in a preview, no error is found. The
-    severity is the share of pixels with wrong motion among the pixels that were compared. The warning points to
-    the pixel with the largest error."""
+    or normals, are compared along the motion; without such guides, or in a preview, nothing is compared and the
+    warning never occurs. The severity is the share of pixels with wrong motion among the pixels that were
+    compared. The warning points to the pixel with the largest error."""
     LIGHT_NOT_PAINTED = 29
     """The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast
     shadow if the painted part of a half-painted picture has none. The new paint there is a guess. The severity
-    is the share of these pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The warning
+    is the share of such pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The warning
     points to the place of the target where most of them lie."""
     AMBIGUOUS_PAINT = 30
     """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The
-    severity is the share of the exemplar with such light. The warning points to a place of the artwork with
-    such light."""
+    severity is the share of the exemplar that such places cover. The warning points to one of them in the
+    artwork."""
     BLEMISH = 31
     """A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The
     severity is the difference, in units of the difference that places with equal guides typically have. The
@@ -709,7 +713,7 @@ class Aim(IntEnum):
     MIN_LUMINANCE = 1
     """Make the luminance of the target as small as possible."""
     RADIANCE = 2
-    """Bring the mean radiance of the target, under the texture and all other light, nearest to
+    """Bring the mean radiance of the target, under the texture and all other light, as near as possible to
     PlacementParams.radiance."""
 
 
@@ -732,7 +736,7 @@ class Unit(IntEnum):
 
 
 class Known(IntEnum):
-    """The length that determines the size of lamps."""
+    """The length that determines the size of the lamps."""
 
     NOTHING = 0
     """No length is known; suspensions determine the size if any are given."""
@@ -794,7 +798,7 @@ class GuidesImage(IntEnum):
 
 
 class StylizeMode(IntEnum):
-    """How exemplar patches are assigned to the target."""
+    """How exemplar patches are assigned to target patches."""
 
     BUDGET = 0
     """Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the
@@ -923,10 +927,11 @@ class Aov(IntFlag):
     """Aov, to be combined with |."""
 
     DEPTH = 1
-    """Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel
-    Z."""
+    """Distance of the surface from the camera along the viewing direction (depth z), in metres; infinite where
+    there is no surface. Layer Depth, channel Z."""
     DISTANCE = 2
-    """Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z."""
+    """Distance of the surface from the camera along the pixel's ray, in metres; infinite where there is no
+    surface. Layer Distance, channel Z."""
     POSITION = 4
     """Position in world space, in metres; 0 where there is no surface. Layer Position, channels X Y Z."""
     NORMAL = 8
@@ -936,18 +941,18 @@ class Aov(IntFlag):
     """Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer
     GeometricNormal, channels X Y Z."""
     ALBEDO = 32
-    """Reflectance plus transmittance at normal incidence, as mean over all samples of the pixel. Layer Albedo,
-    channels R G B."""
+    """Reflectance plus transmittance at normal incidence: the mean over all samples of the pixel, where samples
+    that meet no surface count as 0. Layer Albedo, channels R G B."""
     OBJECT = 64
-    """Index, plus 1, of the mesh on which more than half of the pixel's hits lie; without such a majority, of
-    any mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the
-    punctual lights have the number of meshes plus i plus 1. Layer IndexOB, channel X."""
+    """1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index
+    of any mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the
+    punctual lights have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X."""
     MATERIAL = 128
-    """Index, plus 1, of the material on which more than half of the pixel's hits lie; without such a majority,
-    of any material that was hit. 0 where there is no surface. The faces of luminaires have the number of
-    materials plus 1. Layer IndexMA, channel X."""
+    """1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 +
+    index of any material that was hit. 0 where there is no surface. The faces of luminaires have the value n +
+    1, where n is the number of materials. Layer IndexMA, channel X."""
     ALPHA = 256
-    """Share of the pixel that surfaces cover. Layer Alpha, channel A."""
+    """Share of the pixel that surfaces cover, in [0, 1]. Layer Alpha, channel A."""
     LUMINANCE = 512
     """Luminance of the main image, in cd/m². Layer Luminance, channel Y."""
 
@@ -956,17 +961,17 @@ class Doubt(IntFlag):
     """Doubt, to be combined with |."""
 
     SIZE = 1
-    """No length determines the size: drop, diameter and height hold only bounds."""
+    """No length determines the size, or only with a standard deviation above half of the size. The fields drop,
+    diameter and height then hold only bounds."""
     KIND = 2
     """The probability of the kind is below 0.9."""
     CLIPPED = 4
-    """The photo clips more than a tenth of the lamp's pixels: the lamp may be brighter than it appears, and its
-    glare may enlarge the outline."""
+    """The photo clips more than a tenth of the lamp's pixels (see Pendant.clipped): the lamp may be brighter
+    than it appears, and its glare may enlarge the outline."""
     CUT = 8
     """The border of the photo cuts off a part of the outline."""
     HIDDEN = 16
-    """The body hides a part of its own profile: half of the 95 % interval of a radius exceeds a twentieth of
-    the largest diameter."""
+    """The body hides a part of its own profile. At least one value of Pendant.profile_error exceeds 0.05."""
 
 
 class GuidesWith(IntFlag):
@@ -990,7 +995,7 @@ class Lights(IntFlag):
     SURFACE = 1
     """At least one surface emits; the faces of luminaires count."""
     TEXTURE = 2
-    """At least one surface has an emission texture."""
+    """At least one emitting surface has an emission texture."""
     POINT = 4
     """At least one point light, or luminaire that shines from a point, has an intensity above 0."""
     SPOT = 8
@@ -1086,7 +1091,8 @@ class PhotoMetadata:
     white_luminance: float
     """Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), from the
     definition of the saturation-based speed in ISO 12232. N, t and S are the three fields above. 0 = unknown.
-    Valid only for the image that the camera wrote: editors that change the brightness keep these tags."""
+    Valid only for the image that the camera wrote: an editor that changes the brightness keeps the tags, so the
+    value is then wrong."""
     white_luminance_low: float
     """Lower bound of white_luminance: 0.71 times white_luminance. This is the value for a camera whose ISO
     speed is a standard output sensitivity (ISO 12232) instead of a saturation-based speed."""
@@ -1152,7 +1158,8 @@ class SceneLoadParams(TypedDict, total=False):
     keep_origin: int
     """0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
     made relative to an origin near the scene, which luxfer_scene_get_origin gives. 1: positions stay relative
-    to the origin of the file; far from it, the rounding of coordinates to floats moves them."""
+    to the origin of the file; in a scene far from that origin, the rounding of coordinates to floats visibly
+    moves vertices."""
     luminaire_shape: LuminaireShape | str | int
     """From where the luminaires of the file (EXT_lights_ies) shine: LuminaireShape; default
     LuminaireShape.FACES."""
@@ -1162,8 +1169,8 @@ class MaterialParams(TypedDict, total=False):
     """A metallic-roughness material, as in glTF 2.0."""
 
     double_sided: int
-    """1, the default: back faces reflect and emit as front faces do; 0: only front faces do. Back faces block
-    light in both cases."""
+    """1, the default: back faces emit as front faces do; 0: only front faces emit. In both cases, back faces
+    reflect and block light as front faces do."""
     name: str
     """Name in UTF-8, copied; None, the default: no name."""
     base_color: Sequence[float]
@@ -1363,10 +1370,10 @@ class Requirements:
     textures: int
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """Number n of bounces that matter: light with more than n bounces is at most the share error of all
-    scattered light, where error is the argument of luxfer_scene_get_requirements. n is the smallest positive
-    integer with a^n <= error, where a is the largest channel of the field albedo. 0 if there is no such number.
-    For information only: no rendering ends paths at this number."""
+    """Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest
+    channel of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more
+    than n bounces is then at most the share error of all scattered light. 0 if there is no such n. For
+    information only: no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1452,9 +1459,9 @@ class RenderParams(TypedDict, total=False):
     pixel_error: float
     """Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within
     10 % of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths
-    per pixel, even if it then misses the target. The relative error of a pixel is half the width of the 95 %
-    confidence interval of its luminance, divided by its luminance or by a tenth of the image's mean, whichever
-    is larger. The relative error of a block is the root mean square over its pixels."""
+    per pixel, even if it then misses the target. The relative error of a pixel is e / max(Y, m / 10). Here e is
+    half the width of the 95 % confidence interval of the pixel's luminance Y, and m is the mean of the image.
+    The relative error of a block is the root mean square over its pixels."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     Default 0: no preview, as for final images. The preview does not change the other images."""
@@ -1476,8 +1483,9 @@ class RenderReport:
     discarded: int
     """Number of paths that were discarded because their radiance was not finite."""
     preview_bias: float
-    """Estimated bias of the preview: the expected mean minus the true mean of a block of 8 x 8 pixels, as root
-    mean square over all blocks, divided by the image's mean. 0 without a preview."""
+    """Estimated bias of the preview. The bias of a block of 8 x 8 pixels is the expected value of the block's
+    mean minus its true mean. This field is the root mean square of the bias over all blocks, divided by the
+    image's mean. 0 without a preview."""
     relative_error: float
     """Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the
     mean of the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer
@@ -1512,9 +1520,9 @@ class RectifyParams(TypedDict, total=False):
     """Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The
     image is smaller if the resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification in the unwarped image, relative to the part of the plane that the photo shows
-    largest, in (0, 1e6]; default 16. Parts of the plane with a larger magnification, which lie far from the
-    camera, are cut off."""
+    """Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from
+    the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest
+    part by more than this factor are cut off."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -1529,7 +1537,7 @@ class RectifyReport:
     """Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate
     is 0 at infinity."""
     vanishing_errors: tuple[float, float, float]
-    """Standard deviations of the directions of the vanishing points in camera space, in radians."""
+    """Standard deviation of the direction to each vanishing point in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
     """Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from
     the others, or from the assumption that the camera is upright."""
@@ -1561,10 +1569,10 @@ class RectifyReport:
     distortion_error: float
     """Standard deviation of the field distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis, the angle between the two other axes minus 90 degrees, in radians. Here each of the two
-    axes is estimated from its own lines alone. The angle differs from 0 if walls are oblique, pixels are not
-    square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of the field
-    axes are always orthogonal."""
+    """For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of
+    the two axes is estimated only from the lines that run along it. The value differs from 0 if walls are
+    oblique, pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The
+    vectors of the field axes are always orthogonal."""
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
 
@@ -1608,7 +1616,8 @@ class SegmentParams(TypedDict, total=False):
     luxfer_features, 0 tries four sets (colour; colour and position; colour and normal; all channels) and uses
     the set with the smallest error on held-out strokes. Sets with position are left out if the mask will be
     restricted to a wall, floor or ceiling of a room that was fitted as a box. With another number of channels,
-    0 uses all channels. For lights use 7, colour only, since lights and their plane have the same geometry."""
+    0 uses all channels. If you segment lights as Subject.SURFACE, use 7 (colour only), since lights and their
+    plane have the same geometry."""
     refine_radius: int
     """Half-width in pixels of the windows of an edge-aware refinement, in [0, 1024]; 0, the default: no
     refinement. The refinement makes the mask follow the edges of the photo: it is a guided filter with the
@@ -1619,8 +1628,8 @@ class SegmentParams(TypedDict, total=False):
     seed: int
     """Seed of the samples that are drawn; default 1."""
     refine_tolerance: float
-    """The refinement treats neighbouring pixels as one surface if their first three channels differ by less
-    than this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
+    """Difference between neighbouring pixels in the first three channels below which the refinement treats them
+    as one surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
     """What the positive strokes lie on: Subject; default Subject.AUTO. If the subject is lamps, the settings
     above have no effect."""
@@ -1779,12 +1788,12 @@ class RelightParams(TypedDict, total=False):
     paths: int
     """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when, in each channel, the half-width of the 95 % confidence interval is at most this share of the
-    scale, in [0, 1]; default 0.01; 0: do not stop for this reason."""
+    """Stop when RelightReport.error is at most this value, in [0, 1]; default 0.01; 0: do not stop for this
+    reason."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
     fit: Fit | str | int
-    """Fit; default Fit.MEAN."""
+    """How the light of the target is compared with its target value: Fit; default Fit.MEAN."""
     seed: int
     """Seed of the paths; default 1."""
 
@@ -1809,9 +1818,9 @@ class RelightReport:
     """The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without
     such channels."""
     delta_e: float
-    """Uncertainty of the target's colour: with a probability of 95 %, the CIEDE2000 difference between its
-    actual colour and the wanted colour is below this value, at the exposure that shows the target as middle
-    grey."""
+    """Uncertainty of the target's colour under the solution. With a probability of 95 %, the CIEDE2000
+    difference between the actual and the wanted colour is below this value. Both colours are taken at the
+    exposure that shows the target as middle grey."""
 
 
 class PatternParams(TypedDict, total=False):
@@ -1839,7 +1848,8 @@ class PatternParams(TypedDict, total=False):
 
 
 class TransferParams(TypedDict, total=False):
-    """Settings of a transfer. Its pointers are used during the call only."""
+    """Settings of a transfer. The library reads the structs to which the pointers lead only during the call
+    that gets the settings."""
 
     max_texels: int
     """Maximum length of the longer side of the emissive texture in texels, in [1, 16384]; default 2048."""
@@ -1893,8 +1903,8 @@ class TransferReport:
     unwarp_error: float
     """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
     emission_error: float
-    """EmissionReport.error: largest relative difference between texture and photo in three statistics of their
-    lamps."""
+    """EmissionReport.error: largest relative difference between texture and photo in the lit share, the size or
+    the spacing of their lamps."""
     relight_error: float
     """RelightReport.error: largest relative half-width of the solution's 95 % confidence intervals."""
     render_error: float
@@ -1904,9 +1914,9 @@ class TransferReport:
     target: tuple[float, float, float]
     """Mean colour that the surface should have: linear RGB, where 1 is the photo's white."""
     plane_distance: float
-    """Distance in metres of the photo's camera from the plane with the lights, at which the lamps of the photo
-    are as large as the lamps on the surface of the scene. NaN before the stage EMISSION has ended, and if the
-    caller gave the texture."""
+    """Distance in metres of the photo's camera from the plane with the lights. Seen from this distance, the
+    lamps on the surface of the scene look as large as the lamps in the photo. NaN before the stage EMISSION has
+    ended, and if the caller gave the texture."""
     plane_distance_error: float
     """Relative standard deviation of plane_distance. If the distance is estimated from the size of the lamps,
     it is about 0.25 for lamps of a usual size, and 0.6 if the lamps do not determine it. 0 if the settings
@@ -1938,7 +1948,7 @@ class Fixture:
     radiance: tuple[float, float, float]
     """Mean emission of the lamp: linear RGB in cd/m²."""
     kind: int
-    """Number of the lamp's kind, as in Luminaire."""
+    """Number of the lamp's kind, from 1, as in Luminaire.kind; 0 if the border of the texture cuts the lamp."""
     size: tuple[float, float]
     """Lengths of the lamp along its long axis and across it, in metres."""
     area: float
@@ -2178,8 +2188,8 @@ class PlacementParams(TypedDict, total=False):
     """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
     """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the
-    default, allows every offset. Equal values of min_offset and max_offset fix the offset; likewise for the
-    fields below."""
+    default, allows every offset. If min_offset and max_offset are equal, the offset is fixed; the same holds
+    for scale and rotation."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
@@ -2210,9 +2220,9 @@ class Placement:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     band_error: tuple[float, float, float]
-    """The response for cells of twice the width and height, minus the field response, in cd/m² per channel. The
-    error of response that comes from the size of the cells is about a third of this difference, which also
-    contains noise."""
+    """The response computed with cells of twice the width and height, minus the field response, in cd/m² per
+    channel. About a third of this difference is the error of response that comes from the size of the map's
+    cells. The difference also contains noise."""
 
 
 @dataclass(frozen=True)
@@ -2232,10 +2242,10 @@ class GlareReport:
     solid_angle: float
     """Solid angle of all sources in steradians."""
     unseen_lights: int
-    """Number of point lights, spot lights and luminaires of the rendered scene that shine from points. They are
-    invisible in the image, and ugr leaves them out. Known only for images of luxfer_render_get_image and
-    luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
-    WarningCode.NOT_IN_PICTURE."""
+    """Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires
+    without faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+    luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires,
+    the scene has WarningCode.NOT_IN_PICTURE."""
 
 
 @dataclass(frozen=True)
@@ -2345,33 +2355,36 @@ class Preset:
 
 
 class PendantsParams(TypedDict, total=False):
-    """Settings of the fit of bodies."""
+    """Settings with which luxfer_pendants_find fits bodies to lamps."""
 
     alike: int
-    """1, the default: all lamps of the mask have one body; 0: each lamp has a body of its own."""
+    """1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its
+    own."""
     level: int
-    """1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own
-    height."""
+    """1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its
+    own height."""
     refine: int
-    """1, the default: the outline of the mask is moved to where the photo's luminance is the mean of the
-    luminances inside and outside the lamp; 0: the outline is that of the mask."""
+    """1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of
+    the luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on
+    the outline of the mask. 0: all points stay on the outline of the mask."""
     known: Known | str | int
     """Meaning of known_length: Known; default Known.NOTHING."""
     known_length: float
     """The known length in metres: in [0, 1e4] for Known.DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
     be 0, the default, with Known.NOTHING."""
     ceiling: float
-    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1: all lengths are then in
-    multiples of the true height."""
+    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default
+    because the height is unknown, the unit of all lengths, known_length included, is the true height instead of
+    the metre."""
     suspension_error: float
     """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
     focal: float
     """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
     used with a rectification."""
     focal_error: float
-    """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. If it is 0 and a
-    rectification is given, the rectification's own error is used if its focal length was assumed or read from
-    metadata."""
+    """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
+    stands for the standard deviation that the rectification has; it has one only for a focal length that was
+    assumed or read from metadata."""
     axes_error: float
     """Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5];
     default 0. Not used with a rectification, which has its own value."""
@@ -2384,9 +2397,10 @@ class PendantsParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Pendant:
-    """A hanging lamp: its body, its place and the doubts about them. An interval is three numbers: the value,
-    and the lower and the upper end of its 95 % interval. If the photo does not determine a value, the ends are
-    the known bounds, which may be 0 and infinity. A value without an estimate is NaN."""
+    """A hanging lamp: its body, its place and the doubts about them. Fields called an interval hold three
+    numbers: the value, and the lower and the upper end of its 95 % confidence interval. If the photo does not
+    determine the value, the ends are the known bounds of the value, which may be 0 and infinity. A value
+    without an estimate is NaN."""
 
     profile_count: int
     """Number of vertices of the profile, in [2, 65]."""
@@ -2413,13 +2427,14 @@ class Pendant:
     cut: float
     """Share of the outline that the photo's border cuts off, in [0, 0.3]."""
     clipped: float
-    """Share of the lamp's pixels that the photo clips, in [0, 1]."""
+    """Share of the lamp's pixels that the photo clips, in [0, 1]. A pixel counts as clipped if a channel is at
+    least 98 % of the photo's largest value."""
     profile: tuple[tuple[float, float], ...]
     """Vertices of the profile from bottom to top: radius, and height above the bottom, in multiples of the
     largest diameter. Elements from profile_count on are 0."""
     profile_error: tuple[float, ...]
-    """Half of the 95 % interval of each radius of the profile, in multiples of the largest diameter. It is
-    large where the body hides its own profile."""
+    """Half-width of the 95 % confidence interval of each radius of the profile, in multiples of the largest
+    diameter. It is large where the body hides its own profile."""
     radiance: tuple[tuple[float, float, float], ...]
     """Mean radiance of the lamp in 16 bands of equal height, from bottom to top: linear RGB in the units of the
     photo. Where the photo is clipped, it is only a lower bound."""
@@ -2458,8 +2473,8 @@ class StylizeParams(TypedDict, total=False):
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
     levels: int
-    """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. The
-    coarsest level is at least 5 patches wide and high."""
+    """Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16];
+    default 6. The coarsest level is at least 5 patches wide and high."""
     iterations: int
     """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
     voting."""
@@ -2487,7 +2502,8 @@ class StylizeParams(TypedDict, total=False):
     vote: StylizeVote | str | int
     """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
-    """StylizeVote for the final picture; default StylizeVote.ADAPTIVE."""
+    """How a pixel of the final picture is computed from overlapping patches: StylizeVote; default
+    StylizeVote.ADAPTIVE."""
     preview: int
     """1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
     default: full resolution."""
@@ -2511,8 +2527,8 @@ class StylizeParams(TypedDict, total=False):
     has 6."""
     occurrence: float
     """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; with
-    0, the mode equals StylizeMode.NEAREST. Default 0.1, which the paper uses (Fig. 10n). The penalty is added
-    to the distance of a match (Eq. 1 of the paper), which is the weighted sum of squared differences over the
+    0, the mode equals StylizeMode.NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The penalty is
+    added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over the
     pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
     lambda."""
 
