@@ -23,15 +23,12 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Conditions under which a kind of lamps is an ellipse rather than a rectangle. [judged on 20 photos]
-///
-/// - Its length is at most `MAX_ELLIPSE` times its width. Longer shapes are tubes with round ends.
-/// - It agrees better with the lamps than a rectangle, by more than `MIN_ELLIPSE_GAIN` (see [`MIN_AGREEMENT`]). The
-///   margin is needed because blur rounds the corners of rectangles.
+/// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width; longer shapes are tubes with round
+/// ends. Its agreement with the lamps ([`MIN_AGREEMENT`]) must exceed that of a rectangle by `MIN_ELLIPSE_GAIN`,
+/// because blur rounds the corners of rectangles. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const MIN_ELLIPSE_GAIN: f64 = 0.03;
-/// Limits by which discs that blur has elongated are recognised. [judged on 20 photos]
-///
+/// Limits for discs that blur has elongated. [judged on 20 photos]
 /// - `MAX_SMEARED`: lamps with a larger mean area, in photo pixels, need other evidence ([`disc`]).
 /// - `MIN_SMEAR`: the long axis must exceed the short axis by this factor, both for the lamp and for a photo pixel in
 ///   the unwarped photo.
@@ -40,9 +37,8 @@ const MAX_SMEARED: f64 = 160.0;
 const MIN_SMEAR: f64 = 1.25;
 const MIN_COS_ALONG: f64 = 0.9;
 /// Let α be the angle of a lamp's long axis. Lamps count as elongated in one common direction if the mean of their unit
-/// vectors at the angles 2α is longer than this. The factor 2 makes α and α + π equal; the mean has length 1 if all
-/// axes are parallel. If lamps are elongated along their own blur but not in a common direction, they are discs,
-/// whatever their size. [judged on 20 photos]
+/// vectors at the angles 2α is longer than this. The mean has length 1 if all axes are parallel. Lamps that are
+/// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
 /// A kind of lamps gets a design only if the mean agreement of its lamps with the shape is at least this. Agreement is
 /// the area of the intersection divided by the area of the union. [judged on 20 photos]
@@ -54,9 +50,8 @@ const MIDDLE_SHARE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the unwarped photo if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
 const MAX_ALIGNED_ANGLE: f64 = 0.07;
-/// `SIDE_NOISE`: standard deviation of the error of a measured side, in photo pixels. Bloom moves each edge of a lamp
-/// outwards by a number of photo pixels; `BLOOM` is the standard deviation of its prior, which has mean 0.
-/// [judged on 20 photos]
+/// `SIDE_NOISE`: standard deviation of the error of a measured side, in photo pixels. Bloom moves each edge outwards by
+/// some photo pixels; `BLOOM` is the standard deviation of its prior, with mean 0. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
 /// The wider prior `SHOWN_BLOOM`, in photo pixels, replaces `BLOOM` if the lamps show their bloom, which means:
@@ -167,7 +162,7 @@ struct Member {
     centre: DVec2,
     /// Covariance matrix of the points inside the outline.
     moments: DMat2,
-    /// Angle of the smallest enclosing rectangle of the outline, in radians, in [0, π/2).
+    /// Angle of the smallest enclosing rectangle of the outline, in radians, from 0 to below π/2.
     angle: f64,
     /// Number of photo pixels that show the lamp.
     weight: f64,
@@ -212,8 +207,8 @@ impl Member {
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// The lamp's sides along and across an axis, if it has the given shape. The sides of an ellipse follow from its
-    /// standard deviations. Those of a rectangle are measured in its middle part, because blur rounds its corners.
+    /// The lamp's sides along and across an axis, if it has the given shape: from the standard deviations for an
+    /// ellipse, in the middle part for a rectangle, whose corners blur rounds.
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -235,7 +230,7 @@ impl Member {
 }
 
 /// Fits a rectangle or an ellipse to the lamps of a kind. Returns the design, and the component and the fit of each
-/// lamp. `kind` is the index that the design will get. `None` if neither shape agrees with the lamps.
+/// lamp; `None` if neither shape agrees. `kind` is the index that the design will get.
 fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)> {
     let mut judges: Vec<&Member> = members.iter().filter(|m| m.is_clear).collect();
     if judges.is_empty() {
@@ -457,8 +452,8 @@ impl Design {
                 };
                 along(q.x, half.x) * along(q.y, half.y)
             }
-            // Approximate the ellipse near the square by a straight edge. Its signed distance is, to first order, the
-            // value of |(x / a, y / b)| - 1, with the half-axes a and b, divided by the length of its gradient.
+            // To first order, the signed distance to an ellipse with half-axes a and b is f divided by the length of
+            // its gradient, where f = |(x / a, y / b)| - 1.
             Shape::Ellipse => {
                 let u = q / half;
                 let r = u.length();
@@ -503,8 +498,7 @@ fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     (area.abs() > 0.0 && moments.is_finite()).then(|| (area.abs(), origin + mean, moments))
 }
 
-/// The angle, in radians in [0, π/2), of the smallest rectangle that encloses the corners. One of its sides lies along
-/// an edge of the convex hull (Freeman and Shapira 1975).
+/// Angle of the smallest rectangle around the corners, in radians, from 0 to below π/2 (Freeman and Shapira 1975).
 fn rectangle_angle(corners: &[DVec2]) -> f64 {
     let hull = polygon::convex_hull(corners.to_vec());
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
@@ -529,8 +523,7 @@ mod tests {
 
     #[test]
     fn bloom_that_grows_with_magnification_is_taken_off() {
-        // Sides of 40 unwarped pixels. Bloom moves each edge outwards by 0.8 photo pixels. A photo pixel is 1 to 6
-        // unwarped pixels long.
+        // Sides of 40 unwarped pixels. Bloom moves each edge by 0.8 photo pixels of 1 to 6 unwarped pixels.
         let pixels = [1.0f64, 1.5, 2.5, 4.0, 6.0];
         let side = common_side(pixels.into_iter().map(|p| (40.0 + 1.6 * p, p))).unwrap();
         assert!((side - 40.0).abs() < 1.0, "{side}");

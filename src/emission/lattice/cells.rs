@@ -13,5 +13,5 @@ pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item =
     (first.y as i64..=last.y as i64).flat_map(move |j| columns.clone().map(move |i| [i, j]))
 }
 
-/// A cell [i, j], whose origin is i a + j b, where a and b are the periods of the lattice.
+/// A cell `[i, j]`, whose origin is i a + j b, where a and b are the periods of the lattice.
 pub type Cell = [i64; 2];

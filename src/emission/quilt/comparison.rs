@@ -16,7 +16,7 @@ use glam::Vec4;
 /// `Comparison::slack`. [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
-/// The lit share of a pixel, in [0, 1], is multiplied by this and rounded, so that light can be summed in integers.
+/// The lit share of a pixel, in `[0, 1]`, is multiplied by this and rounded, so that light can be summed in integers.
 /// [rounding]
 const LIGHT_STEPS: f32 = 255.0;
 
@@ -88,8 +88,8 @@ impl<'a> Comparison<'a> {
     }
 
     /// The part of a run of the texture for which a shift gives pixels inside the exemplar. Returns the number of
-    /// pixels of the run before this part, the length of the part, and the exemplar's pixel [x, y] that its first pixel
-    /// shows. `None` if no pixel of the run has a source.
+    /// pixels of the run before this part, the length of the part, and the exemplar's pixel `[x, y]` that its first
+    /// pixel shows. `None` if no pixel of the run has a source.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
