@@ -80,11 +80,36 @@ pub fn place(
 
 /// Whether the photo would show all corners of the lamp's bounding box if the lamp were at `centre`.
 fn shows(exemplar: &Exemplar, lamp: &Component, centre: DVec2) -> bool {
-    let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) / 2.0;
-    let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];
+    // Slightly less than half of the box, so that its right and lower edges lie in its last pixels.
+    let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) * (0.5 - 1e-9);
+    let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half];
     corners.into_iter().all(|corner| {
         let at = centre + corner;
         let inside = at.cmpge(DVec2::ZERO).all() && at.x < exemplar.width as f64 && at.y < exemplar.height as f64;
         inside && exemplar.shown[at.y as usize * exemplar.width + at.x as usize]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emission::params::Input;
+    use crate::image::Image;
+    use crate::job::Monitor;
+
+    #[test]
+    fn a_lamp_is_shown_up_to_each_border_and_no_further() {
+        let image = |value: f32| Image::from_fn(40, 30, |_, _| [value; 3]).unwrap();
+        let (unwarped, valid) = (image(1.0), image(1.0).channel(0).unwrap());
+        for (x0, y0) in [(0, 10), (34, 10), (16, 0), (16, 22)] {
+            let mut light = Image::new(40, 30, 1).unwrap();
+            (y0..y0 + 8).for_each(|y| (x0..x0 + 6).for_each(|x| light.data[y * 40 + x] = 1.0));
+            let input = Input { unwarped: &unwarped, light: &light, valid: &valid, photo: None };
+            let exemplar = Exemplar::new(&input, 40.0, 0.0, Monitor::default().job()).unwrap();
+            let lamp = &exemplar.components.list[0];
+            assert!(shows(&exemplar, lamp, lamp.centre), "{x0} {y0}");
+            let outwards = (lamp.centre - DVec2::new(20.0, 15.0)).signum();
+            assert!(!shows(&exemplar, lamp, lamp.centre + outwards * DVec2::new(15.0, 12.0)), "{x0} {y0}");
+        }
+    }
 }
