@@ -319,7 +319,7 @@ mod tests {
         // pixels near the line are blends.
         assert!(mean < 0.85 * choice, "{mean} {choice}");
         assert!((adaptive / choice - 1.0).abs() < 0.1, "{adaptive} {choice}");
-        // Pixels on which all patches agree stay whole.
+        // Where all patches agree on a pixel, the vote returns the style's colour exactly.
         let image = two_pieces(&style, VoteMode::Adaptive);
         assert_eq!(image.pixel(3, 3), style.pixel(3, 23));
         assert_eq!(image.pixel(55, 3), style.pixel(115, 3));

@@ -35,8 +35,11 @@ const MIN_SHARP_SHARE: f64 = 0.4;
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels. The origin of the exemplar
-/// moves to `offset`. A site that nearly always has a lamp gets one in every cell. `shown` holds the lamps that the
-/// copied patches contain. Returns the lamps of `shown` unchanged if `law` has no lattice.
+/// moves to `offset`. `shown` holds the lamps that the copied patches contain.
+///
+/// - A site that nearly always has a lamp in the exemplar gets one in every cell, whatever `shown` has there.
+/// - At any other site, the lamps of `shown` are moved exactly onto the site.
+/// - Lamps of `shown` near no site, and all of them if `law` has no lattice, stay where they are.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,

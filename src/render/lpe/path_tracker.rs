@@ -114,8 +114,8 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Sets the panes between a vertex and its light sample. Does nothing if every component is in an absorbing state,
-    /// where panes change nothing.
+    /// Sets the panes between a vertex and its light sample. Does nothing if every component of the path is in an
+    /// absorbing state, which no pane changes.
     pub fn set_panes(&mut self, panes: &[Pane]) {
         if !self.absorbing && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
