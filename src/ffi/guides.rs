@@ -144,9 +144,9 @@ pub unsafe extern "C" fn luxfer_guides_set_scene(
 }
 
 /// Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_ARGUMENT if smooth is not 0 or 1; LUXFER_INVALID_OPERATION if the scene is missing or a job is already
-/// running; LUXFER_NOT_FOUND if the scene has no such camera. The job checks the scene and the other settings, and may
-/// end with LUXFER_INVALID_ARGUMENT.
+/// LUXFER_INVALID_ARGUMENT if smooth is not 0 or 1; LUXFER_INVALID_OPERATION if the scene is missing or a job is
+/// already running; LUXFER_NOT_FOUND if the scene has no such camera. The job checks the scene and the other settings,
+/// and may end with LUXFER_INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_start(
     guides: *mut luxfer_guides,
