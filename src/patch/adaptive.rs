@@ -290,7 +290,8 @@ mod tests {
 
     #[test]
     fn smooth_paint_has_no_step_where_two_pieces_meet() {
-        // Two ramps that differ by 0.1 where they meet.
+        // Two ramps of equal slopes. At equal positions relative to their origins, (0, 20) and (60, 0), they differ by
+        // 0.1. `two_pieces` places them side by side at such positions.
         let style = Image::from_fn(140, 60, |x, y| {
             let piece = if x < 60 { [x as f32, y as f32 - 20.0, 0.3] } else { [x as f32 - 60.0, y as f32, 0.4] };
             [piece[2] + 0.002 * piece[0] + 0.001 * piece[1]]

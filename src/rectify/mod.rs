@@ -221,7 +221,7 @@ pub struct Unwarped {
     pub pixel_size: f64,
     /// Corners of the unwarped rectangle in photo pixels (possibly outside the photo): top left, then clockwise.
     pub corners: [DVec2; 4],
-    /// Confidence in the aspect ratio, in `[0, 1]`; low where the focal length had to be assumed.
+    /// Confidence in the aspect ratio, in `[0, 1]`; low if the focal length had to be assumed.
     pub aspect_confidence: f64,
     /// Expected error of each corner in unwarped pixels.
     pub corner_error: [f64; 4],

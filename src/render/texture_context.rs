@@ -74,8 +74,8 @@ impl<'w> TextureContext<'w> {
         (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
     }
 
-    /// Returns the directions on the triangle in which u and v increase; `None` if the texture coordinates have no
-    /// area.
+    /// Returns the derivatives of the position on the triangle with respect to u and v, not normalised. `None` if the
+    /// mesh has no texture coordinates, or if they have no area on this triangle.
     pub fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
         let [a, b, c] = facet.corners();
         let [p, q, r] = self.corner_uvs(texture)?;

@@ -16,7 +16,7 @@ use crate::job::Job;
 use crate::simd::widest;
 use std::ops::Range;
 
-/// Number of rows in a band.
+/// The image is filtered in bands of this many rows, in parallel.
 const BAND: usize = 64;
 
 /// Weighted sums over the pixels of a window, for the guide colour I and the probability p. Elements: 1, I (3), p, I p

@@ -1,11 +1,12 @@
 //! Doubts about the exemplar: places of similar guides that are painted differently.
 //!
-//! The exemplar is divided into blocks with even guides. A stylisation cannot distinguish the paint of blocks with
-//! equal guides, so it mixes them. Two defects show in the mean paint of the blocks:
+//! The exemplar is divided into blocks. Only blocks in which the guides are nearly constant are examined. A stylisation
+//! cannot distinguish the paint of blocks with equal guides, so it mixes them. Two defects show in the mean paint of
+//! the blocks:
 //!
 //! - A blemish, such as a stain: a block is unlike all blocks elsewhere with similar guides.
-//! - Two paints for one light: a quarter or more of the blocks elsewhere with equal guides differs clearly from their
-//!   median paint.
+//! - Two paints for one light: of the blocks elsewhere with equal guides, a quarter or more differ clearly from the
+//!   median paint of all of them.
 //!
 //! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
 

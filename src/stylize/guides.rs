@@ -42,7 +42,7 @@ pub(super) struct Channels {
     /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1, or to 0 if
     /// every guide has weight 0.
     pub weights: Vec<f64>,
-    /// Whether each channel belongs to an image of light.
+    /// Whether each channel belongs to a guide that shows light, not normals, edges or materials.
     pub is_light: Vec<bool>,
     /// Per pixel: whether one of its samples is NaN or infinite.
     pub broken_source: Vec<bool>,

@@ -22,7 +22,8 @@ const RADIUS: isize = 2;
 /// Standard deviation of the Gaussian over the taps, in taps. [bench filter]
 const SIGMA: f32 = 2.0;
 /// Ridge regularisation of the slopes q and r: this share of the sum of weights is added to the moments xx and yy.
-/// Where the neighbours are few or lie on one line, the result then approaches the weighted mean. [bench filter]
+/// Where the neighbours are few, the result then approaches the weighted mean; where they lie on one line, the slope
+/// across the line approaches 0. [bench filter]
 const RIDGE: f32 = 0.02;
 /// Eliminating the slopes from the normal equations leaves one equation for p. If its coefficient is at most this share
 /// of the sum of weights, the weighted mean is taken instead. [rounding]

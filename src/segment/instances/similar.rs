@@ -314,8 +314,10 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room has a box layout,
-    /// else in the photo. A lamp that the photo's border cuts may be much smaller.
+    /// Whether a node has the size of a lamp. If the room has a box layout, area and aspect are measured on the plane;
+    /// a lamp that the photo's border cuts may then have any aspect, and an area down to `MIN_CUT_AREA` times the
+    /// minimum. Without a layout, area and breadth are measured in the photo. The minimum area in photo pixels always
+    /// applies.
     fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
