@@ -29,7 +29,7 @@ pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192
 /// Maximum number of dimming levels. \[convention\]
 pub const MAX_LEVELS: usize = 4096;
 
-/// Maximum weight of a goal, so that squared weights stay far from overflow. [rounding]
+/// Maximum weight of a goal; squared weights stay far from overflow. \[convention\]
 pub const MAX_WEIGHT: f64 = 1e12;
 
 /// Whether the colour of a group may change.
