@@ -74,6 +74,19 @@ pub fn half(image: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
+/// Returns the image at 1/2, 1/4, … of its size: `count` copies, or fewer if one of a single pixel comes first.
+pub fn halvings(image: &Image, count: usize, job: Job) -> Result<Vec<Image>> {
+    let mut copies: Vec<Image> = Vec::new();
+    while copies.len() < count {
+        let last = copies.last().unwrap_or(image);
+        if last.width == 1 && last.height == 1 {
+            break;
+        }
+        copies.push(half(last, job)?);
+    }
+    Ok(copies)
+}
+
 /// Gaussian blur with a standard deviation of `sigma` pixels, truncated at three standard deviations. The border
 /// pixels are repeated outwards.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {

@@ -43,14 +43,7 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
 
     let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(&map, band * BAND))?;
     let wanted = wanted.into_iter().max().unwrap_or(0);
-    let mut smaller: Vec<Image> = Vec::new();
-    while smaller.len() < wanted {
-        let last = smaller.last().unwrap_or(source);
-        if last.width == 1 && last.height == 1 {
-            break;
-        }
-        smaller.push(pyramid::half(last, job.part(0.05, 0.2))?);
-    }
+    let smaller = pyramid::halvings(source, wanted, job.part(0.05, 0.2))?;
     let levels: Vec<&Image> = std::iter::once(source).chain(&smaller).collect();
 
     let row_len = width * source.channels;

@@ -165,7 +165,7 @@ impl Sites {
         let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
         let brightest = of_lamps.fold(0.0, f64::max);
         let shines = |p: &DVec2| {
-            label_at(exemplar, *p) == 0 && brightest > 0.0 && contrast(*p).is_some_and(|c| c >= MIN_SHINING * brightest)
+            exemplar.label_at(*p) == 0 && brightest > 0.0 && contrast(*p).is_some_and(|c| c >= MIN_SHINING * brightest)
         };
         let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.into_iter().partition(shines);
 
@@ -211,7 +211,7 @@ impl Sites {
             };
             all.iter().any(is_displaced)
         };
-        let is_lit = |p: DVec2| match label_at(exemplar, p) {
+        let is_lit = |p: DVec2| match exemplar.label_at(p) {
             0 => false,
             label => !contradicts(label as usize - 1),
         };
@@ -237,7 +237,7 @@ impl Sites {
     /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
     ///
     /// A cut lamp is predicted if whole steps from a site lead to its centre or, if its size is not known, to any place
-    /// on its visible part. Of the cut lamps, n counts those of known size that are predicted.
+    /// on its visible part. A cut lamp counts in n only if its size is known and it is predicted.
     pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),
@@ -261,9 +261,4 @@ impl Sites {
         }
         predicted / all * (1.0 - self.list.len() as f64 / lamps as f64)
     }
-}
-
-/// The label of the component that covers a point of the exemplar; 0 if there is none.
-fn label_at(exemplar: &Exemplar, p: DVec2) -> u32 {
-    exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize]
 }

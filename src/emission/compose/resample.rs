@@ -44,12 +44,7 @@ pub fn smaller(
     job: Job,
 ) -> Result<Vec<Image>> {
     let pixels = centres.map(|p| sides(to_photo, p, side).min_element()).filter(|pixels| pixels.is_finite());
-    let wanted = level(pixels.fold(0.0, f64::max), photo.width.max(photo.height).ilog2() as usize);
-    let mut copies: Vec<Image> = Vec::new();
-    while copies.len() < wanted {
-        copies.push(pyramid::half(copies.last().unwrap_or(photo), job)?);
-    }
-    Ok(copies)
+    pyramid::halvings(photo, level(pixels.fold(0.0, f64::max), usize::MAX), job)
 }
 
 /// How many times the photo is halved before a quadrangle is read from it; at most `max`. The shorter side of the

@@ -122,6 +122,11 @@ impl Exemplar {
         }
     }
 
+    /// The label of the component at a point within the exemplar; 0 where no component lies.
+    pub fn label_at(&self, p: DVec2) -> u32 {
+        self.components.labels[p.y as usize * self.width + p.x as usize]
+    }
+
     /// Whether the plane is a luminous ceiling or a skylight: panes divided by bars, rather than lamps on a ceiling.
     pub fn is_luminous_ceiling(&self) -> bool {
         self.lit_share >= MIN_LUMINOUS_SHARE

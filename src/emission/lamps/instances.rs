@@ -205,7 +205,7 @@ fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     for y in 0..working.height {
         for x in 0..working.width {
             let centre = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
-            let label = exemplar.components.labels[centre.y as usize * exemplar.width + centre.x as usize] as usize;
+            let label = exemplar.label_at(centre) as usize;
             if label != 0 && exemplar.roles[label - 1].is_piece() {
                 footprints[label - 1].push([x as i32, y as i32]);
             }
