@@ -149,8 +149,8 @@ impl Layer {
     }
 
     /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the exemplar,
-    /// but only where its pattern has not ended. If lamps are drawn from designs, the areas are corrected to those of
-    /// the designs.
+    /// but only where its pattern has not ended. If lamps are drawn from designs, the areas of the designs replace the
+    /// measured areas.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
         // If the exemplar repeats as a whole, the exemplar itself is one period, for which infinity stands.
         let periods = match self.law {

@@ -187,8 +187,7 @@ impl TexelSource<'_> {
         })
     }
 
-    /// Replaces the clipped channels of `value`, a colour of the component with the given label, by those of the
-    /// component's rim.
+    /// Replaces clipped channels of `value`, a colour of the component with the given label, by channels of its rim.
     fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
         match (&self.layer.rim_colours, label.checked_sub(1)) {
             (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),

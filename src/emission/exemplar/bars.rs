@@ -242,7 +242,7 @@ pub struct Section {
 }
 
 /// The lowest sharpness of the sections in which a bar is clearly visible: at least half as deep as the whole bar.
-/// Infinite if there are none.
+/// Infinite if no section shows the bar clearly.
 pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)

@@ -67,7 +67,7 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// Replaces the clipped channels of `value`, a pixel of a component, by those of the rim's colour. The rim's colour
+    /// Replaces the clipped channels of `value`, a pixel of a component, by channels of the rim's colour. This colour
     /// is scaled to the lowest brightness that agrees with all channels of `value`. No channel decreases.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
