@@ -1,9 +1,9 @@
 //! Correlated colour temperature of a colour: the temperature of the nearest blackbody, and the distance from it.
 //!
 //! The blackbody locus is Krystek's rational approximation in the CIE 1960 diagram ("An algorithm to calculate
-//! correlated colour temperature", 1985), accurate to 8e-5 from 1000 K to 15000 K. Distances are measured in that
-//! diagram, as the definition of the correlated colour temperature requires (CIE 15). The search is uniform in mired
-//! (10⁶ / kelvin), in which perceptual steps are nearly uniform.
+//! correlated colour temperature", 1985). Its u and v are accurate to 8e-5 from 1000 K to 15000 K. Distances are
+//! measured in that diagram, as the definition of the correlated colour temperature requires (CIE 15). The search steps
+//! uniformly in mired (10⁶ / kelvin), because equal steps in mired look nearly equal.
 
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
@@ -92,7 +92,7 @@ pub struct Fit {
 /// Finds the temperature and strength of the blackbody light that brings a target's mean radiance closest to `target`,
 /// by least squares over the channels. The target receives `background` from other lights, and `response` per unit of
 /// emission, all per channel. For each temperature the optimal strength has a closed form. `None` if no channel
-/// responds.
+/// responds or a value is not finite.
 pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     let wanted = target - background;
     let at = |kelvin: f64| {

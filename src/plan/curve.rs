@@ -42,8 +42,8 @@ impl Curve {
             return b.max(0.0);
         }
         let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
-        // Evaluate the power law, which passes through the middle point, up to the last point, and its continuation
-        // beyond.
+        // error² = middle error² · (middle time / time)^power up to the last point. From there on the error falls with
+        // the limited exponent.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
@@ -57,9 +57,9 @@ impl Curve {
 }
 
 /// Returns the time for each stage, in seconds. Each stage starts with its minimum time. Small steps of time then go,
-/// one by one, to the stage in which they lower the sum of squared errors most. This ends when the goal is reached or
-/// no stage can use more time. Each further step on a curve gains less than the one before, so the result is optimal to
-/// within one step.
+/// one by one, to the stage in which they lower the sum of squared errors most per second. This ends when the goal is
+/// reached or no stage can use more time. If no curve becomes steeper at its middle point, each step on a curve gains
+/// less than the step before, and the result is optimal to within one step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
@@ -96,7 +96,7 @@ mod tests {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
         }
         assert!((curve.square(64.0) - 0.5).abs() < 1e-9 && (curve.square(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9);
-        // Stratified samples can have steeper curves, but the extrapolation is less steep.
+        // Between these points the exponent is 2.66; after the last point it is limited to 2.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
         assert!((steep.square(1.0) - 320.0).abs() < 1e-9 && (steep.square(16.0) - 0.2).abs() < 1e-9);
         assert!((steep.square(64.0) - 0.2 / 16.0).abs() < 1e-9);

@@ -9,8 +9,8 @@ use crate::relight;
 use crate::render::World;
 use glam::Vec3;
 
-/// Number of paths per trial solution, and number of trials. Several trials are averaged, because the standard error
-/// that a trial reports is known only to within 13 %.
+/// Number of paths per trial solution (`TRIAL`), and number of timed trials (`TRIALS`). Several trials are averaged,
+/// because the standard error that a trial reports is known only to within 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
 /// Constant that is XORed with the seed of the solution, so that the trials trace other random paths than the solution.
@@ -35,9 +35,10 @@ pub(super) struct Strength {
 impl Strength {
     /// Runs the trials for an emitting material and the triangles of the target.
     ///
-    /// The first trial only measures the current radiance of the target. The other trials are timed, and solve for this
-    /// radiance. The choice of the radiance matters little: the solution is (target - b) / r, where b is the radiance
-    /// from other lights and r the response. For b = 0 its relative error does not depend on the target.
+    /// A first trial only measures b and r: the target's radiance from other lights, and from the unscaled emission.
+    /// Its own solution, for the radiance [`DOMINANT`], is not used. The timed trials then solve for the current
+    /// radiance b + r. Another radiance would do as well: the solution is (target - b) / r, and for b = 0 its relative
+    /// error does not depend on the target.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,

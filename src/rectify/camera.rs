@@ -43,7 +43,9 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     }
 
     // Name the axes: the direction nearest the image's vertical becomes the vertical axis. Of the other two, the
-    // direction nearest the viewing direction becomes the second horizontal axis.
+    // direction nearest the viewing direction becomes the second horizontal axis. With fewer than three directions, the
+    // vertical axis needs a direction within 45 degrees of the image's vertical. A single horizontal direction becomes
+    // the second horizontal axis if it is within 45 degrees of the viewing direction, else the first.
     let mut named: [Option<usize>; 3] = [None; 3];
     let take = |from: &mut Vec<usize>, value: &dyn Fn(DVec3) -> f64| {
         let best = (0..from.len())

@@ -4,8 +4,8 @@ use super::params::Params;
 use crate::geometry::FocalSource;
 
 /// Prior of the focal length over photos of rooms. `USUAL_FOCAL_PER_WIDTH`: median of the focal length as a share of
-/// the image width, also in portrait photos. `USUAL_SPREAD`: standard deviation of its logarithm. [origin not
-/// recorded]
+/// the image width; in portrait photos the width is the shorter side. `USUAL_SPREAD`: standard deviation of the
+/// logarithm of the focal length. [origin not recorded]
 pub const USUAL_FOCAL_PER_WIDTH: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 

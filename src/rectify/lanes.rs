@@ -4,7 +4,7 @@
 
 use glam::{Vec4, Vec4Swizzles};
 
-/// Number of taps along each side of a pixel's filter, and number of pixels in a register.
+/// Number of taps along each side of a pixel's filter. It is also the number of source pixels that one load reads.
 pub const TAPS: usize = 4;
 
 /// Maximum number of samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after
@@ -191,12 +191,12 @@ mod avx512 {
     use glam::Vec4;
     use std::arch::x86_64::*;
 
-    /// Three channels in one register of sixteen lanes. Use it only in code that runs on a processor with AVX-512:
-    /// everything below is inlined into a function compiled for it.
+    /// Four pixels of three channels in one register of sixteen lanes, of which twelve are used. Use this type only in
+    /// functions compiled for AVX-512, into which its methods are inlined.
     #[derive(Clone, Copy)]
     pub struct RgbLanesAvx512(__m512);
 
-    // SAFETY of all blocks below: the processor supports AVX-512, as required above.
+    // SAFETY of all blocks below: users of `RgbLanesAvx512` ensure that the processor supports AVX-512.
 
     /// Combines the first pixel with the third and the second with the fourth, then combines the two results.
     macro_rules! fold {

@@ -143,8 +143,9 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
         }
     };
     for (i, &p) in candidates.iter().enumerate() {
-        // Pair two candidates: their orthogonality determines the focal length, unless one of them is nearly at
-        // infinity.
+        // Pair two candidates. The focal length at which their directions are orthogonal is one hypothesis. If a
+        // candidate is nearly at infinity, that focal length is unreliable. So also try each listed focal length at
+        // which the angle between the directions is within 9 degrees of a right angle.
         for &q in &candidates[i + 1..] {
             let square = -(p.x * q.x + p.y * q.y) / (p.z * q.z);
             let implied = square.max(0.0).sqrt();
@@ -191,12 +192,14 @@ fn similar(a: &Triplet, b: &Triplet) -> bool {
     (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
 }
 
-/// Refines the axes and the focal length of a roughly known camera until its vanishing points agree with the lines.
+/// Refines the axes and the focal length of a roughly known camera, so that more lines run to its vanishing points.
 pub fn polished(lines: &[WeightedLine], axes: DMat3, focal: f64) -> Triplet {
     refine_jointly(lines, Triplet { axes, focal, score: 0.0 }, None)
 }
 
-/// Joint Gauss-Newton refinement of a rotation vector and the logarithm of the focal length, iteratively reweighted.
+/// Refines a triplet by at most 8 Gauss-Newton steps, jointly in a rotation vector and the logarithm of the focal
+/// length; the lines are reweighted before each step. Returns the best of `start` and all steps, with its score.
+/// A given `focal` stays fixed.
 fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) -> Triplet {
     let mut best = Triplet { score: score(lines, &start), ..start };
     let mut current = best;

@@ -115,8 +115,9 @@ impl View {
         })
     }
 
-    /// Returns the standard deviation of the focal length in pixels if it was assumed or read from metadata; else 0,
-    /// because the error of a focal length from vanishing points is not estimated.
+    /// Returns the standard deviation of the focal length, in pixels, if it was assumed or read from metadata.
+    /// Otherwise returns 0: a focal length from the caller counts as exact, and the error of a focal length from
+    /// vanishing points or lamps is neglected.
     pub fn focal_error(&self) -> f64 {
         match self.perspective.focal_source {
             FocalSource::Assumed | FocalSource::Metadata => self.expected_focal.spread * self.perspective.focal,

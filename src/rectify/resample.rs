@@ -118,7 +118,8 @@ struct Sampling {
 }
 
 /// Chooses the finest pyramid level on which the shortest side of the footprints fits into the taps, and no footprint
-/// needs more than [`MAX_PARTS`] parts. `None` if no pixel is visible.
+/// needs more than [`MAX_PARTS`] parts. If none of the `levels` levels suffices, takes the coarsest. `None` if no pixel
+/// is visible.
 #[inline(always)]
 fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;

@@ -12,8 +12,9 @@ use crate::image::Image;
 /// Longest side of a rectangle that the taps cover whatever its sub-pixel position: `TAPS - 1`. [convention]
 pub const MAX_SIDE: f32 = 3.0;
 
-/// The cubic filter fades out over this range of the squared major axis of a pixel's footprint, in source pixels: it
-/// has full weight up to `SHARP` and no weight from `SOFT` on. [origin not recorded]
+/// The cubic filter fades out as the footprint of a pixel grows: it has full weight up to `SHARP` and no weight from
+/// `SOFT` on. Both are values of [`Footprints::longest`], a squared length in square pixels of the source.
+/// [origin not recorded]
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 

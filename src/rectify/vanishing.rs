@@ -148,7 +148,8 @@ fn orthogonal_and_further(
     Ok((found, focal))
 }
 
-/// Returns the direction unchanged, with the covariance that the lines imply.
+/// Returns the direction unchanged, with the covariance that the lines imply. If the lines do not determine a point,
+/// the error is [`MAX_ERROR`].
 fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> DirectionEstimate {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);

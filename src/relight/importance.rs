@@ -76,10 +76,10 @@ pub(super) struct Cells {
 /// Maximum number of cells along each side; a map of this size takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// The emission of a cell is the mean of a grid of texture look-ups, about one per texel along each side, with a
-/// minimum and a maximum. In maps of more than 64 cells along a side, the minimum falls from `MIN_LOOK_UPS` to
-/// `LOOK_UPS_ACROSS` divided by the number of cells, but not below 4. With fewer look-ups, texels cut by cell borders
-/// would get wrong weights, which biases periodic patterns. [origin not recorded]
+/// The emission of a cell is the mean of a grid of texture look-ups. Along each side, the grid has about one look-up
+/// per texel, at least `clamp(LOOK_UPS_ACROSS / cells, 4, MIN_LOOK_UPS)` and at most `MAX_LOOK_UPS`. Here `cells` is
+/// the number of cells of the map along this side. With fewer look-ups, texels cut by cell borders would get wrong
+/// weights, which biases periodic patterns. [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;

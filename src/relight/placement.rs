@@ -9,8 +9,8 @@
 //! 2. Descend from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
 //! 3. Compare the results at full resolution ([`Importance::respond`]).
 //!
-//! The noise of the map favours some placements. The light of the best placement is therefore slightly overestimated,
-//! by a small part of its confidence interval.
+//! The noise of the map favours some placements. The estimated light of the best placement is therefore slightly too
+//! close to the aim (too bright for [`Aim::Brightest`]), by a small part of its confidence interval.
 
 use super::band::Pyramid;
 use super::descent::{self, Bounds};

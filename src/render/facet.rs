@@ -27,10 +27,10 @@ pub struct Facet {
 /// Bound on the rounding error of an interpolated point, relative to the largest coordinate of its triangle: sixteen
 /// times 2^-24, the rounding error of an f32 number. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
-/// A free point (`Vertex::free`) belongs to no triangle but may happen to lie in a surface. Its rays start at an offset
-/// in proportion to the largest coordinate of the scene, which moves them off such a surface. In this computation, the
-/// largest coordinate counts as at most this value in metres. Otherwise, in a scene as large as a country, the offset
-/// would move the point through a wall. [convention]
+/// A free point (`Vertex::free`) belongs to no triangle but may happen to lie in a surface. To leave such a surface,
+/// its rays start at a distance of `OFFSET * max(p, min(c, MAX_FREE_COORDINATE))`. Here p is the largest coordinate of
+/// the point and c that of the scene, in metres. Without the limit, in a scene as large as a country, the offset would
+/// move the point through a wall. [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
 /// of its size. [convention]

@@ -22,8 +22,8 @@ const MIN_INCIDENCE: f64 = 0.05;
 /// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
 /// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
-/// Squared deviation of a shape, in variances, above which its cost grows more slowly, because the shape is probably
-/// of another kind. [convention]
+/// Squared deviation of a shape, divided by its variance, above which its cost grows more slowly, because the shape is
+/// probably of another kind. [convention]
 const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
@@ -178,8 +178,8 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
     by_size + by_stretch(DVec2::ZERO).min(by_stretch(stretch) + STRETCH_COST)
 }
 
-/// Returns the cost of a squared deviation in variances. From about [`OUTLIER`] on, the cost grows more slowly than
-/// the squared deviation (Cauchy's function).
+/// Returns the cost of a shape; `square` is its squared deviation divided by the variance. From about [`OUTLIER`] on,
+/// the cost grows more slowly than `square` (Cauchy's function).
 fn robust(square: f64) -> f64 {
     OUTLIER * (square / OUTLIER).ln_1p()
 }

@@ -39,8 +39,9 @@ const MAX_COST: f64 = 1.5;
 
 impl View {
     /// Corrects the view such that the lamps marked by `lamps`, on the plane marked by `plane`, have equal size and
-    /// form in fronto-parallel view. `None` if the lines determine the view, if there are too few lamps, if the lamps
-    /// already agree with the view, or if the lamps contradict each other.
+    /// form in fronto-parallel view. `None` if the lines determine the plane's normal well, if the caller gave the
+    /// focal length, if there are too few lamps, if the lamps already agree with the view, or if they contradict each
+    /// other.
     pub fn with_lamps_alike(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.uncertain_tilt(plane) else { return Ok(None) };
         let shapes = likeness::of_mask(lamps, self.perspective.principal)?;

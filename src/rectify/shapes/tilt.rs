@@ -28,11 +28,11 @@ const STARTS: usize = 12;
 /// First and last step of the refinement, in radians. [convention]
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
-/// Maximum cost of a deviation from the normal that the lines imply, in variances. The cost is limited because the
-/// lines may be entirely wrong. [bench photos:tune]
+/// The cost of a normal is its squared deviation from the normal that the lines imply, divided by the variance. The
+/// cost is limited to this value, because the lines may be entirely wrong. [bench photos:tune]
 const MAX_LINES_COST: f64 = 9.0;
-/// `ROLL_ERROR`: standard deviation of the camera's roll in radians. `MAX_ROLL_COST`: maximum cost of a roll in
-/// variances. Most photographers hold the camera upright. [bench photos:tune]
+/// A roll of the camera costs `(roll / ROLL_ERROR)²`, at most `MAX_ROLL_COST`, because most photographers hold the
+/// camera upright. `ROLL_ERROR` is in radians. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
 /// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this. Both

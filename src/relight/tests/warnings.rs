@@ -1,4 +1,5 @@
-//! Tests of the warnings about channels that do not meet their target, and about targets that are only bounds.
+//! Tests of the warnings about channels that do not meet their target, and about targets that are only upper or lower
+//! limits.
 
 use super::*;
 use glam::DVec3;

@@ -67,8 +67,8 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     })
 }
 
-/// Estimates the squared error of the mean of the filtered halves at a pixel, summed over the channels, in units of the
-/// picture's mean squared.
+/// Estimates the squared error of the mean of the filtered halves at a pixel, summed over the channels. The unit is the
+/// square of the picture's mean.
 fn squared_error(raw: &Planes, filtered: &Planes, light: &Light, [x, y]: [usize; 2]) -> f32 {
     let of_channel = |c: usize| {
         let [before, after] = [raw, filtered].map(|planes| [c, c + 3].map(|channel| planes.row(y, channel)[x]));

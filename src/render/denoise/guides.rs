@@ -37,8 +37,8 @@ impl Guides {
         })?;
         let scales = Planes::from_rows([width, height, 1], job.part(0.5, 1.0), |y, row| {
             scales(&planes, y, row);
-            // Where the variance is unknown, no statistical test can separate the surfaces at an edge. The guides must
-            // do so, so the factor 1 keeps their distances.
+            // Where the variance is unknown, no statistical test can separate the surfaces at an edge. Only the guides
+            // can, so a factor of 1 leaves their distances as they are.
             (0..width).filter(|&x| !input.is_known(x, y)).for_each(|x| row[x] = 1.0);
         })?;
         for y in 0..height {
@@ -54,7 +54,7 @@ impl Guides {
     }
 
     /// Returns an image that marks the edges of surfaces: 1 at pixels that have a distance of at most 1 to fewer than
-    /// three of their eight neighbours, and 0 elsewhere.
+    /// three of their eight neighbours, and 0 elsewhere. Pixels of unknown variance get 0.
     pub fn edges(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = self.0;
         Planes::from_rows([width, height, 1], job, |y, row| {

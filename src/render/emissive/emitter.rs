@@ -74,7 +74,7 @@ impl Emitter {
     }
 
     /// Returns the emission at a point of the triangle, in cd/m² per channel, and the texture coordinates of the
-    /// look-up. It is valid only for triangles of meshes, not for patches of luminaires.
+    /// look-up. The result is valid only for triangles of meshes, not for patches of luminaires.
     pub fn emission(&self, scene: &Scene, barycentric: Vec2) -> (Vec3, Vec2) {
         let b = barycentric;
         let uv = self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y;

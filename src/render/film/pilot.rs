@@ -166,8 +166,8 @@ pub fn run(
     })
 }
 
-/// Traces paths in the tiles of positive `deep_weight` until each of their pixels has `count` paths. Returns the sums
-/// of all pilot tiles.
+/// Traces paths in the pilot tiles of positive `deep_weight` (before the third pass, all of them) until each of their
+/// pixels has `count` paths. Returns the sums of all pilot tiles, those without new paths included.
 fn render_tiles(
     context: TileContext,
     chosen: &mut [PilotTile],
