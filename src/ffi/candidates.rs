@@ -64,8 +64,8 @@ pub struct luxfer_candidate {
     pub reserved: u32,
     /// Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub name: *const c_char,
-    /// The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string lives as
-    /// long as the luxfer_candidates.
+    /// The reason for the score: an English sentence that states area, level_area, height and the shares of the formula
+    /// in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub reason: *const c_char,
 }
 
@@ -122,7 +122,8 @@ impl Candidates {
 }
 
 /// Creates a list of the candidates for the ceiling: all objects of a scene and all materials that its triangles use,
-/// the likeliest ceiling first. The call reads each triangle once. The caller releases *candidates. Any thread.
+/// the likeliest ceiling first. The time of the call is proportional to the number of triangles. The caller releases
+/// *candidates. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_candidates(

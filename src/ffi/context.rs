@@ -54,9 +54,9 @@ pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
-    /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
-    /// call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the same time
-    /// use different sets; the context keeps up to four idle sets for later calls.
+    /// share these threads. Synchronous calls, which do their work before they return, do not use them, and so never
+    /// wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads that it
+    /// has to itself. The context keeps up to four idle sets for later calls.
     pub num_threads: u32,
     /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
     /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is

@@ -102,7 +102,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_start(
 
 /// Gets the image that a LUXFER_DEMO_PHOTO_ value selects: the photo or its strokes. The caller releases *image. Any
 /// thread.
-/// LUXFER_NOT_READY before a job has succeeded.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if kind is another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_get_image(
     demo: *mut luxfer_demo_photo,

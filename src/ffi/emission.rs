@@ -37,8 +37,7 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
 /// resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
 /// the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
-/// and clamped to [-1, 1]. L is the side of a patch or, if the lights have periods, half the longer period if that is
-/// shorter.
+/// and clamped to [-1, 1]. L is the side of a patch, but at most half the longer period if the lights repeat.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
 /// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
 /// copied with the patches that give the texture its colours.
@@ -54,8 +53,9 @@ pub struct luxfer_emission_params {
     pub width: u32,
     /// Height of the texture in texels, in [1, 65536]; default 1024.
     pub height: u32,
-    /// Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from the
-    /// spacing of the lights. It is in pixels of the exemplar after its reduction to working_side.
+    /// Side of the square patches that are copied from the exemplar, in [0, 65536], in pixels of the exemplar after its
+    /// reduction to working_side. 0, the default: with LUXFER_LAW_LATTICE, 1.5 times the longer period, but at most
+    /// half of the exemplar's shorter side; with other laws, a quarter of the shorter side.
     pub block: u32,
     /// Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1.
     pub scale: f64,
@@ -74,8 +74,8 @@ pub struct luxfer_emission_params {
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-    /// default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must be 0 for
-    /// other textures.
+    /// default 0. With LUXFER_LAW_FREE, the pattern has no fixed place: the offset must be 0, unless the texture is
+    /// tileable and no light is copied patch by patch. It then shifts all lamps.
     pub offset: [f64; 2],
     /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
     /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
@@ -84,15 +84,16 @@ pub struct luxfer_emission_params {
     /// 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo.
     pub even_lamps: u32,
     /// 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
-    /// edge. A lattice is stretched so that a whole number of periods fits; the width and the height of the pattern
-    /// change by less than half a period. Needs whole_lamps. Default 0.
+    /// edge. Lights with periods are stretched so that a whole number of periods fits; the width and the height of the
+    /// pattern change by less than half a period. Needs whole_lamps. Default 0.
     pub tileable: u32,
-    /// 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
-    /// so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
+    /// 1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps, lies at
+    /// the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the pattern from
+    /// there. Default 0. No effect with LUXFER_LAW_FREE.
     pub centred: u32,
-    /// Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if the
-    /// lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are compared
-    /// in addition.
+    /// For LUXFER_LAW_FREE: number of patches, drawn at random from the exemplar, that are compared for each patch of
+    /// the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already placed beside
+    /// it are compared in addition.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -174,12 +175,13 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires in the texture; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
-    /// whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %. It means
-    /// little if exemplar_lamps is small. NaN for a plan.
+    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the mean
+    /// area of a whole lamp, and the mean distance from a whole lamp to its nearest neighbour. The value 0.1 stands for
+    /// 10 %. It means little if exemplar_lamps is small. NaN for a plan.
     pub error: f64,
-    /// Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two periods the
-    /// lower value. 0 if the lights have no period, or if the period was found from the distances between lamps.
+    /// Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period. If there are two
+    /// periods, it is the lower of their two autocorrelations. 0 if the lights have no period, or if the period was
+    /// found from the distances between lamps.
     pub regularity: f64,
     /// Number of whole lamps in the exemplars. If it is below six, the statistics in the field error are unreliable,
     /// because the border then cuts a large share of the lamps. If there is no whole lamp, the texture is made from the
@@ -190,7 +192,7 @@ pub struct luxfer_emission_report {
     /// ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
     /// of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
     /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a plan, and if
-    /// the texture is hardly larger than the exemplar.
+    /// the texture is too small to hold parts as large as the exemplar at clearly different places.
     pub sampling_error: f32,
     /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
@@ -202,9 +204,9 @@ pub struct luxfer_emission_report {
     /// nothing and have a fixed score. NaN if no score was computed, for example because too few of the lights are
     /// whole lamps.
     pub law_score: f64,
-    /// law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen although
-    /// runner_up scores slightly better: LUXFER_LAW_BEST prefers the law of LUXFER_LAW_CORRELATION, and lattices along
-    /// the axes of the room.
+    /// law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
+    /// It is negative if the law was chosen although runner_up scores slightly better: LUXFER_LAW_BEST prefers the law
+    /// of LUXFER_LAW_CORRELATION, and lattices along the axes of the room.
     pub margin: f64,
 }
 
@@ -435,8 +437,8 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
 /// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
 /// luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
-/// LUXFER_DEGENERATE if the exemplar has no lights, or not the lattice or row that the setting law asks for;
-/// LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights
+/// do not form; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -517,8 +519,9 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 /// Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
 ///
 /// A plan (luxfer_emission_start_plan) has no texels yet. Its luminaires are measured in the exemplar, and cut at the
-/// edges of the texture. Only lights that are copied patch by patch are measured as the texture will show them: lights
-/// that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
+/// edges of the texture. Lights that are copied patch by patch are the exception: they are measured as the texture will
+/// show them. These are lights that run through the whole exemplar, such as light bands, and all lights if whole_lamps
+/// is 0.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(

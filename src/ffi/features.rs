@@ -210,9 +210,11 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
 
 /// Sets a network in an ONNX file, which estimates the depth if there is no depth map; path is UTF-8. The network has
 /// one input: the photo as a float tensor [1, 3, rows, columns], with up to 4096 rows and columns. Its first output is
-/// a map of relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on
-/// near_plane and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no
-/// network. The call reads the file, which is not needed afterwards. Any thread.
+/// a map of relative inverse depth, as MiDaS and DPT compute it. The library converts the map to depths in
+/// [near_plane, far_plane]: the nearest pixel gets near_plane, the farthest far_plane (LUXFER_FEATURES_NETWORK_DEPTH).
+/// These depths then serve as a depth map, which the setting near_plane scales once more. normalisation is a
+/// LUXFER_NORMALISATION_ value. path may be NULL: no network. The call reads the file, which is not needed afterwards.
+/// Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged; LUXFER_UNSUPPORTED if it needs an operator
 /// that the library does not support, or if the library was built without the Cargo feature onnx.
 #[unsafe(no_mangle)]

@@ -42,13 +42,14 @@ pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
 pub const LUXFER_GUIDES_TWO_BOUNCES: luxfer_guides_image = 4;
 /// Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3 channels.
 pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
-/// Edges of shapes: 1 on an edge, 0 away from edges; 1 channel.
+/// Strength of the edges of shapes, in [0, 1]: changes of material, creases and jumps in depth; 1 on a clear edge, 0
+/// away from edges; 1 channel.
 pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
 /// A colour for each material, derived from its name, so that materials of equal name match in all scenes; black where
 /// there is no surface; 3 channels.
 pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
-/// Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces, mirrors or clear
-/// panes (LS+DE).
+/// Caustics: light that glossy surfaces, mirrors or clear panes (one or more of them) cast onto a diffuse surface,
+/// which reflects it to the camera (LS+DE).
 pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
 /// Settings of the guides. Fill them with luxfer_guides_params_init.

@@ -200,9 +200,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
 }
 
 /// Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
-/// is a 3 x 3 matrix M, row by row, with the last row 0 0 1: M (u, v, 1) is the point of the texture that lies at the
-/// texture coordinates (u, v) of the surface. NULL is the identity. The call takes a few milliseconds. size is sizeof
-/// *report. Any thread.
+/// is a 3 x 3 matrix M, row by row, with the last row 0 0 1. The surface shows at its texture coordinates (u, v) the
+/// point (s, t) of the texture, where (s, t, 1) = M (u, v, 1); s and t are in widths and heights of the texture. NULL
+/// is the identity. The call takes a few milliseconds. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(

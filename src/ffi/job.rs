@@ -7,7 +7,8 @@
 //! reference to a running job cancels the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
-//! waiting job at once. Of all other calls, only luxfer_job_wait and the release of a running job wait for jobs.
+//! waiting job at once. Only two calls wait for a job: luxfer_job_wait, and luxfer_release of the last reference to a
+//! running job.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};

@@ -42,8 +42,8 @@ pub struct luxfer_pattern_params {
     pub texel_size: f64,
     /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice have
-    /// no fixed places: for them, a shift other than 0 is an error unless the texture is tileable.
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, lamps
+    /// have no fixed places: a shift other than 0 is then an error unless the texture is tileable.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
     /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the

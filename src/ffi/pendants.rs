@@ -54,8 +54,8 @@ pub const LUXFER_KNOWN_DIAMETER: luxfer_known = 2;
 /// The horizontal distance between the axes of the first two lamps.
 pub const LUXFER_KNOWN_SPACING: luxfer_known = 3;
 
-/// No length determines the size, or only with a standard deviation above half of the size. The fields drop, diameter
-/// and height then hold only bounds.
+/// The size is unknown: no length determines it, or its standard deviation exceeds half of it. The fields drop,
+/// diameter and height then hold only bounds.
 pub const LUXFER_DOUBT_SIZE: u32 = 1;
 /// The probability of the kind is below 0.9.
 pub const LUXFER_DOUBT_KIND: u32 = 2;
@@ -101,8 +101,8 @@ pub struct luxfer_pendants_params {
     /// a rectification.
     pub focal: f64,
     /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-    /// for the standard deviation that the rectification has; it has one only for a focal length that was assumed or
-    /// read from metadata.
+    /// for the rectification's own standard deviation, which is known only for a focal length that was assumed or read
+    /// from metadata; for other focal lengths it counts as 0.
     pub focal_error: f64,
     /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
     /// 0. Not used with a rectification, which has its own value.

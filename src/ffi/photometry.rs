@@ -33,7 +33,7 @@ pub struct luxfer_glare_report {
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
     /// Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires without
-    /// faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+    /// luminous opening. They are invisible in the image, and ugr leaves them out. Known only for images of
     /// luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the
     /// scene has LUXFER_WARNING_NOT_IN_PICTURE.
     pub unseen_lights: u32,

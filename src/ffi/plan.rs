@@ -85,8 +85,8 @@ pub struct luxfer_plan_report {
     pub relight_seconds: f64,
     /// Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer.
     pub relight_error: f64,
-    /// Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a plan of
-    /// a stylisation.
+    /// Predicted seconds for rendering. In a plan of a transfer, they include the preparation of the scene; in a plan
+    /// of a rendering they do not, because the plan has already prepared it. 0 in a plan of a stylisation.
     pub render_seconds: f64,
     /// Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation.
     pub render_error: f64,

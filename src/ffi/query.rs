@@ -17,7 +17,7 @@ use glam::Vec3;
 /// No index: stands for no mesh, no triangle, no texture or no material.
 pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
 
-/// A ray. An element of arrays, so this struct never changes.
+/// A ray. Callers pass arrays of this struct, so its size and fields never change in later versions.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_ray {
@@ -30,7 +30,7 @@ pub struct luxfer_ray {
     pub t_max: f32,
 }
 
-/// The nearest hit of a ray. An element of arrays, so this struct never changes.
+/// The nearest hit of a ray. Callers pass arrays of this struct, so its size and fields never change in later versions.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_hit {

@@ -102,9 +102,9 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from the
-    /// camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest part by
-    /// more than this factor are cut off.
+    /// Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part of the
+    /// plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the
+    /// nearest part by more than this factor are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,

@@ -40,9 +40,9 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
 /// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged with those
-/// neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value where this value is
-/// estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+/// The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages a pixel
+/// with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value where this value
+/// is estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
 /// luxfer_render_report.preview_error estimates the remaining error. The image exists only if
 /// luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
@@ -73,8 +73,8 @@ pub struct luxfer_render_params {
     /// Seed of the paths; default 1.
     pub seed: u64,
     /// Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within 10 %
-    /// of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
-    /// pixel, even if it then misses the target.
+    /// of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 * samples paths per pixel
+    /// (the field samples), even if it then misses the target.
     ///
     /// The relative error of a pixel is e / max(Y, m / 10). Here e is half the width of the 95 % confidence interval of
     /// the pixel's luminance Y, and m is the mean of the image. The relative error of a block is the root mean square

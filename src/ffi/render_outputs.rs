@@ -59,12 +59,12 @@ pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
 /// no surface count as 0. Layer Albedo, channels R G B.
 pub const LUXFER_AOV_ALBEDO: u32 = 32;
 /// 1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
-/// mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights
-/// have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
+/// mesh that was hit. 0 where there is no surface. The luminous opening of the luminaire with index i among the
+/// punctual lights has the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
 /// 1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
-/// material that was hit. 0 where there is no surface. The faces of luminaires have the value n + 1, where n is the
-/// number of materials. Layer IndexMA, channel X.
+/// material that was hit. 0 where there is no surface. The luminous openings of luminaires have the value n + 1, where
+/// n is the number of materials. Layer IndexMA, channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
 /// Share of the pixel that surfaces cover, in [0, 1]. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;

@@ -24,7 +24,7 @@ pub const LUXFER_SCATTERING_GLASS: u32 = 8;
 /// At least one surface is partly transparent because of its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
-/// At least one surface emits; the faces of luminaires count.
+/// At least one surface emits; the luminous openings of luminaires count.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
 /// At least one emitting surface has an emission texture.
 pub const LUXFER_LIGHTS_TEXTURE: u32 = 2;
@@ -50,9 +50,9 @@ pub struct luxfer_requirements {
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
     /// Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest channel
-    /// of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more than n bounces
-    /// is then at most the share error of all scattered light. 0 if there is no such n. For information only: no
-    /// rendering ends paths at this number.
+    /// of the field albedo, and error is the argument of luxfer_scene_get_requirements. With error = 0.01, for example,
+    /// light with more than n bounces is at most 1 % of all scattered light. 0 if there is no such n. For information
+    /// only: no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

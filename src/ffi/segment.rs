@@ -28,7 +28,8 @@ pub struct luxfer_segment {
 pub type luxfer_segment_image = i32;
 /// The mask: 1 where the confidence is above one half, else 0; 1 channel.
 pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
-/// The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel.
+/// The confidence that a pixel is of the positive class, in [0, 1]; 1 channel. For a surface: the probability. For
+/// lamps: 1 inside a lamp, 0 outside, 0.5 on its contour; it changes from 1 to 0 within about two pixels.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
 /// How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions that resemble
 /// the painted lamps but not closely enough for the mask, else 0. Another stroke helps where the value is high.
@@ -41,8 +42,8 @@ pub type luxfer_subject = i32;
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
 /// of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
-/// ceiling that the positive strokes lie on. If they lie on more than one of these, it is restricted to the connected
-/// parts of the mask that positive strokes touch.
+/// ceiling that the positive strokes lie on. If the strokes lie on more than one of these, the mask is restricted to
+/// those of its connected parts that positive strokes touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -133,7 +134,8 @@ pub struct luxfer_segment_report {
     pub struct_size: u32,
     /// Channels of the features that the segmentation has used, bit i for channel i.
     pub channels: u32,
-    /// Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training.
+    /// Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the training.
+    /// For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps.
     pub error: f64,
     /// Number of samples of the negative class.
     pub negative_samples: u64,

@@ -105,11 +105,11 @@ pub struct luxfer_stylize_params {
     /// neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the sweeps
     /// after each matching; see settle.
     pub seam: f32,
-    /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
-    /// LUXFER_STYLIZE_VOTE_WEIGHTED.
+    /// How a pixel is computed from overlapping patches in all rounds but the last: a LUXFER_STYLIZE_VOTE_ value;
+    /// default LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
-    /// How a pixel of the final picture is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
-    /// LUXFER_STYLIZE_VOTE_ADAPTIVE.
+    /// How a pixel of the final picture, after the last round, is computed from overlapping patches: a
+    /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_ADAPTIVE.
     pub final_vote: luxfer_stylize_vote,
     /// 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
     /// default: full resolution.

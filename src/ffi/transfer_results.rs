@@ -33,7 +33,7 @@ pub const LUXFER_TRANSFER_PLANE_MASK: luxfer_transfer_image = 1;
 pub const LUXFER_TRANSFER_PLANE_CONFIDENCE: luxfer_transfer_image = 2;
 /// The mask of the lights in the photo: 1 on lights, else 0; 1 channel.
 pub const LUXFER_TRANSFER_LIGHTS_MASK: luxfer_transfer_image = 3;
-/// Probability that a pixel of the photo is a light, in [0, 1]; 1 channel.
+/// Confidence that a pixel of the photo is a light, in [0, 1], as LUXFER_SEGMENT_CONFIDENCE; 1 channel.
 pub const LUXFER_TRANSFER_LIGHTS_CONFIDENCE: luxfer_transfer_image = 4;
 /// The unwarped image: the plane in frontal view, linear RGB.
 pub const LUXFER_TRANSFER_UNWARPED: luxfer_transfer_image = 5;

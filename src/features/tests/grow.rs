@@ -20,7 +20,7 @@ fn room(lighter: f64) -> Image {
     .unwrap()
 }
 
-/// The pixels of a rectangle `[x0, y0, x1, y1]`, its end excluded.
+/// The pixels of a rectangle `[x0, y0, x1, y1]`; column x1 and row y1 are excluded.
 fn painted([x0, y0, x1, y1]: [usize; 4]) -> Vec<u32> {
     (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * SIZE[0] + x) as u32)).collect()
 }

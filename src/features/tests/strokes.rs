@@ -134,7 +134,8 @@ fn projected(random: &mut Random, camera: &Perspective, lines: Vec<Edge>) -> Vec
     segments
 }
 
-/// Returns two strokes on one plane, one on each other visible face, and sometimes one on an object in front of them.
+/// Returns two positive strokes on one face of the room, and a negative stroke on each other face that shows enough
+/// pixels. Sometimes adds a negative stroke at a random place, as on an object in front of the faces.
 fn random_strokes(random: &mut Random, camera: &Perspective, sides: &[f64; 4]) -> Vec<(Vec<u32>, bool)> {
     let mut places: [Vec<DVec2>; Face::COUNT] = Default::default();
     for _ in 0..400 {
@@ -246,8 +247,8 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // The search infers which face is the plane. With positive and negative strokes swapped, the plane is the back
-    // wall, and the ceiling is found at the same height.
+    // Positive strokes mark one face of the room, but do not say which face; the search infers this. With positive and
+    // negative strokes swapped, they mark the back wall. The ceiling must be found at the same height.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }
