@@ -3,11 +3,11 @@
 //! The caller specifies the error (noise) that the picture may have, or the time that it may take ([`Goal`]). The plan
 //! returns the settings of relighting and rendering, with the expected time and error of each.
 //!
-//! The cost of a path and the variance of paths depend on the machine and the scene and cannot be predicted by
-//! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few
-//! paths of the solution are traced ([`strength`]). Along the resulting curves of error against time, the time is
-//! allocated in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A
-//! stylisation is tried with settings from quick to careful at reduced resolution (`stylisation`).
+//! The cost of a path and the variance of paths depend on the machine and the scene. No formula predicts them, so they
+//! are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few paths of the solution
+//! are traced ([`strength`]). Along the resulting curves of error against time, the time is allocated in small steps,
+//! each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation is tried with settings
+//! from quick to careful at reduced resolution (`stylisation`).
 //!
 //! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
 //! [`crate::render::Film::error`]. An error of the emission's strength scales the emission's light in the picture by a
@@ -17,11 +17,13 @@
 //! Assumption: the machine later performs as it does now, with the same number of threads, and is otherwise idle while
 //! the plan is made.
 //!
-//! Not modelled: the stages before the lighting, which have no settings that trade error for time and report their own
-//! errors; bright paths so rare that a plan meets few or none of them, such as those of a small lamp seen in a
-//! polished surface (the picture's error may then be half or twice the expected one); the overshoot of a picture that
-//! stops at a target error, by up to one pass; the layers that are rendered beside the main image
-//! ([`crate::render::Outputs`]), which take time of their own.
+//! Not modelled:
+//!
+//! - the stages before the lighting: they have no settings that trade error for time, and report their own errors;
+//! - bright paths so rare that a plan meets few or none of them, such as those of a small lamp seen in a polished
+//!   surface: the picture's error may then be half or twice the expected error;
+//! - the overshoot of a picture that stops at a target error: up to one pass;
+//! - the layers that are rendered beside the main image ([`crate::render::Outputs`]), which take time of their own.
 
 mod curve;
 mod picture;

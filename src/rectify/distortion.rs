@@ -8,8 +8,8 @@
 //! divided by d / R², therefore yields one estimate of k per traced segment. A robust mean over the many lines of a
 //! room rejects mouldings and vaults, which are curved themselves.
 //!
-//! Lines that consist of several pieces (`edge_lines`) must be smooth as a whole: the tiles of a ceiling sag between
-//! the bars that carry them, so each edge of a tile is curved even without any lens distortion.
+//! A line of several pieces (`edge_lines`) is used only if a single parabola fits all of them. The tiles of a ceiling
+//! sag between the bars that carry them, so each edge of a tile is curved even without any lens distortion.
 
 use super::edge_lines::{self, Edge};
 use super::gradient::{Gradients, SIGMA};

@@ -131,7 +131,8 @@ fn candidates(lines: &[WeightedLine], focal: f64, count: usize, seed: u64, job: 
     Ok(found)
 }
 
-/// Generates the triplets to be scored.
+/// Generates the triplets to be scored: from each pair of candidates, from each candidate with a line that does not run
+/// towards it, and from each candidate alone.
 fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
     let mut out = Vec::new();
     let given = focal.map(|f| [f]);

@@ -136,10 +136,12 @@ impl Channel {
     }
 }
 
-/// Computes the CIEDE2000 difference below which 95 % of the target's colour errors stay. The deviation of each batch,
-/// scaled to the standard error of the mean, changes the target's colour; the result is the root mean square of these
-/// colour differences times Student's quantile. The three channels of a batch deviate together, so their correlation
-/// is included. The exposure shows the target as a middle grey.
+/// Computes the CIEDE2000 difference below which 95 % of the target's colour errors stay.
+///
+/// For each batch, the target's colour is changed by the light of `deviations / √(BATCHES - 1)`: over the batches, this
+/// change has the standard error of the mean. The result is the root mean square of the colour differences, times
+/// Student's quantile. The three channels of a batch deviate together, so their correlation is included. The exposure
+/// shows the target as a middle grey.
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();

@@ -40,8 +40,8 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Try two starting points: all groups at their nearest levels, and the unrounded powers. From the latter, the
-        // descent rounds one group after the other.
+        // Try two starting points: all groups at their nearest levels, and the unrounded powers. From the unrounded
+        // powers, the descent rounds one group after the other.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));

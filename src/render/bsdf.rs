@@ -70,7 +70,8 @@ struct Layers<'a> {
     wo: Vec3,
     /// Share of the light that passes through the material in a straight line towards the viewer.
     through: Vec3,
-    /// Selection probabilities of the diffuse layer and the top layer; the rest selects transmission.
+    /// Selection probabilities of the diffuse layer and of the top layer. Transmission is selected with the remaining
+    /// probability.
     shares: [f32; 2],
     /// The GGX lobe and its directional albedo; `None` if the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,

@@ -117,7 +117,7 @@ fn unreachable_targets_are_reported() {
     let mut bright = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
     bright.lights.push(PunctualLight::Point { position: Vec3::splat(0.5), intensity: Vec3::splat(1e3) });
     assert_eq!(unreachable(&bright, Vec3::ONE, "the other lights of the scene alone"), ErrorKind::Unreachable);
-    // A channel that the walls absorb completely gets the mean scale of the others.
+    // A channel that the walls absorb completely gets the mean scale of the other channels.
     let redless = room(Vec3::ONE, Vec3::new(0.0, 0.5, 0.5), Vec3::splat(0.5), Vec3::ONE);
     let solution = solve(&redless, Vec3::ONE, &params).unwrap();
     assert_eq!(solution.status, [TargetStatus::Dark, TargetStatus::Met, TargetStatus::Met]);

@@ -13,8 +13,8 @@ pub const LIGHT: usize = 6;
 /// Colours are divided by the albedo, or by this value if it is larger, because lamps and black surfaces have an albedo
 /// of 0. [bench filter]
 const MIN_ALBEDO: f32 = 0.02;
-/// Each half of a pixel has the weight `1 / (1 + CONFIDENCE_FALLOFF * r)`, where r is its variance divided by the mean
-/// variance of the same half in the pixels around. [bench filter]
+/// Each half of a pixel has the weight `1 / (1 + CONFIDENCE_FALLOFF * r)`. Here r is the variance of this half at the
+/// pixel, divided by the mean variance of the same half in the pixels around. [bench filter]
 const CONFIDENCE_FALLOFF: f32 = 0.3;
 /// Radius, in pixels, of the neighbourhood over which that mean variance is taken. [bench filter]
 const CONFIDENCE_RADIUS: usize = 6;

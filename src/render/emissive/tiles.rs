@@ -14,8 +14,8 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// A triangle is divided into tiles only if its bounding box has at most this many texels, or at most four times as
-/// many texels as the texture; either is enough. The limit bounds memory. [convention]
+/// A triangle is divided into tiles only if its bounding box has at most `max(MAX_TEXELS, 4 t)` texels, where t is the
+/// number of texels of the texture. The limit bounds memory. [convention]
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Bound on texture coordinates, in texels. Beyond it, single precision cannot separate neighbouring texels.
 /// [rounding]
