@@ -67,9 +67,9 @@ pub struct luxfer_emission_params {
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
-    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and patches
-    /// may lie anywhere.
+    /// Threshold of LUXFER_LAW_CORRELATION, in [0, 1]; default 0.6. A shift counts as a period of the lights if their
+    /// autocorrelation after this shift is at least this value. At 0, even a poor repetition counts. LUXFER_LAW_BEST
+    /// also tries periods with a lower autocorrelation. At 1, both choose LUXFER_LAW_FREE.
     pub min_regularity: f32,
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,

@@ -34,9 +34,9 @@ unsafe impl Send for User {}
 /// A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
 /// this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
 ///
-/// If the function returns an error, the job ends with this error, and its message is that of the last call that failed
-/// on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because luxfer_job_wait
-/// returns LUXFER_NOT_READY for a job that still runs.
+/// If the function returns an error, the job ends with this error. The message of the job is that of the last call that
+/// failed on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because
+/// luxfer_job_wait returns LUXFER_NOT_READY for a job that still runs.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(

@@ -373,11 +373,11 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
 }
 
 /// Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
-/// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. If no name is
-/// equal to it, a name that differs only in upper and lower case is taken; if there is none either, the only name that
-/// contains it. size is sizeof *found. Any thread.
-/// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
-/// there is no planar surface.
+/// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
+/// sought first, then a name that differs only in upper and lower case, then the only name that contains name in any
+/// case. Each step looks at the objects first, then at the materials. size is sizeof *found. Any thread.
+/// LUXFER_NOT_FOUND if no name fits, or if name is only a part of several names: the message lists names that exist;
+/// LUXFER_DEGENERATE if there is no planar surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_find_surface(
     scene: *mut luxfer_scene,

@@ -55,8 +55,8 @@ pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 /// Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour occurs in the
 /// artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
-/// The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
-/// each stays whole up to the seam.
+/// The artwork pixel that the largest number of overlapping patches put at this pixel. Where two pieces of the artwork
+/// meet, each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 /// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST. The proportion varies, so that each place of the
 /// picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
@@ -75,7 +75,7 @@ pub struct luxfer_stylize_params {
     pub mode: luxfer_stylize_mode,
     /// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
     pub search: luxfer_stylize_search,
-    /// Width of a patch in pixels, odd, in [1, 33]; default 5.
+    /// Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller than that.
     pub patch: u32,
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
@@ -131,10 +131,10 @@ pub struct luxfer_stylize_params {
     /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
     /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The
-    /// penalty is added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over
-    /// the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
-    /// lambda.
+    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. 2016 chose for their
+    /// picture of this method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is
+    /// the weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
+    /// used as often as the average has the penalty lambda.
     pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,
