@@ -26,7 +26,7 @@ pub struct Classified {
     pub mask: Image,
     pub confidence: Image,
     pub unseen: Image,
-    /// Mean of `unseen` over the pixels of the region to be segmented.
+    /// Mean of `unseen` (see [`super::Segmentation::unseen`]) over the pixels of the region to be segmented.
     pub mean_unseen: f64,
     /// Number of feature values that are NaN or infinite.
     pub bad: usize,
@@ -66,7 +66,8 @@ impl Blank {
 
 /// The parameters of the classifier, converted to `f32` for the tiles.
 struct Classifier<'a> {
-    /// The image channel of each column of the samples.
+    /// The image channel of each column of the samples. A sample is a painted pixel from which the model was learnt, and
+    /// a column is one of the features that the samples store.
     channels: &'a [usize],
     /// Whether the image has [`CHANNELS`] channels and `channels` lists all of them.
     has_all_channels: bool,

@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn the_staircase_of_an_oblique_edge_becomes_a_line() {
-        // On each row, the blurred value must cross 0.5 close to the ideal edge, a line of slope 1/4.
+        // On each row, the blurred value must cross 0.5 close to the ideal edge, x = (40 - y) / 4 + 3/8. The 3/8 is the
+        // mean distance by which the staircase of whole pixels exceeds (40 - y) / 4.
         let smooth = smooth(|x, y| 4 * x + y < 40);
         for y in 4..12 {
             let row = |x: usize| smooth.pixel(x, y)[0];

@@ -6,7 +6,8 @@ use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::simd::widest;
 
 /// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
-/// at least 0.1 along each feature; over both classes, the standard deviation is at most 1. [origin not recorded]
+/// at least 0.1 along each feature. For comparison, the samples of both classes together have a standard deviation of
+/// at most 1. [origin not recorded]
 const MIN_VARIANCE: f64 = 0.01;
 /// Minimum percentage of a class's samples that lie inside its ellipsoid.
 const WITHIN: usize = 99;

@@ -28,7 +28,8 @@ const RADIUS: usize = 256;
 /// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
 /// [bench stylit:autocomplete]
 const MAX_USES: f64 = 100.0;
-/// Maximum number of rounds that search other matches for the target patches beyond `MAX_USES`.
+/// Maximum number of rounds. In each round, the target patches beyond the maximum number of uses search for other
+/// matches.
 const ROUNDS: usize = 8;
 /// `REACH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out.
 /// `DIFFUSION_FACTOR`: factor of each step. [bench stylit:autocomplete]

@@ -19,14 +19,15 @@ use crate::job::Job;
 /// Number of blocks along the longer side of the exemplar, and the minimum side of a block in pixels.
 const BLOCKS: usize = 48;
 const MIN_SIDE: usize = 6;
-/// Guides are equal or similar if they differ by at most this much, as a weighted root mean square of channels in
-/// `[0, 1]`. The guides within a block are equal. [bench stylit:doubts]
+/// The guides of two blocks are equal or similar if they differ by at most this much, as a weighted root mean square of
+/// channels in `[0, 1]`. Blocks within which the guides deviate from their mean by more than `EQUAL` are left out.
+/// [bench stylit:doubts]
 const EQUAL: f32 = 0.03;
 const SIMILAR: f32 = 0.1;
 /// A block counts as elsewhere if it is more than this number of columns or rows of blocks away. A defect of a block
 /// may extend over nearer blocks.
 const NEAR: usize = 3;
-/// Minimum number of blocks with equal or similar guides with which a block is compared.
+/// A block is compared only if at least this many blocks elsewhere have equal (or similar) guides.
 const MIN_OTHERS: usize = 16;
 /// Minimum grain, in units of the display encoding (white = 1). Flat paint has less grain and would make any
 /// difference look large. [bench stylit:doubts]
@@ -41,7 +42,8 @@ pub struct Doubts {
     /// Largest difference, in grains, of a block to the blocks elsewhere with similar guides, and the block's centre.
     pub blemish: f64,
     pub blemish_at: Option<[usize; 2]>,
-    /// Share of the blocks whose light has two paints, and the centre of the block at which they differ most.
+    /// Share of the blocks whose light has two paints, among the blocks with at least `MIN_OTHERS` blocks of equal
+    /// guides elsewhere; and the centre of the block at which the paints differ most.
     pub ambiguous: f64,
     pub ambiguous_at: Option<[usize; 2]>,
 }

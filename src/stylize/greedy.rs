@@ -6,13 +6,14 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
-/// Coherence parameter κ (Hertzmann et al., §3.2). On the finest level, a coherent match is taken if its distance is
-/// less than (1 + κ) times the distance of the nearest match. [origin not recorded]
+/// Coherence parameter κ (Hertzmann et al., §3.2). A coherent match is taken if its distance is less than (1 + κ / 2^l)
+/// times the distance of the nearest match, where l is the pyramid level, 0 for the finest. [origin not recorded]
 const COHERENCE: f64 = 5.0;
 
 /// Paints the centre of every patch in scan order, from the patch's nearest match or from a coherent match, which
 /// continues the match of a neighbour painted earlier. A coherent match is preferred if its distance is within the
-/// tolerance of `COHERENCE`. Each pixel depends on the pixels before it, so the function runs on one thread.
+/// tolerance of `COHERENCE`. `depth` is the pyramid level. Each pixel depends on the pixels before it, so the function
+/// runs on one thread.
 pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
     let patch = level.problem.patch;
     let half = patch / 2;

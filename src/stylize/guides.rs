@@ -141,8 +141,8 @@ fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     Ok(broken)
 }
 
-/// A scale and an offset, followed by the sRGB curve if `curve`. NaN and infinity stay unchanged, so that
-/// [`clear_broken`] finds them later.
+/// Maps a value `v` to `(v - offset) * scale`, clamped to `[0, 1]`, and applies the sRGB curve if `curve` is true. NaN
+/// and infinity stay unchanged, so that [`clear_broken`] finds them later.
 struct Normalisation {
     offset: f32,
     scale: f32,

@@ -51,8 +51,8 @@ pub struct Input<'a> {
     /// The field of an earlier result for a target of the same size, as initial matches.
     pub previous: Option<&'a Field>,
     /// Displacement in pixels from each target pixel to the position of the same surface point in the frame of
-    /// `previous`: two channels, NaN where the point was not visible. Each target pixel takes over the match of the
-    /// previous frame at the displaced position; the share `Params::coherence` of these matches is kept.
+    /// `previous`: two channels, NaN where the point was not visible. Each target patch takes over the match of the
+    /// patch from which its centre has moved; the share `Params::coherence` of these matches is kept.
     pub motion: Option<&'a Image>,
     /// The memory of the frame of `previous`. With it, paint follows changes of light, and the report says how the
     /// motion agrees with the guides.

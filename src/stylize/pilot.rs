@@ -27,7 +27,8 @@ pub struct Prediction {
 /// the maximum exponent. [origin not recorded]
 const MAX_GROWTH: f64 = 0.12;
 
-/// Pilot runs of several settings on one input.
+/// Pilot runs of several settings on one input. `ladder` holds the settings, and `usual` is the index of the reference
+/// settings in `ladder`. `preparing` is the time in seconds that it took to form the problem at full resolution.
 pub struct PilotRuns<'a> {
     input: Input<'a>,
     ladder: &'a [Params],

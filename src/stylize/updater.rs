@@ -1,5 +1,5 @@
-//! Shading study (StyLit, §4.2): while the artist continues painting, the result is updated. The parts of it that come
-//! from changed parts of the artwork are synthesised again, starting from the field of the last result. The time for
+//! Shading study (StyLit, §4.2): while the artist continues painting, the result is updated. The parts of the result
+//! that show changed parts of the artwork are synthesised again, starting from the last field. The time for
 //! matching and painting is proportional to the affected area. The guides and the artwork are quantised anew as a
 //! whole.
 

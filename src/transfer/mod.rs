@@ -154,7 +154,7 @@ pub struct LitScene {
     pub scene: Arc<Scene>,
     pub surface: Surface,
     pub placed: Placed,
-    /// Metres per texel.
+    /// Metres per texel along the u axis of the surface.
     pub texel_size: f64,
 }
 

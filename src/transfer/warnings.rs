@@ -5,9 +5,9 @@ use crate::segment::{self, StrokeSet};
 use crate::warning::Warning;
 
 impl Results {
-    /// Returns the warnings about the scene, with `None` instead of a stage, then the warnings about the results that
-    /// exist, each with the stage of the result, in the order of the stages. `strokes` are the strokes from which the
-    /// masks were made.
+    /// Returns the warnings about the results that exist, each with the stage of the result, in the order of the
+    /// stages. A warning about an implausible size of the scene precedes them, with `None` instead of a stage; it is
+    /// given only if the stage Emission has run. `strokes` are the strokes from which the masks were made.
     pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Option<Stage>, Warning)> {
         let mut all = Vec::new();
         if let Some(lit) = &self.unsolved {

@@ -69,8 +69,8 @@ impl<'a> Materials<'a> {
         };
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
-        // An index of refraction of 0 means a surface that reflects everything (`KHR_materials_ior`). Treat it as the
-        // default, 1.5.
+        // `KHR_materials_ior`: an index of refraction of 0 stands for a surface that reflects everything. Such surfaces
+        // are not modelled; the field `ior` below gets the default, 1.5, instead of 0.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
@@ -222,7 +222,8 @@ impl<'a> Materials<'a> {
         Ok(Texture { name: stored.name.clone(), image: decoded, wrap: stored.wrap })
     }
 
-    /// Decodes an image, after checking the size in its header against the budget.
+    /// Decodes an image. Before any pixel is decoded, the budget lends the decoder's temporary memory, and `count` adds
+    /// the size in the image's header to the totals.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let mut image = None;
         self.budget.lend(io::working_bytes(bytes)?, &mut || {
@@ -239,7 +240,8 @@ impl<'a> Materials<'a> {
         io::decode(bytes, encoding)
     }
 
-    /// Adds a texture to the totals, and returns an error if all textures so far exceed [`MAX_PIXELS`] or the budget.
+    /// Adds a texture's pixels to the total of all textures, and its samples (pixels × channels, stored as `f32`) to
+    /// the budget. Errors: the total exceeds [`MAX_PIXELS`], or the budget refuses.
     fn count(&mut self, pixels: u64, samples: u64) -> Result<()> {
         self.pixels += pixels;
         if self.pixels > MAX_PIXELS {

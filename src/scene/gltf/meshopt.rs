@@ -9,8 +9,8 @@ use meshoptimizer_rs::codec::{BufferView, Filter, Mode};
 use meshoptimizer_rs::{Limits, Workspace};
 use serde_json::Value;
 
-/// Maximum ratio of decoded to encoded bytes. The attribute codec reaches it: it encodes a group of 64 equal bytes in
-/// one byte.
+/// Maximum ratio of decoded to encoded bytes. A buffer view that states a larger ratio is refused before its memory is
+/// allocated. The attribute codec reaches the ratio: it encodes a group of 64 equal bytes in one byte.
 const MAX_RATIO: u64 = 64;
 
 /// Number of decoded bytes that are allowed beyond `MAX_RATIO` times the encoded bytes: one block of the codec.

@@ -29,8 +29,8 @@ const MAX_CORNERS: usize = 1 << 16;
 /// twice as many remain. They fit into the library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
-/// Returns the new origin of the scene, in metres, in coordinates transformed by `world`; zero if the scene lies near
-/// the file's origin.
+/// Returns the new origin of the scene, in metres; zero if the scene lies near the file's origin. `world` converts
+/// coordinates of the file to metres.
 pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     let mut corners = Vec::new();
     for (node, transform) in file.root.nodes.iter().zip(node_transforms(file, world)?) {
@@ -54,8 +54,9 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
 }
 
-/// Returns the corners of a primitive's bounding box in the coordinates of its node, as its accessor states them. Both
-/// corners are zero if the accessor states no bounds, or if its integers are normalised.
+/// Returns the lowest and the highest corner of a primitive's bounding box in the coordinates of its node, as its
+/// accessor states them. Both corners are zero if the accessor states no bounds. Both are also zero for normalised
+/// integers, because the accessor then states its bounds as integers instead of coordinates.
 fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);

@@ -256,7 +256,7 @@ fn strips_fans_and_sparse_accessors() {
         });
         import(&file, None).unwrap().meshes.first().map(|m| m.triangles.clone())
     };
-    // The fourth index byte is 0, so the indices are 0 1 2 0.
+    // `with_mode` reads four index bytes instead of three. The fourth byte is 0, so the indices are 0 1 2 0.
     assert_eq!(with_mode(5).unwrap(), [[0, 1, 2], [1, 0, 2]]);
     assert_eq!(with_mode(6).unwrap(), [[1, 2, 0]]);
     assert_eq!(with_mode(4).unwrap(), [[0, 1, 2]]);
@@ -321,7 +321,8 @@ fn inconsistent_files_are_errors_that_give_the_reason() {
         let error = import(&triangle_file(edit), None).expect_err(&format!("case {i}: {message}"));
         assert!(error.message.contains(message), "case {i}: {error}");
     }
-    // Two nodes share a mesh of 33 primitives of 2^20 vertices: the mesh is below the limit of 2^26, the scene is not.
+    // Two nodes share a mesh of 33 primitives of 2^20 vertices. The limit is 2^26 vertices: the mesh alone is below it,
+    // and the scene, which has the mesh twice, is above it.
     let bomb = triangle_file(|f| {
         f["accessors"][0] = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
         f["meshes"][0]["primitives"] = json!(vec![json!({ "attributes": { "POSITION": 0 }, "indices": 1 }); 33]);
@@ -400,8 +401,8 @@ fn broken_bytes_never_panic() {
         let mut rng = Rng::new(42, &[round]);
         let mut broken = glb.clone();
         for _ in 0..1 + rng.below(4) {
-            // Corrupt mostly the JSON, which holds the structure. Replace digits by digits often enough to create
-            // inconsistencies.
+            // Corrupt mostly the JSON, which holds the structure. Replace a digit by a random digit: the JSON stays
+            // readable, and its numbers contradict each other.
             let at = if rng.below(4) == 0 { rng.below(glb.len()) } else { 20 + rng.below(json_length) };
             broken[at] = match rng.below(3) {
                 _ if broken[at].is_ascii_digit() => b'0' + rng.below(10) as u8,

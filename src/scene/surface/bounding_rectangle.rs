@@ -20,8 +20,9 @@ pub struct BoundingRectangle {
     pub size: DVec2,
 }
 
-/// Fits the smallest bounding rectangle of points in the plane through `centre`. The unit `normal` points at the
-/// viewer, to whom u runs right and v runs down.
+/// Fits a bounding rectangle to points in the plane through `centre`. The result is the smallest rectangle, unless the
+/// rectangle aligned with the world axes is nearly parallel (`COS_SNAP`) or nearly as small (`MIN_SAVING`); then it is
+/// the aligned one. The unit `normal` points at the viewer, to whom u runs right and v runs down.
 pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> BoundingRectangle {
     let upright = upright(normal);
     let turned = smallest(points, centre, upright, normal);

@@ -192,10 +192,11 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
             assert!((back - mesh.positions[i]).length() < 1e-5);
         }
     }
-    // The patch is found by its own name and by the original name.
+    // The patch is found by its own name.
     assert_eq!(find(&scene, "Lid (lights)").unwrap().size, surface.size);
 
-    // A sheet loses all triangles but keeps its mesh index, and its name now finds the patch.
+    // A sheet loses all triangles but keeps its mesh index. Its name, which is part of the patch's name, now finds the
+    // patch.
     let mut scene = shell();
     let index = cover(&mut scene, "Lid").unwrap();
     let surface = find(&scene, "Lid").unwrap();

@@ -42,7 +42,7 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// The least brightness of the lamps is determined without this share of the stroke pixels, the darkest ones, because
+/// Share of the stroke pixels, the darkest ones, that is ignored when the least brightness of the lamps is determined:
 /// hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]

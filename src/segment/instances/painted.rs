@@ -27,7 +27,8 @@ const PURITY_POWER: i32 = 4;
 /// stroke. Regions below it are fragments. [judged on 28 photos]
 const MIN_CONTOUR_GRADIENT: f64 = 0.4;
 
-/// The pixels under the strokes of each class. A pixel under several strokes belongs to the last one.
+/// The positive strokes as pixels, and the negative strokes as counts per node of the component tree. `width` is the
+/// width of the photo. A pixel under several strokes belongs to the last of them.
 pub struct Paint<'a> {
     pub width: usize,
     /// Pixels of each positive stroke.

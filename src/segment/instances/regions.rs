@@ -141,8 +141,8 @@ impl OnFace {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in a row parallel to a side of the room's face: the difference between their centres
-    /// across the row is at most `share` times the width of the wider node.
+    /// Whether two nodes lie in a row along u or along v, the axes of the room's face. For a row along u, their centres
+    /// must differ in v by at most `share` times the larger of their extents in v.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);

@@ -43,8 +43,8 @@ const LONGER: f64 = 2.5;
 /// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
 /// area and aspect on the plane do not depend on it. [judged on 44 photos]
 const MIN_MEASURED_SHARE: f64 = 0.01;
-/// Maximum ratio of a lamp's breadth in pixels to the breadth of the broadest lamp under a stroke. It applies only if
-/// the room has no box layout. [judged on 28 photos]
+/// Maximum ratio of a lamp's breadth (short axis of its ellipse, in pixels) to the breadth of the broadest lamp under a
+/// stroke. It applies only if the room has no box layout. [judged on 28 photos]
 const MAX_BREADTH_RATIO: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]

@@ -1,4 +1,4 @@
-//! Defects of the exemplar.
+//! Tests of the reports on defects of the exemplar: blemishes, and two paints for one light.
 
 use super::*;
 use crate::warning::Code;

@@ -388,7 +388,7 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
             f["meshes"][0]["primitives"][0]["material"] = json!(0);
             let accessor = add_floats(f, kind, 3, colours);
             f["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor.into();
-            // A second node with the same mesh shares the new material.
+            // A second node shows the same mesh: both must share the material that includes the vertex colour.
             f["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }]);
             f["scenes"][0]["nodes"] = json!([0, 1]);
         });
