@@ -68,7 +68,8 @@ pub struct Rating {
 pub struct Source {
     /// Index of the luminaire among the lights of the scene.
     pub light: usize,
-    /// Luminance of the luminaire's visible part in cd/m².
+    /// Luminance of the luminaire's visible part in cd/m², times the root mean square transmittance of the panes in
+    /// front of it.
     pub luminance: f64,
     /// Solid angle of the luminaire's visible part in steradians.
     pub solid_angle: f64,
@@ -175,7 +176,7 @@ impl Lamp {
     }
 
     /// Returns which share of the opening's projected area is visible, and the mean squared transmittance over the
-    /// visible part.
+    /// visible part. The transmittance is squared because the rating sums L² ω.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);

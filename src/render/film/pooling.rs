@@ -8,10 +8,12 @@ use crate::job::Job;
 /// Binomial weights of the pixels at distances 0, 1, 2 and 3 along an axis. [bench error_control]
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
-/// Returns the variances of the pixels of an image, pooled over neighbouring pixels. `paths` has the number of paths
-/// of each pixel; pixels without paths count as having one. Each variance is multiplied by the pixel's number of
-/// paths, which gives the variance of a single path. This is pooled, and divided by the pixel's own number of paths.
-/// So a pixel with many paths does not get the large variance of a neighbour with few paths.
+/// Pools the variances of the pixel means over neighbouring pixels that may have different numbers of paths.
+///
+/// `variance` holds the variance of each pixel's mean, and `paths` the number n of paths of each pixel (0 counts as 1).
+/// The variance of a single path is n × the variance of the mean. These variances are pooled by [`pooled`], and the
+/// result is divided by the pixel's own n. So a pixel with many paths does not get the large variance of a neighbour
+/// with few paths.
 pub fn pooled_by_paths(variance: &Image, paths: &Image, job: Job) -> Result<Image> {
     let (width, channels) = (variance.width, variance.channels);
     let most = paths.data.iter().fold(1f32, |most, &n| most.max(n));

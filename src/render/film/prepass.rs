@@ -59,7 +59,8 @@ impl<'a> Prepass<'a> {
         self.median_radiance
     }
 
-    /// Returns the roulette weight of the tile whose first pixel is given.
+    /// Traces a few paths through a tile and returns the roulette weight that all its pixels share; `None` if there is
+    /// no median radiance. `left` and `top` are the column and the row of the tile's top left pixel.
     pub fn weight(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
         let end = |start: usize, size: usize| (start + TILE).min(size);
         let (right, bottom) = (end(left, self.params.width), end(top, self.params.height));

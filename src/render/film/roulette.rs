@@ -69,7 +69,8 @@ impl RouletteWeights {
     }
 
     /// Returns the median radiance of the image divided by the radiance of a pixel, per channel, limited by
-    /// [`MAX_WEIGHT`].
+    /// [`MAX_WEIGHT`]. The radiance is the pixel's mean blended with the mean of the tile; for a pixel without paths,
+    /// it is the mean of the tile alone.
     pub fn weight(&self, pixel: &Pixel) -> Vec3 {
         let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
         let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));

@@ -12,10 +12,10 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::DVec3;
 
-/// In the relative error of the whole image, each pixel's error is divided by the pixel's radiance, or by this share
-/// of the image's mean if the pixel is darker. The share is lower than `adaptive::MIN_RELATIVE_LUMINANCE`, the limit
-/// for targets on single pixels, because one dark pixel cannot delay the whole image here. [convention: the relative
-/// error is defined with it]
+/// In the relative error of the whole image, each pixel's error is divided by the pixel's radiance, or by this share of
+/// the image's mean if the pixel is darker. `adaptive::MIN_RELATIVE_LUMINANCE` is the same limit for errors of single
+/// pixels. That limit is higher, because a render continues until every pixel is accurate enough, so one dark pixel
+/// could delay it. Here, the errors are averaged over the image. [convention: the relative error is defined with it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// Sums of paths, radiance and variance over the pixels of a tile or of the image.
@@ -27,10 +27,10 @@ pub struct Statistics {
     pub max_paths: u32,
     /// Sum, over the pixels, of the pixel's mean radiance, averaged over the channels.
     mean: f64,
-    /// Sum, over the pixels, of the variance of the pixel's mean radiance, times the squared factor of
-    /// [`Accumulator::statistics`].
+    /// Sum, over the pixels, of w² × the variance of the pixel's mean radiance. The factor w on the pixel's error is
+    /// the result of the function `weight` that [`Accumulator::statistics`] takes.
     variance: f64,
-    /// Sum, over the pixels, of the variance of the radiance of a single path, times the same squared factor.
+    /// Sum, over the pixels, of w² × the variance of the radiance of a single path.
     pub path_variance: f64,
 }
 

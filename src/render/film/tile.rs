@@ -62,7 +62,8 @@ impl<'a> Tile<'a> {
 
     /// Traces paths until every pixel has the number of paths that `pass` asks for, or until `is_over` returns true.
     pub fn extend(&mut self, pass: &Pass, is_over: impl Fn() -> bool) {
-        // Trace the first path of each pixel alone, as coarse passes do; trace all further paths in blocks.
+        // Trace the first path of each pixel alone, and all further paths in blocks. Coarse passes have already traced
+        // the first path of some pixels, but blocks need equal numbers of paths in all pixels.
         for i in 0..AREA {
             let Some((x, y)) = self.context.grid.place(self.number, i) else { continue };
             let wanted = pass.count(self.number, x, y);

@@ -9,15 +9,15 @@ use crate::error::Result;
 use crate::render::vicinity::PositionReservoir;
 use std::sync::Arc;
 
-/// Unlikely lights get a selector of their own only if they took at least this share of all light samples so far. If
-/// they took less, the selector would save hardly any samples, because they still get the share `UNLIKELY_SHARES` (in
-/// `reach`). The render then keeps one selector for all lights, and its image equals, to the last bit, the image
-/// without learning. [bench buildings]
+/// Unlikely lights get a selector of their own only if at least this share of all light samples so far went to them.
+/// Below this share, the selector would save hardly any samples: it would still send 3 to 10 % of the samples to
+/// unlikely lights (`reach::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its image equals,
+/// to the last bit, the image without learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
-/// The first decision is made after this number of light samples, or after half as many samples as there are lights if
-/// that is more. [convention]
+/// The first decision is made after max(`FIRST_DECISION`, number of lights / 2) light samples. [convention]
 const FIRST_DECISION: u64 = 256;
-/// Maximum number of light samples between two decisions, or half the number of lights if that is more. [convention]
+/// After a decision at n light samples, the next one is made at min(2 n, n + max(`DECISION`, number of lights / 2))
+/// samples. [convention]
 const DECISION: u64 = 4096;
 /// A scene counts as closed if at most this share of the samples of directional lights and of the environment arrives
 /// unoccluded. [convention]

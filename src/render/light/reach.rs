@@ -120,7 +120,7 @@ impl Split {
         self.likely.groups[2] * self.shares[0] + self.unlikely.groups[2] * self.shares[1]
     }
 
-    /// Whether the same lights have weight 0, and are thus unlikely, in `weights` as in this division.
+    /// Whether `weights` would give the same division: exactly the present unlikely lights have weight 0.
     pub fn is_same(&self, weights: &[f32]) -> bool {
         self.weights.iter().zip(weights).all(|(&a, &b)| (a > 0.0) == (b > 0.0))
     }

@@ -26,10 +26,11 @@ const MAX_TRANSITIONS: usize = 20_000_000;
 pub struct Automaton {
     alphabet: Alphabet,
     start: u16,
-    /// The next state for each state, class of meshes (which no expression distinguishes) and kind of scattering.
+    /// For each state and class of meshes: the next state after each kind of scattering. No expression distinguishes
+    /// the meshes of a class.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// For each state and light event: which list of `lists` names the expressions that accept a path which reaches
-    /// this light in this state.
+    /// For each state and light event: index in `lists`. A path that reaches this light in this state is accepted by
+    /// exactly the expressions on that list.
     ends: Vec<u16>,
     /// Lists of expressions. For each path, the expressions that accept it form one of these lists; list 0 is empty.
     lists: Vec<Vec<u16>>,

@@ -99,7 +99,8 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Starts at the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
+    /// Adds the light of a recorded subpath, multiplied by `importance`, for a path that starts at the camera and joins
+    /// the subpath after scattering at a primary vertex on `mesh`. The current components do not matter.
     #[inline]
     pub fn replay_from_camera(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
         let [diffuse, glossy, ..] = *self.automaton.next(self.automaton.start(), self.automaton.class(mesh));
@@ -193,7 +194,8 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Adds the contribution of a light sample at a vertex.
+    /// Adds the contribution of a light sample at a vertex on `mesh`. A copy of each component scatters at the vertex
+    /// and ends at the light; the components themselves stay in their states.
     #[inline(never)]
     fn connect(&mut self, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, sums, .. } = self;
