@@ -7,9 +7,9 @@ use crate::photometry::opening::Opening;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. A pixel near a lamp may
-/// reach a multiple of this value. The square of the pixel does not overflow `f32` (3.4e38) as long as the multiple is
-/// below 18,000. For comparison, the sun's disc has 1.6e9 cd/m².
+/// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. A pixel near a lamp
+/// may reach a multiple of this value. The square of the pixel does not overflow `f32` (3.4e38) as long as the multiple
+/// is below 18,000. For comparison, the sun's disc has 1.6e9 cd/m².
 // [rounding]
 pub const MAX_LIGHT: f32 = 1e15;
 

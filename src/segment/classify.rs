@@ -66,7 +66,7 @@ impl Blank {
 
 /// The parameters of the classifier, converted to `f32` for the tiles.
 struct Classifier<'a> {
-    /// The image channel of each column of the samples. A sample is a painted pixel from which the model was learnt, and
+    /// The image channel of each column of the samples. A sample is a painted pixel from which the model was learnt;
     /// a column is one of the features that the samples store.
     channels: &'a [usize],
     /// Whether the image has [`CHANNELS`] channels and `channels` lists all of them.

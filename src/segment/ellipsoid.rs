@@ -9,7 +9,8 @@ use crate::simd::widest;
 /// at least 0.1 along each feature. For comparison, the samples of both classes together have a standard deviation of
 /// at most 1. [origin not recorded]
 const MIN_VARIANCE: f64 = 0.01;
-/// Minimum percentage of a class's samples that lie inside its ellipsoid.
+/// The ellipsoid of a class reaches to this percentile of its samples' distances from the centre, or to one standard
+/// deviation if that is farther.
 const WITHIN: usize = 99;
 
 /// Mean and covariance of a class's samples.
@@ -25,8 +26,8 @@ pub struct Spread<'a> {
 /// inside.
 pub struct Ellipsoid {
     pub centre: Vec<f64>,
-    /// The matrix `A`, row by row: the inverse covariance, scaled so that at least [`WITHIN`] percent of the samples
-    /// lie inside.
+    /// The matrix `A`, row by row: the inverse covariance divided by the squared reach. The reach is the [`WITHIN`]th
+    /// percentile of the samples' Mahalanobis distances, but at least 1.
     pub inverse: Vec<f64>,
 }
 

@@ -27,7 +27,9 @@ pub struct Segmentation {
     pub unseen: Image,
     /// Expected share of wrong pixels, in `[0, 1]`. For a surface: `(1 - u) e_parts + u e_strokes`, where `u` is the
     /// mean of `unseen`. `e_parts` is the error on held-out parts of strokes, and applies to pixels like the painted
-    /// ones; `e_strokes` is the error on held-out whole strokes, and applies to pixels unlike the painted ones.
+    /// ones; `e_strokes` is the error on held-out whole strokes, and applies to pixels unlike the painted ones. For
+    /// lamps: the expected number of wrong pixels in the lamps and in doubtful regions, divided by the pixels of the
+    /// plane. 0 for a mask that the caller supplied.
     pub error: f64,
     /// The classifier. `None` if there is none: for lamps, for a proposal that is a whole face of the room, and for a
     /// mask that the caller supplied.

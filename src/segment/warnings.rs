@@ -6,8 +6,8 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// A warning is given if the features of more than this share of the mask are unlike those of every stroke.
-/// [judged on 38 photos]
+/// A warning is given if the features of more than this share of the mask are unlike those of every stroke. For lamps:
+/// if doubtful regions make up more than this share of the lamps and doubtful regions together. [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;

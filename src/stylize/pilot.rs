@@ -48,9 +48,9 @@ pub struct PilotRuns<'a> {
 }
 
 impl<'a> PilotRuns<'a> {
-    /// Runs all settings in `ladder`, which must have the same [`Params::preview`]; ignores `input.previous`. The
-    /// reference settings, at index `usual`, run at three resolutions, of which the highest has 32 to 128 thousand
-    /// pixels. All other settings run at the middle resolution.
+    /// Runs all settings in `ladder`, which must have the same [`Params::preview`]; ignores the previous frame and the
+    /// motion in `input`. The reference settings, at index `usual`, run at three resolutions, of which the highest has
+    /// 32 to 128 thousand pixels. All other settings run at the middle resolution.
     ///
     /// # Errors
     /// Those of [`super::run`].

@@ -3,8 +3,9 @@
 //!
 //! A ceiling is level, lies high in the scene and covers much of the scene's floor plan. The score is the product of
 //! three shares: the share of the area that is level, the share of the scene's floor plan that the level area covers,
-//! and the square of the area's height relative to the scene's height. Only the order of scores has a meaning. Each
-//! triangle is read once, so that large scenes are listed quickly.
+//! and the square of the area's height relative to the scene's height. A name that says "ceiling" raises the score
+//! (`NAMED`). Only the order of scores has a meaning. Each triangle is read once, so that large scenes are listed
+//! quickly.
 //!
 //! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
 //! side.
@@ -17,7 +18,8 @@ use glam::{DVec2, DVec3};
 /// Cosine of 15 degrees: triangles inclined by less than this angle count as level. [convention]
 const LEVEL: f64 = 0.965_925_826;
 
-/// If a name contains a word for a ceiling, the score `s` becomes `s + NAMED (1 - s)`. [convention]
+/// If a name contains a word for a ceiling, and at least one triangle is level, the score `s` becomes
+/// `s + NAMED (1 - s)`. [convention]
 const NAMED: f64 = 0.5;
 
 /// Words for a ceiling in lower case, in several languages.

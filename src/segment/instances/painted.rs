@@ -23,8 +23,8 @@ const COVER_POWER: f64 = 1.1;
 /// the painted pixels of the region. The exponent all but rules out regions with many negative pixels.
 /// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
-/// Minimum contour gradient of a region, as a share of the highest contour gradient among the regions under the same
-/// stroke. Regions below it are fragments. [judged on 28 photos]
+/// Minimum contour gradient of a region, as a share of the highest contour gradient among the regions chosen for the
+/// same stroke. Regions below it are fragments. [judged on 28 photos]
 const MIN_CONTOUR_GRADIENT: f64 = 0.4;
 
 /// The positive strokes as pixels, and the negative strokes as counts per node of the component tree. `width` is the
