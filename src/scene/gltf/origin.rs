@@ -18,8 +18,8 @@ use gltf::json::validation::Checked;
 /// The coordinates of a new origin are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
-/// The scene's origin moves along an axis if the scene's distance along this axis is at least this multiple of its
-/// half-extent ([`detail`]), and at least [`GRID`]. [convention]
+/// The origin moves along each axis on which the scene's distance from the file's origin is at least `FAR` times the
+/// scene's half-extent ([`detail`]), and at least [`GRID`]. [convention]
 const FAR: f64 = 4.0;
 
 /// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin

@@ -31,13 +31,13 @@ const MIN_AREA_RATIO: f64 = 1.0 / 27.0;
 /// Maximum ratio of a lamp's area in pixels to the area of the largest lamp under a stroke. It applies only if the
 /// room has no box layout. [judged on 28 photos]
 const MAX_AREA_RATIO: f64 = 1.6;
-/// The area of a lamp, measured on the plane, must lie between the smallest area of the lamps under the strokes divided
-/// by this factor, and their largest area times this factor. Bloom and blur enlarge distant lamps.
-/// [judged on 44 photos]
+/// The area of a lamp, measured on the plane, must lie in `[min / MAX_FACE_AREA_RATIO, max * MAX_FACE_AREA_RATIO]`,
+/// where min and max are the smallest and the largest area of the lamps under the strokes. Bloom and blur enlarge
+/// distant lamps. [judged on 44 photos]
 const MAX_FACE_AREA_RATIO: f64 = 4.0;
-/// The aspect (length over width) of a lamp on the plane must lie between the least aspect of the lamps under the
-/// strokes divided by `ROUNDER`, and their largest aspect times `LONGER`. Blur widens thin lamps, and lengthens
-/// distant lamps along the line of sight. [bench photos:tune]
+/// The aspect (length over width) of a lamp on the plane must lie in `[min / ROUNDER, max * LONGER]`, where min and max
+/// are the least and the largest aspect of the lamps under the strokes. Blur widens thin lamps, and lengthens distant
+/// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
@@ -53,9 +53,9 @@ const MIN_CUT_AREA: f64 = 0.06;
 const ON_PLANE: f64 = 0.5;
 /// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// A region is like a lamp that is known already if region's area / lamp's area and region's aspect / lamp's aspect lie
-/// in these ranges. Regions off the plane, and regions that meet only the weaker limits [`ALIKE`], must be like a known
-/// lamp. Blur enlarges distant lamps. [bench photos:tune]
+/// A region is like a known lamp if its area divided by the lamp's area lies in `EQUAL_AREA`, and its aspect divided by
+/// the lamp's aspect lies in `EQUAL_ASPECT`. Two kinds of regions must be like a known lamp: those off the plane, and
+/// those that meet only the weaker limits [`ALIKE`]. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the
@@ -64,9 +64,9 @@ const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum CIELAB difference between the median colour of the ring of pixels around a region off the plane and that of
-/// the ring around a lamp under a stroke. Up to this difference, the region may lie on a part of the plane that the
-/// given mask of the plane misses. [bench photos:tune]
+/// Maximum CIELAB difference between the median colours of two rings of pixels: around a region off the plane, and
+/// around a lamp under a stroke. If the rings differ less, the region may lie on a part of the plane that the given
+/// mask of the plane misses. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// Candidates are tried in descending order of contour gradient × area ^ `AREA_POWER`. Of nested regions with almost
 /// equally sharp contours, the largest is therefore tried first. [judged on 44 photos]
