@@ -156,7 +156,7 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
     Ok(Output { lux, error, points, min, mean: sum / n, max, mean_error: variances.sqrt() / n })
 }
 
-/// The points at which light is received.
+/// The calculation points, in the form from which [`Receivers::at`] makes the vertices of paths.
 enum Receivers {
     /// A grid in world coordinates, in which neighbouring points remain distinct even if the scene is far from the
     /// origin. `across` and `down` are the steps between neighbouring points.

@@ -93,8 +93,8 @@ pub struct FaceEmission {
 }
 
 impl FaceEmission {
-    /// Returns the luminance per channel, in cd/m², towards a viewer in `direction`. It is the same for all faces that
-    /// the viewer sees.
+    /// Returns the luminance per channel, in cd/m², towards a viewer in `direction`, limited to [`MAX_LIGHT`]. All
+    /// faces that the viewer sees have the same luminance.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let local = self.measured.local(direction);
         let area = self.opening.projected_area(local).max(self.least_area);
@@ -242,8 +242,8 @@ impl Shape {
 }
 
 impl IntensityBound {
-    /// `samples` are directions with the luminance in each. The luminaire emits only at angles γ between the two
-    /// `limits` in degrees.
+    /// Bounds the intensity of a patch. `samples` are directions over the whole sphere, with the luminance of the faces
+    /// in each. The luminaire emits only at angles γ between the two `limits` in degrees.
     fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
         let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area_vector(t)).collect();
         let area: f64 = normals.iter().map(|n| n.length()).sum();

@@ -39,8 +39,8 @@ pub trait Observer {
     /// Receives the first surface that a camera path hits. `_seen` computes its attributes.
     fn primary_hit(&mut self, _seen: impl FnOnce() -> PrimaryHit) {}
 
-    /// Receives a scattering event of the path: the mesh of the vertex, the kind of scattering, and the values of the
-    /// lobes.
+    /// Receives a scattering event of the path: the mesh of the vertex, the kind of scattering, and the BSDF values of
+    /// the sampled direction ([`Lobes`]).
     fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
     /// Returns a list to be filled with the panes between a vertex and its light sample, if the observer needs them.

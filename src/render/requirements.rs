@@ -23,7 +23,8 @@ pub struct Requirements {
     /// Whether a surface has an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
-    /// Whether each kind of light can emit: emissive surfaces, textured emissive surfaces, and so on.
+    /// Whether the scene has a light of each kind that can emit. `textured_surfaces` is the part of `surfaces` whose
+    /// emission varies with a texture. Luminaires with faces count as surfaces, those without faces as points.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
@@ -147,7 +148,8 @@ impl Range {
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    // Mark the materials that meshes use (`used`), and those that can emit because a triangle has an area (`spread`).
+    // Mark the materials that meshes use (`used`), and the materials of at least one triangle of positive area
+    // (`spread`). Only the latter can emit.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
     // Find the range of the vertex colours by which each material is multiplied.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };

@@ -47,8 +47,8 @@ impl ReplayObserver for SumTape {
     }
 }
 
-/// A tape that adds up contributions, and also tracks the subpath through the automaton of light path expressions. It
-/// does so once from every state that the automaton of an observer may have when the observer replays the subpath.
+/// A tape that adds up contributions, and also tracks the subpath through the automaton of light path expressions. The
+/// observers that replay the subpath may be in different states, so the tape tracks it from each of these states.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,

@@ -20,7 +20,8 @@ const CAPACITY: usize = 1024;
 const MIN_POSITIONS: usize = 128;
 /// Share of the recorded positions that may lie beyond each side of the box. [judged on 3 scenes]
 const BEYOND: f64 = 1.0 / 128.0;
-/// The box is computed again if more than this share of the recorded positions lies outside. [judged on 3 scenes]
+/// The box is computed again if, on any axis, more than this share of the recorded coordinates lies outside. [judged on
+/// 3 scenes]
 const MAX_OUTSIDE: f64 = 1.0 / 16.0;
 /// Triangles count as near if they are within this distance of the box, relative to the largest coordinate of the
 /// scene. It exceeds the rounding error of a hit, `MARGIN` in `scene/accel/node.rs`. [rounding]
@@ -91,8 +92,8 @@ impl Vicinity {
         let (lowest, highest) = all.bounds();
         let largest =
             [low, high, lowest, highest].into_iter().fold(0.0, |most: f32, p| most.max(p.abs().max_element()));
-        // Move the sides of the box outwards: the vertices on the walls of a room lie on them and must count as inside
-        // in spite of rounding.
+        // Move the sides of the box outwards. In a room, the sides coincide with the walls, and vertices on the walls
+        // must count as inside in spite of rounding.
         let margin = largest * MARGIN;
         let (low, high) = (low - margin, high + margin);
         let max = max.min(count / MIN_RATIO);

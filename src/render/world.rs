@@ -146,8 +146,8 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass, which samples the lights less often that the paths so far show to be out of
-    /// reach. `None` if this copy stays in use (see [`Lights::learned`]).
+    /// Returns a copy for the next pass. The copy seldom samples the lights that, by the light samples so far, do not
+    /// reach the surfaces in view. `None` if this copy stays in use (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.in_vicinity()).transpose()
     }
@@ -283,8 +283,8 @@ impl World {
         (emitter != NONE).then_some(emitter as usize)
     }
 
-    /// Finds the nearest hit of a ray that leaves triangle `from`. At a surface of partial opacity, a random decision
-    /// tells whether the ray hits or passes the surface; `seed` returns the seed of that decision.
+    /// Finds the nearest hit of a ray that leaves triangle `from`. With alpha blending, a random decision tells whether
+    /// the ray hits or passes a surface of partial opacity; `seed` returns the seed of that decision.
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {

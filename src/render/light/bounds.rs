@@ -32,7 +32,7 @@ pub struct Bounds {
     pub cone_angle: f32,
     /// Whether all lights of the cluster also emit backwards.
     pub two_sided: bool,
-    /// Sum of the lights' full luminous intensities in cd, averaged over the channels.
+    /// Sum, over the lights, of the largest luminous intensity in any direction, in cd, averaged over the channels.
     pub intensity: f32,
 }
 

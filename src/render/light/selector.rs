@@ -68,8 +68,8 @@ impl Inventory {
 pub struct Selector {
     /// Selects among the lights at a finite distance.
     pub tree: LightTree,
-    /// For each light of the tree, its number in the [`Inventory`]. Empty if the tree holds all lights at a finite
-    /// distance, because both numberings are then the same.
+    /// For each light of the tree, its number in the [`Inventory`]. Empty in the selector of all lights, in whose tree
+    /// each light has its number of the inventory.
     members: Vec<u32>,
     /// Selects among the directional lights. It has an entry for each punctual light of the scene; the entries of
     /// lights that are not directional have zero weight.
@@ -112,8 +112,7 @@ impl Selector {
         self.members.get(light).map_or(light, |&number| number as usize)
     }
 
-    /// Returns, for each light of the tree, its number in the [`Inventory`]. Empty if the tree holds all lights at a
-    /// finite distance.
+    /// Returns, for each light of the tree, its number in the [`Inventory`]. Empty for [`Selector::of_all`].
     pub fn members(&self) -> &[u32] {
         &self.members
     }

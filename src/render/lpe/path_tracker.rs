@@ -345,7 +345,8 @@ fn split_component(
     add(to, component, second_state, component.share - first);
 }
 
-/// Adds a component in `state`, or merges it with an existing component of equal offset and state.
+/// Adds a component with the given state and share and the offset of `from`. If there is a component of equal offset
+/// and state, adds the share to that one. In the dead state, drops the component.
 #[inline(always)]
 fn add(components: &mut Vec<Component>, from: &Component, state: u16, share: Vec3A) {
     if state == DEAD {

@@ -55,9 +55,9 @@ fn round(size: [f64; 3], candela: impl Fn(f64) -> f64) -> Luminaire {
     }
 }
 
-/// Returns the form factor from a small facet to a cylinder of radius 1 and the given height, whose axis is at
-/// `distance` on the facet's normal. The facet faces the middle of the axis (Howell, "A catalog of radiation heat
-/// transfer configuration factors", B-30, for each half).
+/// Returns the form factor from a small facet to a cylinder of radius 1 and the given height. The facet's normal meets
+/// the middle of the cylinder's axis at a right angle, at `distance` from the facet. The result is the sum of two equal
+/// halves of the cylinder (Howell, "A catalog of radiation heat transfer configuration factors", B-30).
 fn cylinder_form_factor(distance: f64, height: f64) -> f64 {
     let (d, l) = (distance, height / 2.0);
     let (a, b) = ((d + 1.0).powi(2) + l * l, (d - 1.0).powi(2) + l * l);

@@ -142,7 +142,7 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
     let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
     assert!(a.beauty == b.beauty && a.variance == b.variance && a.reach == b.reach);
-    // After 1024 paths, the structure of the surroundings is in use.
+    // After 1024 paths, one world has an acceleration structure of the surroundings (`vicinity`), the other has none.
     let has_vicinity = |world: &World| {
         let learning = world.learning().unwrap();
         let point = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::splat(0.3), front: true };

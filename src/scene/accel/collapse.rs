@@ -227,8 +227,8 @@ impl Choice<'_> {
     /// Collects the up to eight children of a branch that becomes a wide node; returns their number.
     fn members(&self, node: Place, members: &mut [Place; 8]) -> usize {
         let mut len = 0;
-        // Stack of branches, each with the maximum number of wide subtrees that may represent it. At most one right
-        // half per level of the tree waits on the stack.
+        // Stack of branches, each with the maximum number of wide subtrees that may represent it. These numbers add up
+        // to at most 8, so the stack needs no more than 8 entries.
         let mut open = [(node, 8); 8];
         let mut waiting = 1;
         while waiting > 0 {

@@ -21,7 +21,8 @@ pub(super) struct Packet {
 }
 
 impl Packet {
-    /// Packs one to eight triangles. Unused lanes are filled with NaN, so no ray hits them.
+    /// Packs one to eight triangles: those whose indices in the list `triangles` are `ids`. Unused lanes are filled
+    /// with NaN, so no ray hits them.
     pub fn new(triangles: &[[Vec3; 3]], ids: &[u32]) -> Self {
         let mut packet = Self { corners: [[Row([f32::NAN; 8]); 3]; 3], ids: [u32::MAX; WIDTH] };
         for (lane, &id) in ids.iter().enumerate() {
