@@ -20,7 +20,8 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         let seen: Vec<DVec2> = points.iter().filter_map(|&p| project(camera, p, width, height)).collect();
         Stroke::polyline(&seen, radius, positive, width, height)
     };
-    // Centre of the lamp at `(column, row)`, and the point half a period to its right.
+    // `lamp`: centre of the lamp at (column, row). `between`: the point half a period from this centre along x. `half`:
+    // step from the centre of a lamp to the end of a stroke across the lamp.
     let lamp = |column: usize, row: usize| grid.first + grid.period * Vec2::new(column as f32, row as f32);
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;

@@ -36,6 +36,7 @@ pub struct Emission {
     /// difference between the statistics of the texture and of parts of it as large as the exemplar. 0 for blended
     /// exemplars, for a copy or a repetition of the exemplar, and for a texture too small to hold several parts.
     pub sampling_error: f64,
-    /// Number of lamps that the photos of the exemplars show completely.
+    /// Number of lamps that the photos of the exemplars show completely. If the caller supplied the texture: number of
+    /// its lamps that do not touch the border.
     pub exemplar_lamps: usize,
 }

@@ -82,8 +82,8 @@ pub struct Params {
     pub clean_lamps: bool,
     /// Makes a tileable texture: a lamp that leaves it on one side re-enters on the opposite side. Needs
     /// `whole_lamps`. A lattice is stretched, by less than half a period over the whole texture, so that a whole
-    /// number of periods fits. Lights that the border of the exemplar cuts do not count as whole lamps: they continue
-    /// across the border of the texture only if they lie on a lattice.
+    /// number of periods fits. Lights that run through the exemplar are copied patch by patch, not as whole lamps: they
+    /// meet across the border of the texture only if the pattern has a lattice.
     pub tileable: bool,
     /// Centres the lattice in the texture: a lamp, or the middle between two lamps, lies at the texture's centre, so
     /// that the border cuts as few lamps as possible. The offset shifts the lattice from there.

@@ -48,7 +48,8 @@ pub struct Layout {
     /// them, and higher if segments also lie on seams, the edges at which two faces meet.
     pub score: f64,
     /// Confidence in the box as a whole, in `[0, 1]`. It rises with the number of segments, and with the lead of the
-    /// box's score over the score of the best clearly different box.
+    /// box over the best clearly different box. The lead is a difference of scores in which, unlike in `score`, the
+    /// strokes and the prior of the sides count as well.
     pub trust: f64,
 }
 

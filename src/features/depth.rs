@@ -128,8 +128,8 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
     if !has_holes.contains(&true) {
         return Ok(());
     }
-    // Channels: inverse depth and normal, both multiplied by a flag that is 1 for known pixels and 0 for holes; the
-    // flag itself is the fifth channel.
+    // Channels: inverse depth and normal, both multiplied by a weight that is 1 for known pixels and 0 for holes; the
+    // weight itself is the fifth channel.
     let mut base = Image::new(width, height, 5)?;
     for (i, out) in base.data.chunks_exact_mut(5).enumerate() {
         if surface.confidence.data[i] > 0.0 {
@@ -138,7 +138,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
             out[4] = 1.0;
         }
     }
-    // Pull: each level sums four pixels of the next finer level and limits the weight to 1.
+    // Pull: each level sums four pixels of the next finer level. If their weight exceeds 1, divide all channels by it.
     let mut levels = vec![base];
     while let Some(fine) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
         job.check()?;

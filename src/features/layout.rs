@@ -58,8 +58,8 @@ impl Layout {
         Ok(Surface { inverse_depth, normals, confidence })
     }
 
-    /// Computes the confidence of each pixel. It falls with the distance to the nearest segment on the same face,
-    /// among the segments whose direction the face can contain.
+    /// Computes the confidence of each pixel. It falls with the distance to the midpoint of the nearest segment on the
+    /// same face, among the segments whose direction the face can contain.
     fn confidence(&self, room: &RoomView, width: usize, height: usize, job: Job) -> Result<Image> {
         let to_room = facing_axes(room.perspective).transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);

@@ -117,7 +117,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;
 
-    // Write all channels, in room axes.
+    // Write all channels: in room axes if the room is known, else in camera axes.
     let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| box_room::facing_axes(p).transpose().as_mat3());
     let is_finite = AtomicBool::new(true);
     exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.7, 1.0), |y, row| {

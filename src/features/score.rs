@@ -24,8 +24,8 @@ const SEAM: f64 = 2.0;
 /// share. [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// `ON_PLANE`: reward if all positive strokes lie on one face of the box. `ELSEWHERE`: penalty if all negative strokes
-/// lie on this face too. Two boxes usually differ less in their agreement with the lines. If strokes and lines
-/// disagree, the strokes therefore usually decide. [origin not recorded]
+/// lie on this face too. The agreement of two boxes with the segments usually differs by less than these values. So if
+/// strokes and segments disagree, the strokes usually decide. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Weight of the surfaces over which strokes have grown, relative to the strokes. [bench photos:masks]

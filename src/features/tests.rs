@@ -348,7 +348,7 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     let camera = camera(0.2, -0.3, 0.05, 640, 480);
     let small = Layout { sides: [0.8, 0.7, 0.4, 0.5], score: 0.0, trust: 0.0 };
     let axes = super::box_room::facing_axes(&camera);
-    // Both points lie in the plane of the ceiling: the first beyond the far wall, the second beyond the right wall.
+    // Both points lie in the plane of the ceiling: the first beyond the back wall, the second beyond the right wall.
     let points = [DVec3::new(0.3, -0.4, 1.6), DVec3::new(0.9, -0.4, 0.9)];
     let pixels = || points.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.face_of(&camera, pixels().take(1)), Face::Back);
@@ -357,8 +357,8 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     assert_eq!(small.shared_face(&camera, pixels()), None);
     let (large, growth) = small.enlarged(Face::Ceiling, &camera, pixels());
     assert!(pixels().all(|p| large.face_of(&camera, std::iter::once(p)) == Face::Ceiling), "{large:?}");
-    // Sides are in units of the distance to the far wall. In the old unit, the ceiling, the floor and the left wall
-    // have kept their places.
+    // Sides are in units of the distance to the back wall, which has moved. In the old unit, the ceiling, the floor and
+    // the left wall have kept their places.
     let back = 0.4 / large.sides[2];
     assert!(back > 1.6 && back < 1.8 && (growth - back).abs() < 1e-9, "{back} {growth}");
     let moved = large.sides.map(|side| side * back);

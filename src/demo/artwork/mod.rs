@@ -66,8 +66,9 @@ mod tests {
                 y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| art.rgb(x, y)).sum::<Vec3>() / count
             };
             let tone = |c: Vec3| luminance(c);
-            // Compare three pairs of places: the lit table and the shadow; the lit side and the dark side of the ball;
-            // and the table beside the ball, which receives red light, and the lit table.
+            // Compare three pairs of places: lit table and shadow; lit side and dark side of the ball; table beside the
+            // ball, which receives red light, and lit table. The last pair does not count for the painting, because its
+            // lit table is painted yellow.
             let (lit, shadow) = (mean(190..230, 130..170), mean(60..100, 128..142));
             assert!(tone(lit) > 1.5 * tone(shadow), "{style:?}: {lit} {shadow}");
             let (day, night) = (mean(128..140, 42..56), mean(90..115, 100..115));

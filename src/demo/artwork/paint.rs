@@ -24,8 +24,9 @@ const BRUSHES: [Brush; 3] = [
     Brush { radius: 2.6, length: 30.0, detail: 0.22 },
 ];
 
-/// Returns the colour that the painter mixes for a pixel. The paints are not those of the scene, but become lighter
-/// and darker with its light.
+/// Returns the colour that the painter mixes for a pixel. Objects have one palette of four paints, table and wall
+/// another, each from dark to light. The light of the scene selects the place in the palette; the colours of the scene
+/// are not used. Red indirect light adds purple (objects) or red, and a highlight adds white.
 fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;

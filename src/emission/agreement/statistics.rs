@@ -22,8 +22,8 @@ pub struct Statistics {
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other whole lamp. Leaves out lamps that have a cut lamp nearer to
-    /// them; 0 if no lamp remains.
+    /// Mean distance from a whole lamp to the nearest other whole lamp. A whole lamp is left out if a cut lamp is even
+    /// nearer, because the distance to the centre of a cut lamp is unknown. 0 if no lamp remains.
     pub spacing: f64,
     /// Number of whole lamps.
     pub whole: usize,

@@ -18,8 +18,9 @@ const MIN_CUT_SHARE: f64 = 0.1;
 pub struct Evidence {
     /// The lamps that the photo shows completely.
     pub whole: Vec<MeasuredLamp>,
-    /// The lamps that the border cuts and whose size is known, with the centre of the whole lamp and the weight of the
-    /// visible part. Always empty for a luminous ceiling, because it is not known at which bar a cut pane would end.
+    /// The lamps that the border cuts and whose size is known. `centre` is the centre of the whole lamp; `weight` is
+    /// the number of photo pixels of the visible part. Always empty for a luminous ceiling, because it is not known at
+    /// which bar a cut pane would end.
     pub completed: Vec<MeasuredLamp>,
     /// The visible parts of the other lamps that the border cuts.
     pub parts: Vec<MeasuredLamp>,

@@ -38,8 +38,8 @@ const SCORE_WITHOUT_PERIOD: f64 = 0.35;
 const MIN_SCORE: f64 = 0.15;
 /// One score is clearly higher than another if it is higher by more than this. [judged on 20 photos]
 const CLEAR_MARGIN: f64 = 0.1;
-/// Laws are compared only if whole lamps have enough photo pixels, in comparison with the lights that run through the
-/// photo: at least this share of the photo pixels of both together. [judged on 20 photos]
+/// Let w be the number of photo pixels that show whole lamps, and t the number that show lights running through the
+/// photo. Laws are compared only if w / (w + t) is at least this. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
 /// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this
 /// share of its length. [judged on 20 photos]
@@ -48,8 +48,8 @@ const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if no laws were compared, for example because
-    /// the photo shows too few whole lamps.
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`. NaN if the law comes from the autocorrelation
+    /// alone (for example because the photo shows too few whole lamps), and for [`Law::Copy`].
     pub score: f64,
     /// The best alternative law, and its score; the score is 0 if there is no alternative.
     pub runner_up: Law,
@@ -150,8 +150,8 @@ impl Analysis {
         Ok(analysis)
     }
 
-    /// Whether an analysis with the given input and settings would have the same result, so that this one can be
-    /// reused.
+    /// Whether this analysis can be reused for the given input and settings: the size of the input and all settings
+    /// that affect an analysis are equal. Pixels are not compared, so the caller must pass the input that was analysed.
     pub fn is_reusable_for(&self, input: &Input, params: &Params) -> bool {
         let Exemplar { width, height, .. } = self.exemplar;
         [width, height] == [input.unwarped.width, input.unwarped.height]
@@ -192,7 +192,8 @@ impl Analysis {
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 
         // Find the proposal that ranks highest, the first one among equals. It replaces the law found in the whole
-        // exemplar only if its score is clearly higher.
+        // exemplar only if its score is clearly higher than that of this law, and higher than that of a law without a
+        // period.
         let rank = |p: &Proposal| p.rank(exemplar);
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));

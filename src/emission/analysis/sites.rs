@@ -233,7 +233,7 @@ impl Sites {
     /// How well the lattice predicts the lamps: (P / A) (1 - s / n), in [0, 1].
     ///
     /// - P: photo pixels of the lamps that are predicted correctly.
-    /// - A: photo pixels of all lamps, and of lamps that are predicted but missing.
+    /// - A: photo pixels of all lamps, and of lamps that a site with at least two lamps predicts but that are missing.
     /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
     ///
     /// A cut lamp is predicted if whole steps from a site lead to its centre or, if its size is not known, to any place

@@ -78,7 +78,8 @@ impl Composition {
         Ok(Self { width: params.width, height: params.height, layers, bands, weights, crumb })
     }
 
-    /// The number of lamps that are copied as a whole, in all layers.
+    /// The number of lamps that are copied as a whole, in all layers. In a tileable texture, each lamp counts nine
+    /// times: once in the texture, and once in each of its eight neighbouring copies.
     pub fn lamps(&self) -> usize {
         self.layers.iter().map(|layer| layer.instances.len()).sum()
     }
@@ -106,8 +107,8 @@ impl Composition {
     /// exemplars have changed.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
-        // To tell crumbs from larger pieces of light, render a margin around the tile as well. It is so wide that any
-        // crumb that touches the tile ends within the margin. A piece that is longer than a crumb shows this there.
+        // To tell crumbs from larger pieces of light, render a margin around the tile as well. The margin is wider than
+        // a crumb is long. So a piece that runs from the tile to the outer edge of the margin is no crumb.
         let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
         let (mut texture, mut mask) = self.render(input, styles, around, job)?;

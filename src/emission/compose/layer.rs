@@ -284,8 +284,9 @@ fn source(
     Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
 }
 
-/// If the pattern does not change along an axis, gives the long lights along this axis the role `Through` (running
-/// through the exemplar), because they are pieces of a line that joints or the border interrupt.
+/// Gives pieces of a line of light the role `Through` (running through the exemplar). A basis vector of at most
+/// [`basis::MAX_UNCHANGING_LENGTH`] is no period: the pattern does not change along it. Lights that are long in this
+/// direction are pieces of one line, which joints or the border interrupt.
 fn continue_lines(exemplar: &mut Exemplar, law: Law) {
     let periods = law.lattice().into_iter().flatten();
     for axis in periods.filter(|period| period.length() <= basis::MAX_UNCHANGING_LENGTH) {

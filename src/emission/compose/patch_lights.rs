@@ -138,8 +138,8 @@ struct Light {
 }
 
 impl Light {
-    /// Adds `area`, in texels, of light in the texel `[x + u, y + v]`. `[x, y]` is the texel of this light to which
-    /// the area is attributed; `[u, v]` is 0 or the step to an adjacent texel.
+    /// Adds an area of light, in texels, to the sums. The area lies in the texel `[x + u, y + v]`. `[x, y]` is a texel
+    /// of this light. `[u, v]` is 0, or the step to an adjacent texel of which light covers less than half.
     fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
         let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
         self.area += area;

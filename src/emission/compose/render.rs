@@ -4,9 +4,9 @@
 //! The position of a texel in unwarped pixels, minus the shift of its lamp or patch, is a point of the unwarped image.
 //! The homography maps that point into the photo, where the colour is averaged over the area that the texel covers.
 //!
-//! The unwarped light mask decides whether a texel is light. If a texel is smaller than an unwarped pixel, the
-//! confidence is interpolated between pixels, so that outlines show no staircase. If a texel is larger, it is light if
-//! at least half of its area is lit.
+//! The unwarped light mask decides whether a texel is light. Its values are confidences: how surely a pixel is light,
+//! in `[0, 1]`. If a texel is smaller than an unwarped pixel, the confidence is interpolated between pixels, so that
+//! outlines show no staircase. If a texel is larger, it is light if at least half of its area is lit.
 
 use super::bands::Bands;
 use super::lit_blocks::LightSet;

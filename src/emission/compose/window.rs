@@ -9,7 +9,8 @@ use glam::DVec2;
 /// A part of the exemplar with the size of the texture, given by its upper left corner in unwarped pixels.
 pub struct Window {
     pub corner: DVec2,
-    /// Whether the photo shows every pixel of this part.
+    /// Whether the texture copies this part. False if the photo does not show every pixel of the part, or if its lamps
+    /// are drawn anew with clean outlines. `corner` then only gives the position of the lattice.
     pub is_shown: bool,
 }
 

@@ -121,9 +121,9 @@ impl<'a> Lines<'a> {
         1.0 / if self.is_column { pixel.x } else { pixel.y }
     }
 
-    /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness. `None`
-    /// if fewer than `least` pixels have light on both sides. Bars that cross do not change the median, because they
-    /// cover only a few of these pixels.
+    /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness up to 1
+    /// photo pixel per unwarped pixel. `None` if fewer than `least` pixels have light on both sides. Bars that cross do
+    /// not change the median, because they cover only a few of these pixels.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.section_length()) {
@@ -169,8 +169,8 @@ impl<'a> Lines<'a> {
         bars
     }
 
-    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns no bars if there are
-    /// fewer than three found bars, or if they have no period.
+    /// Predicts bars beyond the first and the last one from the period of the found bars. Returns no bars if fewer than
+    /// three bars were found, if they have no period, or if the first two are less than 4 pixels apart.
     pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
         let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
@@ -241,8 +241,8 @@ pub struct Section {
     sharpness: f64,
 }
 
-/// The lowest sharpness of the sections in which a bar is clearly visible: at least half as deep as the whole bar.
-/// Infinite if no section shows the bar clearly.
+/// The lowest sharpness of those sections in which the bar is clearly visible, that is, in which its depth is at least
+/// half of the whole bar's depth. Infinite if there is no such section.
 pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)

@@ -40,8 +40,8 @@ impl LocalMap {
     }
 }
 
-/// The part of an unwarped image in which the magnification is limited. Magnification is a ratio of lengths, relative
-/// to the least magnified pixel.
+/// The part of an unwarped image in which unwarping magnifies the photo by at most a given factor. Magnification is a
+/// ratio of lengths, relative to the least magnified pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,

@@ -1,10 +1,10 @@
 //! Detects fragments: specks, and pieces of light that are only parts of a lamp, for example between the blades of a
 //! louvre.
 //!
-//! A photo usually shows several lamps of a kind. A piece of light is a fragment if two conditions hold:
+//! A photo usually shows several lamps of a kind. A kind is major if it has a large share of the photo pixels of all
+//! lamps. A piece of light of any other kind is a fragment if two conditions hold:
 //!
-//! - It covers far fewer photo pixels than a lamp of the smallest major kind would cover in its place. A kind is major
-//!   if it has a large share of the photo pixels of all lamps.
+//! - It covers far fewer photo pixels than a lamp of the smallest major kind would cover in its place.
 //! - It lies close to another light, or only few pieces are similar to it.
 //!
 //! A fragment gets the role [`Role::Cut`]: it counts as light in the statistics, but the texture does not show it.

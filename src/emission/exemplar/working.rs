@@ -8,8 +8,9 @@ use crate::job::Job;
 use glam::DVec2;
 
 /// The regions that [`Working::contrast`] compares for a given box. The inside is the box scaled by `INNER`. The
-/// surroundings are the box scaled by `OUTER`, without the box itself. Of the surroundings, only dark pixels count:
-/// lights cover less than the share `UNLIT` of them. [judged on 20 photos]
+/// surroundings are the box scaled by `OUTER`, without the box itself; both boxes are widened by one working pixel on
+/// each side. Of the surroundings, only dark pixels count: lights cover less than the share `UNLIT` of them.
+/// [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;

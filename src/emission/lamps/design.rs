@@ -40,8 +40,9 @@ const MIN_COS_ALONG: f64 = 0.9;
 /// vectors at the angles 2α is longer than this. The mean has length 1 if all axes are parallel. Lamps that are
 /// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
-/// A kind of lamps gets a design only if the mean agreement of its lamps with the shape is at least this. Agreement is
-/// the area of the intersection divided by the area of the union. [judged on 20 photos]
+/// A kind of lamps gets a design only if the mean agreement of its lamps with the shape is at least this. A lamp is
+/// compared with the shape that has the lamp's own sides. Agreement is the area of their intersection divided by the
+/// area of their union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
 /// Blur rounds the corners of a rectangle, so its sides are measured away from the corners: the length as a mean over
 /// the middle part of the width, and the width as a mean over the middle part of the length. The middle part has this
@@ -207,8 +208,8 @@ impl Member {
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// The lamp's sides along and across an axis, if it has the given shape: from the standard deviations for an
-    /// ellipse, in the middle part for a rectangle, whose corners blur rounds.
+    /// The lamp's sides along and across an axis, if it has the given shape. The sides of an ellipse follow from its
+    /// standard deviations. The sides of a rectangle are measured away from its blurred corners ([`MIDDLE_SHARE`]).
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -275,7 +276,7 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
 /// Otherwise, lamps are discs if at least half of them, by weight, are elongated along their blur, and if one of these
 /// conditions holds as well:
 ///
-/// - They are round. Lamps are rarely oval, but bloom makes discs look oval. So does a cover that protrudes from the
+/// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
 ///   ceiling.
 /// - They are small in the photo.
 /// - They are not all elongated in one common direction.
@@ -444,7 +445,8 @@ impl Design {
         let q = DVec2::new(p.dot(self.axis), p.dot(self.axis.perp()));
         let half = self.size / 2.0;
         match self.shape {
-            // Exact if the rectangle's axis is parallel to x or y.
+            // Exact if the rectangle's axis is parallel to x or y. Otherwise an approximation: the square is rotated
+            // about its centre until its sides are parallel to those of the rectangle.
             Shape::Rectangle => {
                 let along = |q: f64, half: f64| {
                     let (low, high) = ((q - side / 2.0).max(-half), (q + side / 2.0).min(half));

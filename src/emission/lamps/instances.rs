@@ -69,8 +69,9 @@ impl PatchLamps<'_> {
     }
 
     /// Finds the pairs of a lamp and a shift for which the patch map copies at least the share `MIN_SHARE` of the lamp
-    /// by this shift. Each entry holds the copied share, the index of the lamp, and the label of the shift. The largest
-    /// share comes first.
+    /// by this shift. If the texture's border cuts the shifted lamp, the share is relative to the part within the
+    /// texture. Each entry holds the copied share, the index of the lamp, and the label of the shift. The largest share
+    /// comes first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
         let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
@@ -158,8 +159,8 @@ struct PixelRun {
     lamp: u32,
 }
 
-/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. Several lamps that
-/// are smaller than a pixel may share one. Such a pixel belongs to the last of them.
+/// Lists the runs of lamp pixels in each row of the exemplar at working size, from left to right. If several small
+/// lamps lie in one pixel, the pixel belongs to the last of these lamps.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<PixelRun>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {

@@ -26,7 +26,7 @@ pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
 
 /// The two shortest vectors that span the same lattice as the given ones (Lagrange's reduction).
 pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
-    // Each step shortens the longer vector by a factor, so a few dozen steps reduce any lattice of finite vectors.
+    // The number of steps grows only with the logarithm of the vectors' lengths: 64 steps suffice for any image.
     for _ in 0..64 {
         if b.length_squared() < a.length_squared() {
             std::mem::swap(&mut a, &mut b);

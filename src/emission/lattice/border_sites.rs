@@ -1,8 +1,9 @@
-//! Excludes dark sites at the border of the exemplar: lattice sites that have no lamp and that the border cuts.
+//! Excludes dark places that the border of the exemplar cuts. A place is one site of the lattice in one cell, with the
+//! size of the site's lamp. A place without a lamp is dark.
 //!
 //! Patches do not show a lamp that the border cuts, because only a part of it is visible. They must not show a dark
-//! site that the border cuts either. Otherwise, of the sites at the border, patches would show only the dark ones, and
-//! lamps would be missing more often in the texture than in the exemplar.
+//! place that the border cuts either. Otherwise, of the places at the border, patches would show only the dark ones,
+//! and lamps would be missing more often in the texture than in the exemplar.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -13,12 +14,12 @@ use glam::{DMat2, DVec2};
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by less than this. The
 /// difference is measured in lattice coordinates, in which each period has length 1. [origin not recorded]
 const MAX_OFF_SITE: f64 = 0.2;
-/// Dark sites are excluded only if the site has a lamp in at least this share of the cells in which the photo shows the
-/// site completely. Otherwise the site is usually dark, and its dark copies may stay. [convention]
+/// The dark places of a site are excluded only if at least this share of its completely visible places has a lamp.
+/// Otherwise the site is usually dark, and its dark places may stay. [convention]
 const MIN_OCCUPANCY: f64 = 0.5;
 
-/// Marks as unusable for patches the lattice sites of an exemplar that have no lamp and that the border cuts. The
-/// periods of the lattice, `a` and `b`, are in unwarped pixels.
+/// Marks the dark places that the border of an exemplar cuts as unusable for patches. The periods of the lattice, `a`
+/// and `b`, are in unwarped pixels.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();

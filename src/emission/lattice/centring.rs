@@ -54,9 +54,11 @@ pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     Some(shifts[best])
 }
 
-/// The bounding boxes of the lamps of one lattice cell. The box nearest to the exemplar's centre comes first. For a
-/// lattice, the cell is centred on the lamp of this box. For a row, all lamps across the row are treated as one box.
-/// For repetition of the whole exemplar, all lamps are treated as one box.
+/// The bounding boxes of the lamps of one lattice cell; the lamp nearest to the exemplar's centre comes first.
+///
+/// - Lattice: the boxes of all lamps in the cell that is centred on this first lamp.
+/// - Row: a single box. Along the row, it is as long as the first lamp; across the row, it spans all lamps.
+/// - Repetition of the whole exemplar: a single box around all lamps.
 fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {

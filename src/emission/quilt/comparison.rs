@@ -25,7 +25,8 @@ const LIGHT_STEPS: f32 = 255.0;
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If a block has more than `FINALISTS` candidate patches, they are first compared in every `ROW_STEP`-th row of the
-/// block only. Only the `FINALISTS` best ones are then compared in all rows.
+/// block only. Only the `FINALISTS` best ones are then compared in all rows. Blocks of fewer than 4 `ROW_STEP` rows
+/// skip the first comparison.
 const FINALISTS: usize = 16;
 
 const ROW_STEP: usize = 4;

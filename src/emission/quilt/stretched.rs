@@ -46,8 +46,9 @@ pub fn stretch(
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // A cell of the stretched lattice differs from one of the exemplar's lattice by `stretched` - `own`. Add
-            // this difference to the patch's shift once for each cell between the origin of the patch and `at`.
+            // The patch shows the exemplar's cell at `at` that lies `steps` cells from the exemplar's central lamp
+            // (`first`). Each of these steps is longer by `stretched` - `own` on the stretched lattice, so add this
+            // difference to the patch's shift once for each step.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)

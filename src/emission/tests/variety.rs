@@ -140,7 +140,7 @@ fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
 
 #[test]
 fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
-    // About a quarter of the 9 × 9 sites has no lamp. The border cuts the outermost sites in half.
+    // About a quarter of the 9 × 9 places has no lamp. The border cuts the outermost places in half.
     let has_lamp = |i: i64, j: i64| Rng::new(3, &[i as u64, j as u64]).next_f64() < 0.75;
     let exemplar = Design::new(320, 320, |x, y| {
         let (u, v) = (x + 10.0, y + 10.0);
@@ -158,7 +158,7 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
         sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
     }
     let filled = sum / seeds.count() as f64;
-    // If patches could show the dark sites at the border, but not the lit ones, the number of lamps would be lower by
+    // If patches could show the dark places at the border, but not the lit ones, the number of lamps would be lower by
     // about an eighth.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
 }
