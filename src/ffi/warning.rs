@@ -50,11 +50,11 @@ pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
 /// the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
 /// doubtful pixels together. The warning points to the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
-/// Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
-/// samples drawn from the strokes.
+/// Positive and negative strokes cover the same pixels, where the later strokes count. The severity is the number of
+/// these pixels, divided by the number of painted pixels that the segmentation learns from.
 pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
-/// Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the number of
-/// samples drawn from the strokes.
+/// Pixels of strokes lie outside the photo and are ignored. The severity is the number of these pixels, divided by the
+/// number of painted pixels that the segmentation learns from.
 pub const LUXFER_WARNING_OFF_IMAGE_STROKES: luxfer_warning_code = 8;
 /// A mask is uncertain; the severity is the expected share of wrong pixels.
 pub const LUXFER_WARNING_UNCERTAIN_MASK: luxfer_warning_code = 9;
@@ -99,8 +99,8 @@ pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
 /// A texture without any light would differ less from the photo than the synthesised texture does; the severity is
 /// luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
-/// A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive strokes for the
-/// lights. The severity is the expected share of wrong pixels.
+/// A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or both; for
+/// the lights, positive strokes. The severity is the expected share of wrong pixels.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// A scene lies far from the origin. There are two cases. If luxfer_scene_get_origin is not 0, positions are relative
 /// to that origin; the severity is its distance from the origin of the file in metres, and the limit is 0. Otherwise
@@ -129,8 +129,8 @@ pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
 /// the share of the exemplar that such places cover. The warning points to one of them in the artwork.
 pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
 /// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
-/// the difference, in units of the difference that places with equal guides typically have. The warning points to the
-/// place in the artwork.
+/// the difference in paint between this place and those places, divided by the difference in paint that places with
+/// equal guides typically have. The warning points to the place in the artwork.
 pub const LUXFER_WARNING_BLEMISH: luxfer_warning_code = 31;
 
 /// A warning: a reason to doubt a result.
@@ -217,7 +217,7 @@ impl Warnings {
     }
 }
 
-/// Pairs each warning of a list with its stage.
+/// Pairs each warning of `list` with `stage`.
 fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (luxfer_stage, Warning)> {
     list.into_iter().map(move |warning| (stage as luxfer_stage, warning))
 }

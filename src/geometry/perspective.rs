@@ -7,9 +7,10 @@ use glam::{DMat3, DVec2, DVec3};
 pub enum FocalSource {
     /// The caller gave it.
     Given,
-    /// It follows from two finite vanishing points of orthogonal directions.
+    /// It comes mainly from finite vanishing points of orthogonal directions, which are more accurate than the prior.
     VanishingPoints,
-    /// It is assumed to be 0.85 of the image width, because the vanishing points do not determine it.
+    /// It comes mainly from the usual focal length, 0.85 of the image width: the photo has no metadata, and the
+    /// vanishing points are less accurate.
     Assumed,
     /// It comes mainly from the photo's metadata, because the vanishing points are less accurate.
     Metadata,

@@ -39,8 +39,8 @@ impl Comparison {
     }
 }
 
-/// A comparison of some pixels, and their largest error. Only errors above the tolerance matter, so a sum starts with
-/// the tolerance as its largest error.
+/// A comparison of some pixels, and their largest error. A comparison of no pixels has the tolerance as its largest
+/// error, so that `place` is set only by errors above the tolerance.
 struct Worst {
     found: Comparison,
     largest: f32,

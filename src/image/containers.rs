@@ -7,7 +7,8 @@ pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
         // A marker begins with one or more 0xff bytes.
         let at = rest.iter().position(|&b| b != 0xff)?;
         let (&marker, after) = rest.get(at..)?.split_first()?;
-        // Stop at the start of a scan, which holds the pixels, or at bytes that are not a marker.
+        // Stop at the start of a scan (0xda), which holds the pixels; at the start or end of an image (0xd8, 0xd9),
+        // which have no length; or at bytes that are not a marker.
         if at == 0 || matches!(marker, 0x00 | 0xd8..=0xda) {
             return None;
         }

@@ -32,8 +32,8 @@ pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.context(path.display()))
 }
 
-/// Decodes a picture file in memory to linear values. The picture is not turned upright, and its colours are not
-/// converted from the space that the file states: integers of [`Encoding::Srgb`] count as sRGB.
+/// Decodes a picture file in memory to linear values. The EXIF orientation is ignored, and colours are not converted
+/// from the space that the file states: integers of [`Encoding::Srgb`] count as sRGB.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     match Format::of(bytes)? {
         Format::Exr => Ok(openexr::decode(bytes)?.0),
@@ -69,8 +69,8 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     Ok(Photo { image, metadata })
 }
 
-/// Converts linear colours from the space that their file states to linear Rec.709. Also returns how the colours were
-/// interpreted.
+/// Converts linear colours from the space that their file states to linear Rec.709; data ([`Encoding::Linear`]) stay
+/// unchanged. Also returns how the colours were interpreted.
 fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
     let colour = match space {
         _ if encoding == Encoding::Linear => FileColour::Data,
@@ -94,8 +94,9 @@ enum Read {
     Inks,
 }
 
-/// Decodes a picture with `read`, and converts it to linear Rec.709 from the space that its file states, or from sRGB
-/// if the file states none.
+/// Decodes a picture with `read`, and converts its colours to linear Rec.709 from the space that its file states. If
+/// the file states none, integers count as sRGB and floating-point numbers as linear. Data ([`Encoding::Linear`]) stay
+/// as stored.
 fn convert_stored(
     space: Space,
     encoding: Encoding,
@@ -117,8 +118,8 @@ fn convert_stored(
     convert((read(Read::Colours(encoding))?, space), encoding)
 }
 
-/// Returns width, height and the maximum number of channels of a picture file, from its header alone. Width and height
-/// are those of the stored picture, before it is turned upright.
+/// Returns width, height and an upper bound of the number of channels of a picture file, from its header alone. Width
+/// and height are those of the stored picture, before it is turned upright.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
         Format::Exr => openexr::probe(bytes),

@@ -74,7 +74,7 @@ pub fn half(image: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// Returns the image at 1/2, 1/4, … of its size: `count` copies, or fewer if one of a single pixel comes first.
+/// Returns `count` copies of the image, at 1/2, 1/4, … of its size. The list ends early after a copy of a single pixel.
 pub fn halvings(image: &Image, count: usize, job: Job) -> Result<Vec<Image>> {
     let mut copies: Vec<Image> = Vec::new();
     while copies.len() < count {

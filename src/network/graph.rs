@@ -22,7 +22,7 @@ pub(super) struct Node {
     /// Indices of the values that this node reads; `None` for optional inputs that are absent.
     pub inputs: Vec<Option<usize>>,
     pub outputs: Vec<Option<usize>>,
-    /// Indices of the values that no later node reads, so that they can be dropped after this node.
+    /// Indices of the inputs that no later node reads, and that are dropped after this node. Constants are not listed.
     pub last_uses: Vec<usize>,
 }
 

@@ -57,7 +57,7 @@ struct Votes {
     choice: Vec<f32>,
     /// The offset of the chosen pixel; `None` without a match.
     offset: Vec<Option<u32>>,
-    /// Whether the candidates of a pixel of the rectangle disagree.
+    /// Whether at least one pixel of the rectangle has more than one candidate.
     is_contested: bool,
 }
 
@@ -165,7 +165,7 @@ impl Votes {
         (y - self.y.start) * self.x.len() + x - self.x.start
     }
 
-    /// Returns the channels of pixel `i` in `of`, an image of this part.
+    /// Returns the channels of pixel `i` in `of`, which is `mean` or `choice`.
     fn pixel<'a>(&self, of: &'a [f32], i: usize) -> &'a [f32] {
         &of[i * self.channels..(i + 1) * self.channels]
     }

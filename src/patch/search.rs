@@ -293,7 +293,8 @@ impl Tile {
     }
 }
 
-/// The best match of one patch so far.
+/// The best match so far of the patch at (`x`, `y`). `error` is its distance plus its usage penalty; `u32::MAX` marks a
+/// hint, or no match.
 pub(super) struct Best {
     pub at: u32,
     pub error: u32,

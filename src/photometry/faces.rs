@@ -87,7 +87,7 @@ impl Faces {
         faces
     }
 
-    /// Returns the outward normal of a triangle, scaled to the length of the triangle's area in m².
+    /// Returns the outward unit normal of a triangle times the triangle's area in m².
     pub fn area_vector(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|i| self.points[i as usize]);
         (b - a).cross(c - a) / 2.0
@@ -277,8 +277,8 @@ mod tests {
     }
 
     /// Flat faces have exactly the projected areas of the closed forms, and curved faces have them on average. The
-    /// smallest width of a polygon of 64 sides is (π / 64)² / 3 = 8.03e-4 smaller than that of a circle of equal mean
-    /// width.
+    /// smallest width of a polygon of 64 sides is smaller than the width of a circle of equal mean width, by the share
+    /// (π / 64)² / 3 = 8.03e-4.
     #[test]
     fn faces_have_the_projected_areas_of_their_opening() {
         for (size, heights, tolerance) in [

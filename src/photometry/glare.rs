@@ -2,11 +2,11 @@
 //! over the glare sources with their luminance `L` in cd/m², solid angle `ω` in sr and position index `p`; `Lb` is the
 //! background luminance in cd/m².
 //!
-//! Glare sources are the connected regions brighter than a threshold. Rating each luminaire by its mean luminance
-//! would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The background
-//! luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the illuminance at
-//! the eye; a wider image makes it more accurate. The position index is Guth's above the line of sight, and that of
-//! Iwata and Tokura (1997) below, as in `evalglare`.
+//! Glare sources are the 4-connected regions of at least a threshold luminance. Rating each luminaire by its mean
+//! luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The
+//! background luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the
+//! illuminance at the eye; a wider image makes it more accurate. The position index is Guth's above the line of sight,
+//! and that of Iwata and Tokura (1997) below, as in `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -34,7 +34,7 @@ pub struct Rating {
     pub sources: Vec<Source>,
 }
 
-/// A glare source: a connected region of pixels above the threshold.
+/// A glare source: a 4-connected region of pixels of at least the threshold luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// Mean luminance `L` in cd/m².
@@ -104,7 +104,7 @@ fn background(pixels: impl Iterator<Item = usize>, luminance: &impl Fn(usize) ->
     if weight > 0.0 { light / weight } else { 0.0 }
 }
 
-/// Collects the glare sources by flood fill over pixels for which `glares` is true.
+/// Collects the glare sources by flood fill over the four neighbours of each pixel for which `glares` is true.
 fn sources(
     [width, height]: [usize; 2],
     luminance: &impl Fn(usize) -> f64,

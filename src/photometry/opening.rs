@@ -17,7 +17,7 @@ const MIN_AREA: f64 = 1e-6;
 /// The shape of an opening, with sizes in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opening {
-    /// A box with these sides along x, y and z; a rectangle if the last side is 0. `heights` are the heights of the
+    /// A box with these sides along x, y and z; a rectangle if one side is 0. `heights` are the heights of the
     /// luminous strips on the four sides that face along x, y, -x and -y (C = 0, 90, 180, 270). The strips begin at the
     /// face towards γ = 0.
     Box { size: DVec3, heights: [f64; 4] },

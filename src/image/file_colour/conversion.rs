@@ -10,7 +10,8 @@ use std::sync::Arc;
 /// The conversion from the samples of a file (integers scaled to `[0, 1]`) to linear Rec.709.
 ///
 /// Colours outside Rec.709 have negative components, which become 0 because later stages treat negative values as
-/// damage. Components above 1 are kept.
+/// damage. Only a file that itself stores negative values keeps some, so that later stages see the damage. Components
+/// above 1 are kept.
 #[derive(Clone)]
 pub struct Conversion(Kind);
 
@@ -51,7 +52,7 @@ impl Conversion {
     }
 
     /// Whether a picture with this number of channels can be converted: grey profiles cannot convert colours, nor can
-    /// colour tables convert greys.
+    /// colour tables convert greys. For a grey profile, four channels count as grey with alpha.
     pub fn fits(&self, channels: usize) -> bool {
         match self.0 {
             Kind::Grey(_) => channels != 3,
@@ -90,8 +91,8 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Clamps each component of a converted colour to at least 0, or to the lowest component of the file's colour if that
-/// is negative. NaN stays NaN.
+/// Clamps each component of a converted colour from below: to 0, or, if the file's colour `from` has a negative
+/// component, to its lowest component. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)

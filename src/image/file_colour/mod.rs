@@ -1,6 +1,7 @@
 //! Determines the colour space that a picture file states, and converts its samples to linear Rec.709.
 //!
-//! For each file format, the first of these statements that can be used counts:
+//! In OpenEXR and Radiance HDR files, all of these statements count together. In files of the other formats, the first
+//! statement that can be used counts:
 //!
 //! | file | statements |
 //! |---|---|

@@ -6,8 +6,7 @@ use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// How windows are placed over an image. `strides` and `dilations` are in pixels, first along the columns, then along
-/// the rows.
+/// How windows are placed over an image. `strides` and `dilations` are in pixels, as `[vertical, horizontal]`.
 pub struct Window {
     pub strides: [usize; 2],
     pub dilations: [usize; 2],
