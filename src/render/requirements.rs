@@ -148,8 +148,8 @@ impl Range {
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    // Mark the materials that meshes use (`used`), and the materials of at least one triangle of positive area
-    // (`spread`). Only the latter can emit.
+    // Mark the materials that meshes use (`used`). Also mark those that have a triangle of positive area (`spread`): no
+    // other material can emit.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
     // Find the range of the vertex colours by which each material is multiplied.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };

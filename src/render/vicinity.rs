@@ -72,7 +72,7 @@ impl PositionReservoir {
     }
 }
 
-/// The triangles that meet a box, and the box.
+/// An acceleration structure of the triangles that meet a box, and the corners of the box.
 pub struct Vicinity {
     accel: Accel,
     low: Vec3,

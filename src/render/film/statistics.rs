@@ -13,9 +13,9 @@ use crate::job::Job;
 use glam::DVec3;
 
 /// In the relative error of the whole image, each pixel's error is divided by the pixel's radiance, or by this share of
-/// the image's mean if the pixel is darker. `adaptive::MIN_RELATIVE_LUMINANCE` is the same limit for errors of single
-/// pixels. That limit is higher, because a render continues until every pixel is accurate enough, so one dark pixel
-/// could delay it. Here, the errors are averaged over the image. [convention: the relative error is defined with it]
+/// the image's mean if the pixel is darker. The corresponding limit for the target `pixel_error`,
+/// `adaptive::MIN_RELATIVE_LUMINANCE`, is higher: every tile must meet that target, so a few dark pixels could delay
+/// the render. Here, the errors are averaged over the image. [convention: the relative error is defined with it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// Sums of paths, radiance and variance over the pixels of a tile or of the image.

@@ -211,7 +211,7 @@ fn samples_cover_the_solid_angle() {
 }
 
 /// The pdf of a light sample on a face equals the pdf that [`light::Lights::surface_pdf`] returns for the sampled
-/// point. The MIS weights of paths that hit the faces are computed from the latter.
+/// point. If a BSDF sample hits the face, the MIS weight is computed from `surface_pdf`.
 #[test]
 fn samples_state_the_pdf_of_scattering_into_them() {
     let world = world(bright_room());

@@ -25,7 +25,7 @@ fn an_object_left_at_the_origin_does_not_blur_the_building() {
         let off = home.data.iter().zip(&away.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(off <= 1e-4 * mean(&home), "{at}: {off} of {}, mean {}", mean(&home), mean(&away));
     }
-    // Also compare a far room, in a scene with an object at the origin, with the same room alone at the origin.
+    // Compare two renders of one room: far from the origin with an object at the origin, and alone at the origin.
     let (scene, camera) = room(Vec3::ZERO);
     let alone = render(&world(scene), &camera, &Params { samples: 256, ..params.clone() });
     let (mut scene, camera) = room(Vec3::X * 131_072.0);

@@ -128,7 +128,7 @@ fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
     let n = count as f64;
     let [a, b] = [0, 1].map(|i| (sums[i] / n, (squares[i] / n - (sums[i] / n).powi(2)) / (n - 1.0)));
     assert!((a.0 - b.0).abs() < 4.0 * (a.1 + b.1).sqrt(), "{a:?} {b:?}");
-    // The mean squared errors that both films state are about equal as well.
+    // A render in parts and an ordinary render also state about equal mean squared errors.
     assert!((errors[0] / errors[1] - 1.0).abs() < 0.1, "{errors:?}");
 }
 
