@@ -97,7 +97,7 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     });
     let diffuser = b.scene.materials.len() - 1;
 
-    // Add a square that faces down: x × z points down.
+    // Add a square with the side `edge`. It faces down, because x × z = -y.
     let square = |m: &mut Mesh, centre: Vec2, edge: f32| {
         let corner = centre - edge / 2.0;
         sheet(m, Vec3::new(corner.x, SIZE.y, corner.y), Vec3::X * edge, Vec3::Z * edge, [1, 1]);

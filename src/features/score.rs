@@ -44,8 +44,9 @@ struct RoomSegment {
     weight: f64,
 }
 
-/// Sample points of the segments that run along one room axis: the absolute values of the coordinates of their rays
-/// along this axis (`own`) and along the two other axes (`p`, `q`), and the weights of the points.
+/// Sample points of the segments that run along one room axis. Each point has a ray. `own` holds the absolute value of
+/// the ray's coordinate along this axis, `p` and `q` those along the two other axes ([`OTHERS`]). `weight` holds the
+/// weights of the points.
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,
@@ -61,8 +62,8 @@ struct Points {
 pub struct Quadrant {
     /// For each room axis, the sample points of the segments that run along it.
     points: [Points; 3],
-    /// For each stroke sample, the absolute values of the coordinates of its ray, and the sample's weight in the score
-    /// of the face that the ray hits; the weight is negative for samples of negative strokes.
+    /// For each stroke sample: the absolute values of its ray's coordinates, and its weight in the score of the face
+    /// that the ray hits. Samples of negative strokes have negative weights.
     stroke_samples: Vec<(DVec3, f64)>,
 }
 

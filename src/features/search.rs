@@ -31,8 +31,9 @@ const RATIO: f64 = 1.068;
 const GRID: usize = 64;
 /// Maximum number of candidate distances that the segments suggest for each side of the box.
 const PEAKS: usize = 24;
-/// Two boxes are clearly different if more than this share of the view's rays meet different faces in the two boxes,
-/// or faces whose distances differ by more than the factor `MIN_RATIO`. [origin not recorded]
+/// A ray tells two boxes apart if it meets different faces in them, or faces whose distances differ by more than the
+/// factor `MIN_RATIO`. Two boxes are clearly different if more than the share `MIN_DIFFERENT_SHARE` of the view's rays
+/// tell them apart. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
 /// Two boxes are compared along a grid of `RAYS × RAYS` rays over the photo.

@@ -366,8 +366,8 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
         (moved[0] - 0.8).abs() < 1e-9 && (moved[3] - 0.5).abs() < 1e-9 && moved[1] > 0.9 && moved[1] < 1.0,
         "{moved:?}"
     );
-    // A pixel whose ray meets the face within its present extent does not enlarge the face, nor does a pixel whose ray
-    // misses it: the second one points down, away from the ceiling.
+    // Neither of two pixels enlarges the face: the ray of the first meets the ceiling within its present extent, and
+    // the ray of the second points down, away from the ceiling.
     let inside = [DVec3::new(0.1, -0.4, 0.8), DVec3::new(0.1, 0.5, 0.8)];
     let pixels = inside.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.enlarged(Face::Ceiling, &camera, pixels), (small, 1.0));

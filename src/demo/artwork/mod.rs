@@ -2,9 +2,9 @@
 //! painting.
 //!
 //! Each artwork is drawn stroke by stroke on paper or canvas from the guides of the scene, so that artwork and guides
-//! are exactly aligned. Each artwork responds to light as artists do: highlights stay white, shadows are cross-hatched
-//! or take another colour, and red ink marks the red light that the ball casts onto the table. Stroke sizes are
-//! proportional to the width of the picture. The result is the same to the bit every time.
+//! are exactly aligned. The programs draw light as artists do: highlights stay white, shadows are cross-hatched or take
+//! another colour, and red ink marks the red light that the ball casts onto the table. Stroke sizes are proportional to
+//! the width of the picture. The result is the same to the bit every time.
 
 mod canvas;
 mod paint;

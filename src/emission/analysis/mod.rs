@@ -41,8 +41,8 @@ const CLEAR_MARGIN: f64 = 0.1;
 /// Let w be the number of photo pixels that show whole lamps, and t the number that show lights running through the
 /// photo. Laws are compared only if w / (w + t) is at least this. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
-/// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this
-/// share of its length. [judged on 20 photos]
+/// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this share
+/// of the longer of the two periods. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.

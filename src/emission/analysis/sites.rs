@@ -18,8 +18,8 @@ use glam::{DMat2, DVec2};
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
 /// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
 const MAX_OFF_SITE: f64 = 0.12;
-/// Even where the light mask has no lamp, a position counts as shining if it is bright in the photo: its contrast with
-/// its surroundings is at least the share `MIN_SHINING` of the highest contrast among the site's lamps. Only the first
+/// A position at which the light mask has no lamp counts as shining if it is bright in the photo. Its contrast with its
+/// surroundings must be at least the share `MIN_SHINING` of the highest contrast among the site's lamps. Only the first
 /// `MAX_COMPARED` lamps of the site are measured. [judged on 20 photos]
 const MIN_SHINING: f64 = 0.2;
 const MAX_COMPARED: usize = 5;

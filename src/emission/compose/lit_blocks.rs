@@ -27,9 +27,9 @@ pub struct LitBlocks {
 }
 
 impl LitBlocks {
-    /// Builds the map from the light mask `light`. Every pixel with light counts for `LightSet::All`. It also counts
-    /// for `LightSet::OfPatches` if `is_of_patches` is true for its component, or if it belongs to no component: light
-    /// covers less than half of such a pixel at the rim of a lamp.
+    /// Builds the map from the light mask `light`. Every pixel with light counts for `LightSet::All`. A pixel also
+    /// counts for `LightSet::OfPatches` if `is_of_patches` is true for its component, or if it has no component. Pixels
+    /// with light but without a component lie at the rim of a lamp: light covers less than half of them.
     pub fn new(exemplar: &Exemplar, light: &Image, is_of_patches: impl Fn(usize) -> bool) -> Result<Self> {
         let (columns, rows) = (exemplar.width.div_ceil(BLOCK), exemplar.height.div_ceil(BLOCK));
         let mut sets = try_vec(columns * rows, 0)?;

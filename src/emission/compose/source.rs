@@ -151,9 +151,9 @@ impl TexelSource<'_> {
         Some(Texel { colour: colour * share, share, coverage: share })
     }
 
-    /// The point at which the colour for the point `p` of a lamp's design is read. The border hides a part of a cut
-    /// lamp: if it hides `p`, returns the first visible point of the lamp on the way from `p` to the centre of the
-    /// visible part. Otherwise returns `p`.
+    /// The point of the exemplar at which the colour of a designed lamp is read in place of the point `p`. The result
+    /// is `p`, unless the border of the photo cuts the lamp and hides `p`. It is then the first visible point of the
+    /// lamp on the way from `p` to the centre of the visible part.
     fn shown_point(&self, component: usize, p: DVec2) -> DVec2 {
         let exemplar = &self.layer.exemplar;
         if exemplar.roles[component] != Role::Partial {

@@ -124,8 +124,8 @@ fn fill(cell: &Cell, light: &mut Image) {
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Fills narrow gaps between lit pixels of a row or column, which is given by the index of its first pixel, the step to
-/// the next pixel, and the number of pixels.
+/// Fills narrow gaps between lit pixels of a row or column. `start` is the index of its first pixel, `step` is the
+/// difference to the index of the next pixel, and `count` is the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * MAX_LEADING_SHARE) as usize;
     let mut last = None;

@@ -165,8 +165,9 @@ pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     points.iter().zip(&kept).take(points.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()
 }
 
-/// Marks in `kept` the points between the kept points `first` and `last` that simplification must keep: repeatedly the
-/// point farthest from the line between its kept neighbours, if its distance exceeds `tolerance`.
+/// Marks in `kept` the points between the kept points `first` and `last` that simplification must keep. Takes the point
+/// farthest from the line between `first` and `last`. If its distance exceeds `tolerance`, keeps the point, and repeats
+/// this for the parts before and after it.
 fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &mut [bool]) {
     let mut open = vec![(first, last)];
     while let Some((a, b)) = open.pop() {

@@ -29,8 +29,8 @@ use correlation::Autocorrelation;
 use glam::DVec2;
 use law::Law;
 
-/// Minimum correlation at a period, as a share of the highest correlation at any shift. From the latter, an allowance
-/// for chance is subtracted ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)). A shift with a lower correlation
+/// Minimum correlation at a period, as a share of m. Here m is the maximum over all shifts of the correlation minus an
+/// allowance for chance ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)). A shift with a lower correlation
 /// probably moves lamps onto lamps of another kind. [bench emission:patterns]
 const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// The correlation at a shift counts only if at least this share of the valid pixels overlaps with valid pixels of the

@@ -34,7 +34,7 @@ impl Repeat {
     }
 }
 
-/// Whether the lights stay nearly the same under every shift along an axis, such as long tubes along their direction.
+/// Whether the lights stay nearly the same under every shift along an axis, as long tubes do along their direction.
 /// Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `least` pixels overlap.
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);

@@ -38,8 +38,8 @@ const TASK: usize = 1 << 16;
 ///
 /// - `fills`: number of empty pixels of the block that the shift fills.
 /// - `excess`: number of lit pixels among these, minus the target number.
-/// - `error`: mean squared difference from the known pixels of the block, plus the penalty for the excess divided by
-///   the number of known pixels.
+/// - `error`: d + p / n. Here n is the number of known pixels of the block, d is the mean squared difference from these
+///   pixels, and p is the penalty for the excess ([`Balance::penalty`]).
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,

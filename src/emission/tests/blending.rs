@@ -91,7 +91,8 @@ fn weights_differ_from_place_to_place() {
 #[test]
 fn panes_side_by_side_change_from_patch_to_patch() {
     // The panes of both exemplars cover most of the plane, and their periods differ. So a pane of one exemplar hardly
-    // ever fits between panes of the other, and the exemplar must be chosen for a whole patch, not pane by pane.
+    // ever fits between panes of the other. The exemplar must be chosen for a whole square of the texture, not pane by
+    // pane.
     let pane = |period: f64, side: f64| {
         Design::new(280, 280, move |x, y| x.rem_euclid(period) > period - side && y.rem_euclid(period) > period - side)
     };
