@@ -15,6 +15,9 @@ const UNLIT_ERROR: f64 = 1.0;
 /// If the exemplars show fewer whole lamps than this, a warning says that they are too few for measuring size and
 /// spacing. [convention]
 const MIN_LAMPS: usize = 2;
+/// Lamps that the exemplars must show whole before their repetition as a whole counts as a missing lattice. Fewer lamps
+/// need no lattice. [convention]
+const MIN_LATTICE_LAMPS: usize = 6;
 
 impl Emission {
     /// Returns warnings about the texture. A texture that the caller supplied gets none.
@@ -64,11 +67,15 @@ impl Emission {
     }
 
     fn no_lattice(&self) -> Option<Warning> {
-        let is_free = self.law == Law::Free;
+        let has_no_lattice = match self.law {
+            Law::Free => true,
+            Law::Whole(_) => self.exemplar_lamps >= MIN_LATTICE_LAMPS,
+            _ => false,
+        };
         let message =
             || format!("the lamps form no lattice, and the texture differs from the photo by {}", percent(self.error));
         let advice = "lower min_regularity of the emission if the lamps are regular";
-        is_free.then(|| Warning::above(Code::NoLattice, self.error, MAX_FREE_ERROR, message, advice)).flatten()
+        has_no_lattice.then(|| Warning::above(Code::NoLattice, self.error, MAX_FREE_ERROR, message, advice)).flatten()
     }
 }
 

@@ -10,8 +10,10 @@ use glam::DVec2;
 /// Minimum gap between the lamps of adjacent copies of the exemplar, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
-/// An exemplar with fewer lamps than this repeats as a whole. [judged on 5 photos]
-const FEW_LAMPS: usize = 6;
+/// An exemplar with fewer lamps than this repeats as a whole, so that rows of unlike lamps stay rows. Patches keep the
+/// lit share of scattered lamps better, because they also continue the lamps that the border cuts; with as many lamps
+/// as this, enough of them are uncut for patches. [judged on 15 photos]
+const FEW_LAMPS: usize = 16;
 
 /// All lamps form one isolated group if the free space around them is large compared with the distances between them.
 /// The free space along an axis is the extent of the exemplar minus that of the box around all lamps. Along both axes,
@@ -28,18 +30,18 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
 /// The period, along x and along y, with which all panes of a luminous ceiling repeat, in unwarped pixels: the length
 /// of the box around all panes, plus the width of the widest bar between panes.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
-    let [[width, column], [height, row]] = [spread(exemplar, 0, usize::max), spread(exemplar, 1, usize::max)];
+    let panes = || exemplar.components.list.iter();
+    let [[width, column], [height, row]] = [spread(panes(), 0, usize::max), spread(panes(), 1, usize::max)];
     // A single column or row of panes has bars along one axis only. Their width then serves for the other axis as well.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
     DVec2::new(width + bar(column, row), height + bar(row, column))
 }
 
-/// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: that of the box around all lamps, and that
-/// of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are several, `choose`
-/// picks the longest or the shortest one. If there is none, the length of the gap is 0.
-fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
-    let mut spans: Vec<[usize; 2]> =
-        exemplar.components.list.iter().map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
+/// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: that of the box around all `lamps`, and
+/// that of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are several,
+/// `choose` picks the longest or the shortest one. If there is none, the length of the gap is 0.
+fn spread<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
+    let mut spans: Vec<[usize; 2]> = lamps.map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
     spans.sort_unstable();
     let first = spans.first().map_or(0, |span| span[0]);
     let (mut end, mut gap) = (first, None);
@@ -58,7 +60,7 @@ fn spread(exemplar: &Exemplar, axis: usize, choose: fn(usize, usize) -> usize) -
 /// exemplar would lie side by side in the texture, almost without a gap.
 pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
     let spaced = |axis: usize| {
-        let [length, gap] = spread(exemplar, axis, usize::min);
+        let [length, gap] = spread(exemplar.components.list.iter(), axis, usize::min);
         if gap > 0.0 { length + gap } else { 0.0 }
     };
     of(exemplar).max(DVec2::new(spaced(0), spaced(1)))
@@ -88,16 +90,25 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let share = (lit as f64 / exemplar.lit_share / extent.element_product()).min(1.0);
     let is_framed = exemplar.to_photo.is_some() && exemplar.pieces().count() == 1;
     if share > 1.0 - 1e-6 && !is_framed {
-        return extent;
+        return of_rows(exemplar);
     }
-    // Keep a gap between the lamps of adjacent repetitions.
-    let (low, high) = bounds_of(exemplar.pieces().map(|(_, lamp)| lamp));
-    let least = if low.x <= high.x { (high - low + CELL_GAP) / extent } else { DVec2::ZERO };
+    let least = min_cell(exemplar) / extent;
     if is_framed && least.max_element() <= 1.0 {
         return DVec2::splat((share * extent.element_product()).sqrt()).max(least * extent);
     }
-    let x = (share / least.y.max(share.sqrt())).max(least.x).min(1.0);
-    extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
+    let x = (share / least.y.max(share.sqrt())).min(1.0).max(least.x);
+    extent * DVec2::new(x, (share / x).min(1.0).max(least.y))
+}
+
+/// The smallest period, along x and along y, at which the copied lamps of adjacent repetitions stay apart, in unwarped
+/// pixels: the length of the box around the lamps, plus the shortest gap between lamps. Zero without copied lamps.
+fn min_cell(exemplar: &Exemplar) -> DVec2 {
+    let pieces = || exemplar.pieces().map(|(_, lamp)| lamp);
+    let along = |axis: usize| {
+        let [length, gap] = spread(pieces(), axis, usize::min);
+        if length > 0.0 { length + gap.max(CELL_GAP) } else { 0.0 }
+    };
+    DVec2::new(along(0), along(1))
 }
 
 /// The corners of the bounding box of lamps with the smallest and the largest coordinates. Without lamps, these are +∞

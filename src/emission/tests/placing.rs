@@ -42,6 +42,29 @@ fn scattered_lamps_are_shifted_where_they_repeat_and_nowhere_else() {
     );
 }
 
+/// Rows of battens, of discs and of squares lie at irregular distances along each row. If they repeat as a whole, the
+/// free space between two repetitions is at least the smaller of the gaps between the rows.
+#[test]
+fn repetitions_of_the_exemplar_keep_its_rows_apart() {
+    let is_within = |places: [f64; 4], x: f64, distance: f64| places.iter().any(|u| (x - u).abs() < distance);
+    let exemplar = Design::new(240, 116, |x, y| {
+        let batten = (y - 8.0).abs() < 3.0 && is_within([24.0, 61.0, 172.0, 219.0], x, 16.0);
+        let disc = [33.0, 98.0, 124.0, 202.0].iter().any(|u| (x - u).hypot(y - 52.0) < 7.0);
+        batten || disc || ((y - 108.0).abs() < 5.0 && is_within([22.0, 74.0, 95.0, 212.0], x, 5.0))
+    });
+    let params = Params { width: 720, height: 500, law: LawMode::Whole, ..Params::default() };
+    let result = exemplar.run(&params).unwrap();
+    let Law::Whole([_, down]) = result.law else { panic!("{:?}", result.law) };
+    // The rows end at 5 and 113; the smaller gap lies between 11 and 45.
+    assert!(down.y >= 113.0 - 5.0 + 45.0 - 11.0 - 2.0, "{down}");
+    let phase = |y: f64| {
+        let off = |row: &f64| ((y - row) / down.y - ((y - row) / down.y).round()).abs() * down.y;
+        [8.0, 52.0, 108.0].iter().map(off).fold(f64::MAX, f64::min)
+    };
+    assert!(result.luminaires.len() >= 30, "{}", result.luminaires.len());
+    assert!(result.luminaires.iter().all(|lamp| phase(lamp.centre.y) < 1.0));
+}
+
 #[test]
 fn centred_lattices_leave_the_same_room_on_all_sides() {
     let plain = Design::new(300, 280, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();

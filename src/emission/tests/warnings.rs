@@ -65,4 +65,9 @@ fn free_patches_raise_a_warning_where_they_differ() {
     assert_eq!(codes(&free(0.2)), [Code::NoLattice]);
     assert_eq!(codes(&free(0.9)), [Code::PatternUncertain, Code::NoLattice]);
     assert_eq!(codes(&Emission { error: 0.2, ..made() }), []);
+
+    // Repetition as a whole counts as a missing lattice if the photo shows enough lamps for one.
+    let whole = |exemplar_lamps| Emission { law: Law::Whole([DVec2::X, DVec2::Y]), exemplar_lamps, ..free(0.2) };
+    assert_eq!(codes(&whole(5)), []);
+    assert_eq!(codes(&whole(6)), [Code::NoLattice]);
 }
