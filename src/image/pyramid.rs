@@ -91,7 +91,7 @@ pub fn halvings(image: &Image, count: usize, job: Job) -> Result<Vec<Image>> {
 /// pixels are repeated outwards.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     if sigma <= 0.0 {
-        return Ok(image.clone());
+        return image.try_clone();
     }
     let radius = (3.0 * sigma).ceil() as isize;
     let mut kernel: Vec<f32> = (-radius..=radius).map(|i| (-0.5 * (i as f32 / sigma).powi(2)).exp()).collect();

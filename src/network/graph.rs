@@ -81,6 +81,8 @@ impl Network {
         let mut kept = Vec::new();
         for mut node in std::mem::take(&mut self.nodes).into_iter().rev() {
             if node.outputs.iter().flatten().any(|&v| is_needed[v]) {
+                // An output that no later node reads is dropped at once.
+                node.last_uses.extend(node.outputs.iter().flatten().copied().filter(|&v| !is_needed[v]));
                 for &v in node.inputs.iter().flatten() {
                     if !is_needed[v] && self.constants[v].is_none() {
                         node.last_uses.push(v);

@@ -74,7 +74,9 @@ impl Conversion {
             }),
             Kind::Rgb { curves: None, matrix } => each_colour(image, |colour| within(*matrix * colour, colour)),
             Kind::Grey(curve) if image.channels < 3 => image.data.iter_mut().for_each(|v| *v = curve.at(*v)),
-            Kind::Grey(curve) => each_colour(image, |colour| Vec3::splat(curve.at(colour.y))),
+            // Grey with alpha has three equal channels. Convert each, so that a coloured picture with a wrong profile
+            // keeps its colours.
+            Kind::Grey(curve) => each_colour(image, |colour| Vec3::from(colour.to_array().map(|v| curve.at(v)))),
             Kind::Tables(to_srgb, curve) => apply_tables(image, to_srgb.as_ref(), curve)?,
         }
         Ok(())

@@ -211,7 +211,7 @@ impl Importer<'_> {
             c0: c0.as_vec3(),
             colour: multiplier * Vec3::from_array(std::array::from_fn(channel)),
             distribution,
-            is_point: self.point_luminaires || reference.get(IS_POINT).is_some(),
+            is_point: self.point_luminaires || reference.get(IS_POINT) == Some(&Value::Bool(true)),
         });
         Ok(())
     }

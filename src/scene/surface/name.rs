@@ -64,8 +64,24 @@ fn closest<'a>(wanted: &str, mut names: Vec<&'a str>) -> Vec<&'a str> {
     let target = pairs(wanted);
     names.sort_by_cached_key(|name| {
         let own = pairs(&name.to_lowercase());
-        let shared = own.iter().filter(|p| target.contains(p)).count();
+        // A pair of the wanted name is common only once, however often the other name contains it.
+        let mut unmatched = target.clone();
+        let mut is_common = |p: &(char, char)| {
+            let found = unmatched.iter().position(|q| q == p);
+            found.map(|k| unmatched.swap_remove(k)).is_some()
+        };
+        let shared = own.iter().filter(|p| is_common(p)).count();
         std::cmp::Reverse(2000 * shared / (own.len() + target.len()).max(1))
     });
     names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeated_letters_do_not_make_names_more_similar() {
+        assert_eq!(closest("aab", vec!["aaaa", "aabb", "b"]), ["aabb", "aaaa", "b"]);
+    }
 }
