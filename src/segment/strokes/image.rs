@@ -4,6 +4,7 @@ use super::{Kind, Stroke, StrokeSet};
 use crate::error::{Error, Result};
 use crate::image::{Image, colour, try_collect, try_push, try_vec};
 
+/// The colours of strokes in sRGB. [convention]
 const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::Plane, [0.0, 1.0, 0.0]),
     (Kind::NotPlane, [1.0, 0.0, 0.0]),
