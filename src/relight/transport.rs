@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// Number of paths per batch in the first round. Rounds follow until a stopping condition holds, so the sizes of rounds
-/// change only by how much it is overshot. \[convention\]
+/// determine only how far it is overshot. \[convention\]
 pub const FIRST_ROUND: u32 = 64;
 /// Smallest and largest growth factor of the number of paths in later rounds. Like `FIRST_ROUND`, they change only the
 /// number of rounds and the overshoot. [convention]
