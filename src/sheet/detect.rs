@@ -101,7 +101,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
 }
 
 /// Minimum response of a saddle. An ideal mark with a contrast c of black and white has a response of c² / π² and, in
-/// `quadrants`, an amplitude of 2 c / π. So at the amplitude `MIN_CONTRAST` its response is 9e-4. The threshold only
+/// `quadrants`, an amplitude of 2 c / π. So at the amplitude `MIN_CONTRAST` its response is 9e-4. The threshold mainly
 /// saves time: any value from 1e-4 to 4e-4 lets every ideal mark through that `quadrants` accepts. [convention]
 const MIN_RESPONSE: f32 = 2e-4;
 
