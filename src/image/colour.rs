@@ -5,7 +5,7 @@ use crate::simd::widest;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Matrix from linear Rec.709 RGB to CIE XYZ, computed from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290).
-/// White has Y = 1.
+/// White has Y = 1. [convention: ITU-R BT.709]
 const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.412_390_799_265_959_5, 0.212_639_005_871_510_36, 0.019_330_818_715_591_85),
     DVec3::new(0.357_584_339_383_877_96, 0.715_168_678_767_755_9, 0.119_194_779_794_625_99),

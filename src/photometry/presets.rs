@@ -32,6 +32,7 @@ const fn preset(name: &'static str, edition: u32, task: [f64; 4], surround: [f64
     Preset { name, edition, illuminance, glare, uniformity, rendering, walls, ceiling }
 }
 
+/// The rooms and activities, each with its requirements. \[convention: EN 12464-1\]
 pub const PRESETS: &[Preset] = &[
     preset("office: writing, reading, data processing", 2011, [500.0, 19.0, 0.6, 80.0], [75.0, 50.0]),
     preset("office: filing, copying", 2011, [300.0, 19.0, 0.4, 80.0], [75.0, 50.0]),

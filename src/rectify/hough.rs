@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 const ANGLES: usize = 360;
 
 /// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side. `MAX_LINES`: maximum
-/// number of lines returned. [origin not recorded]
+/// number of lines returned. The bench prints the accuracy from Hough lines. [bench vp]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 
@@ -22,7 +22,7 @@ const MAX_LINES: usize = 600;
 const SUPPRESSED: (usize, usize) = (4, 4);
 
 /// `MAX_DISTANCE`: maximum distance of an edge pixel from its line. `MAX_GAP`: maximum gap that a piece of a line
-/// bridges. Both are in pixels. [origin not recorded]
+/// bridges. Both are in pixels. The bench prints the accuracy from Hough lines. [bench vp]
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
 

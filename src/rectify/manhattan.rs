@@ -12,7 +12,8 @@ use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
-/// image side: angles of view from 20 to 110 degrees. [origin not recorded]
+/// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy with an unknown and with the known
+/// focal length; the difference is what the search for it costs. [bench vp]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
 /// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side. For a
@@ -22,9 +23,23 @@ pub const USUAL_FOCAL: f64 = 2.0 * USUAL_FOCAL_PER_WIDTH;
 const SEARCH_SPREAD: f64 = 0.4;
 
 /// Penalty of a triplet whose focal length deviates from the prior by one standard deviation, as a share of the total
-/// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length.
-/// [origin not recorded]
+/// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length. The
+/// bench shows its effect as for [`FOCALS`]. [bench vp]
 const FOCAL_COST: f64 = 0.004;
+
+/// Share of a line's weight that the search for further candidates ignores if a candidate explains the line completely.
+/// [origin not recorded]
+const EXPLAINED_SHARE: f32 = 0.9;
+
+/// Two candidates may be orthogonal at a listed focal length if the cosine of the angle between their directions is
+/// below this: within 9 degrees of a right angle. [origin not recorded]
+const MAX_COSINE: f64 = 0.15;
+
+/// Two triplets are similar if each axis of one is within 1.8 degrees (`MIN_AXIS_COSINE`) of an axis of the other, and
+/// if the logarithms of their focal lengths differ by less than `MAX_FOCAL_LOG`. Of similar triplets only the best is
+/// refined, since refinement leads all of them to the same maximum; that saves time. [convention]
+const MIN_AXIS_COSINE: f64 = 0.9995;
+const MAX_FOCAL_LOG: f64 = 0.1;
 
 /// `PAIRS`: number of line pairs drawn. `CANDIDATES`: maximum number of candidates kept. `PARTNERS`: maximum number of
 /// lines paired with each candidate. `SEMIFINALISTS`: maximum number of triplets scored a second time. `FINALISTS`:
@@ -124,7 +139,7 @@ fn candidates(lines: &[WeightedLine], focal: f64, count: usize, seed: u64, job: 
         let start = unproject(points[best], focal);
         let point = project(refine(lines, start, focal).map_or(start, |r| r.direction), focal);
         for (w, (e, a)) in weights.iter_mut().zip(lines.iter().zip(&agreements[best])) {
-            *w *= 1.0 - 0.9 * a.max(e.agreement(point) as f32);
+            *w *= 1.0 - EXPLAINED_SHARE * a.max(e.agreement(point) as f32);
         }
         found.push(point);
     }
@@ -146,7 +161,7 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
     for (i, &p) in candidates.iter().enumerate() {
         // Pair two candidates. The focal length at which their directions are orthogonal is one hypothesis. If a
         // candidate is nearly at infinity, that focal length is unreliable. So also try each listed focal length at
-        // which the angle between the directions is within 9 degrees of a right angle.
+        // which the directions are nearly orthogonal.
         for &q in &candidates[i + 1..] {
             let square = -(p.x * q.x + p.y * q.y) / (p.z * q.z);
             let implied = square.max(0.0).sqrt();
@@ -155,7 +170,7 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
             }
             for &f in focals {
                 let (a, b) = (unproject(p, f), unproject(q, f));
-                if a.dot(b).abs() < 0.15 {
+                if a.dot(b).abs() < MAX_COSINE {
                     push(a, b, f);
                 }
             }
@@ -189,8 +204,8 @@ fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
 }
 
 fn similar(a: &Triplet, b: &Triplet) -> bool {
-    let close = |d: DVec3| (0..3).any(|k| b.axes.col(k).dot(d).abs() > 0.9995);
-    (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
+    let close = |d: DVec3| (0..3).any(|k| b.axes.col(k).dot(d).abs() > MIN_AXIS_COSINE);
+    (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < MAX_FOCAL_LOG
 }
 
 /// Refines the axes and the focal length of a roughly known camera, so that more lines run to its vanishing points.

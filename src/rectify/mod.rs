@@ -20,16 +20,11 @@
 //!
 //! Known weaknesses:
 //!
-//! - The reported standard deviations assume five segments per independent observation and an error floor of 0.2°,
-//!   both calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the reported
-//!   error; normally distributed errors would give 0.7 to 0.8. But one error in fourteen exceeds twice the reported
-//!   error, instead of one in twenty.
+//! - The reported standard deviations of directions are right for most, but large errors are more frequent than they
+//!   say, and where lines are few and noisy they are somewhat too small (docs/notes/vanishing-points.md).
 //! - Lines found on a floor by chance can displace a direction that few lines support; the reported error of the
 //!   direction does not show this.
-//! - Short segments share a bias of about 0.01 rad on re-projected photos; its cause is unknown.
-//! - Where lines are few and noisy for their length, the reported errors of directions are up to an eighth too small:
-//!   the mean square of the ratio of true to reported error is 1.3 with 14 lines per axis and a pixel of noise, and
-//!   1.0 to 1.15 with more lines or less noise.
+//! - Short segments share a small bias, whose cause is unknown.
 //!
 //! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
 //! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and

@@ -23,7 +23,7 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::DVec3;
 
-/// Luminance of linear RGB ([`crate::image::colour::luminance`]).
+/// Luminance of linear RGB ([`crate::image::colour::luminance`]). [convention: ITU-R BT.709]
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
 /// Maximum number of dimming levels. \[convention\]

@@ -14,7 +14,7 @@ use glam::DVec3;
 pub const MAX_PRIMARIES: usize = 64;
 
 /// Weight of the squared drives relative to the colour error: only large enough to select among mixtures of equal
-/// colour. [origin not recorded]
+/// colour. It lies far above the rounding of f64 (2e-16) and far below `MAX_RELATIVE_MISS`. [rounding]
 const REGULARISATION: f64 = 1e-9;
 /// A colour counts as reached if its relative error is at most this. [rounding]
 const MAX_RELATIVE_MISS: f64 = 1e-6;

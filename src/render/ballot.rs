@@ -5,8 +5,9 @@
 //! merging. If it shows more, votes for rare candidates cancel votes for the others, but an index with a majority
 //! still wins.
 
-/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. [origin
-/// not recorded]
+/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. An index
+/// with more than one vote in `CANDIDATES` + 1 is kept for certain, so any number finds an index with a majority.
+/// [convention]
 const CANDIDATES: usize = 4;
 /// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;

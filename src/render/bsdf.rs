@@ -359,7 +359,9 @@ impl<'a> TopAlbedo<'a> {
 /// If the shading normal faces away from the viewer, tilts it until it is almost perpendicular to the view direction,
 /// so that the viewer sees the surface at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    // Smallest cosine between the tilted normal and the viewer's direction. [origin not recorded]
+    // Smallest cosine between the tilted normal and the viewer's direction. Any value from 1e-4 to 1e-2 is far above
+    // the rounding of a cosine in f32 (3e-7), so that the tilted normal faces the viewer for certain, and is still a
+    // grazing angle. [rounding]
     const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
     if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }

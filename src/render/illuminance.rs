@@ -65,8 +65,9 @@ pub struct Output {
     pub mean_error: f64,
 }
 
-/// Number of independent estimates of each point; their variance gives the point's standard error. [origin not
-/// recorded]
+/// Number of independent estimates of each point; their variance gives the point's standard error, to within 1 / √30 =
+/// 18 %. With any number from 8 to 32 the mean has the same expected value, and the error is known to within 27 to 13
+/// %. [convention]
 const BATCHES: u32 = 16;
 
 /// To learn which lights reach its points, a calculation first traces `LEARNING_PATHS` paths from each of up to

@@ -3,22 +3,24 @@
 use crate::error::{Result, check_range};
 use crate::features::CHANNELS;
 
+/// The settings of a segmentation. The tags state the origin of the defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Maximum number of sample pixels drawn from the strokes of each class, in `[1, 1e6]`.
+    /// Maximum number of sample pixels drawn from the strokes of each class, in `[1, 1e6]`; by default 1000.
+    /// \[paper §4.2\]
     pub samples_per_class: usize,
     /// Feature channels to use; bit `i` stands for channel `i`. 0 leaves the choice open: if there are [`CHANNELS`]
     /// channels, cross-validation chooses one of [`SUBSETS`]; with any other number, all channels are used.
     pub channels: u32,
     /// Strength of the ridge penalty, in `[1e-9, 1e3]`. The classifier's weights w minimise the mean log loss of the
-    /// samples plus `ridge / 2 |w|²`.
+    /// samples plus `ridge / 2 |w|²`. [origin not recorded]
     pub ridge: f64,
     pub seed: u64,
     /// Half-width of the windows of the edge-aware filter, in pixels, in `[0, 1024]`; 0 turns the filter off. The
     /// filter's guide image is the first three channels of the features.
     pub refine_radius: usize,
     /// Differences in the guide image below this value are smoothed over; larger ones count as edges. In units of the
-    /// guide (CIELAB units for colour), in `[1e-3, 1e6]`.
+    /// guide (CIELAB units for colour), in `[1e-3, 1e6]`. \[bench segment\]
     pub refine_tolerance: f64,
     /// The kind of object that the positive strokes mark.
     pub subject: Subject,

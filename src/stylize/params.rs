@@ -75,57 +75,61 @@ impl<'a> Input<'a> {
     }
 }
 
+/// The settings of a stylisation. The tags state the origin of the defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub mode: Mode,
     pub finder: Finder,
-    /// Width of a patch in pixels, odd, in `[1, 33]`. Reduced if the images are smaller.
+    /// Width of a patch in pixels, odd, in `[1, 33]`. Reduced if the images are smaller. \[paper §3.4\]
     pub patch: usize,
-    /// Weight μ of all guides together relative to all of the artwork's colours together, in `[0, 1e6]`.
+    /// Weight μ of all guides together relative to all of the artwork's colours together, in `[0, 1e6]`. \[paper §3.4\]
     pub guide_weight: f32,
     /// Factor on the weight of the guides on all levels except the finest, in `[0, 1000]`. Guides determine where
-    /// paint is placed, and colours determine how it continues. The paper uses 1.
+    /// paint is placed, and colours determine how it continues. The paper uses 1. \[bench stylit:knobs\]
     pub coarse_guides: f32,
     /// Maximum number of pyramid levels, in `[1, 16]`; each has half the resolution of the next finer one. There are
-    /// fewer levels if the coarsest would be smaller than 5 patches.
+    /// fewer levels if the coarsest would be smaller than 5 patches. \[paper §3.4\]
     pub levels: usize,
-    /// EM iterations (matching, then voting) on the second finest level, in `[1, 100]`.
+    /// EM iterations (matching, then voting) on the second finest level, in `[1, 100]`. \[paper §3.4\]
     pub iterations: usize,
-    /// EM iterations on each coarser level, in `[1, 100]`.
+    /// EM iterations on each coarser level, in `[1, 100]`. \[bench stylit:knobs\]
     pub coarse_iterations: usize,
-    /// EM iterations on the finest level, in `[1, 100]`.
+    /// EM iterations on the finest level, in `[1, 100]`. \[bench stylit:knobs\]
     pub finest_iterations: usize,
     /// Further EM iterations on the finest level, in `[0, 100]`; the paper has none. In `Mode::Budget`, they start
     /// from the result under the budget and let each target patch take its nearest exemplar patch (Wexler et al.
-    /// 2007). In the other iterative modes, they only add to `finest_iterations`.
+    /// 2007). In the other iterative modes, they only add to `finest_iterations`. \[bench stylit:presets\]
     pub polish: usize,
-    /// PatchMatch sweeps per retrieval, in `[1, 100]`.
+    /// PatchMatch sweeps per retrieval, in `[1, 100]`. \[bench stylit:knobs\]
     pub sweeps: usize,
     /// Share of the target patches that are matched under the budget, in `[0, 1]`. All other target patches are then
-    /// matched without the budget.
+    /// matched without the budget. \[bench stylit:knobs\]
     pub coverage: f32,
-    /// Maximum number of retrieval passes per iteration, in `[1, 1000]`.
+    /// Maximum number of retrieval passes per iteration, in `[1, 1000]`. \[bench stylit:knobs\]
     pub passes: usize,
     /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
     /// continued match is closer than the patch's own match. With 0, the paper's assignment is unchanged.
+    /// \[bench stylit:knobs\]
     pub settle: usize,
     /// Cost of a seam in the sweeps of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between two
-    /// neighbouring target patches whose matches are not neighbours in the exemplar.
+    /// neighbouring target patches whose matches are not neighbours in the exemplar. Values up to 3 change the guide
+    /// error by less than the seed does (docs/notes/stylize.md). \[bench stylit\]
     pub seam: f32,
     pub vote: VoteMode,
     /// The vote that forms the final picture from the final field.
     pub final_vote: VoteMode,
     /// Share of the previous frame's matches that are kept where they fit, in `[0, 1]`; no effect without motion. Use
-    /// a different `seed` for each frame; otherwise the same blocks change in every frame.
+    /// a different `seed` for each frame; otherwise the same blocks change in every frame. By default all are kept.
+    /// \[convention\]
     pub coherence: f32,
     /// Degree to which the brightness and contrast of the exemplar are adapted to those of the target, in `[0, 1]`, in
     /// all guides whose range is `Range::Light`. Use it for targets under different light than the exemplar (StyLit,
-    /// Fig. 16).
+    /// Fig. 16). By default they are not adapted. \[convention\]
     pub match_appearance: f32,
     /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty for a match to an exemplar patch of average usage.
     /// The unit is that of Eq. 1 of StyLit: the sum over a patch of squared differences of channels in `[0, 1]`. With
     /// 0 the result equals that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (StyLit, Fig.
-    /// 10n).
+    /// 10n). \[paper §4.1\]
     pub occurrence: f32,
     /// Whether to work at half the resolution, with guides compressed to their principal components: for interactive
     /// painting.

@@ -24,7 +24,7 @@ pub struct Prediction {
 }
 
 /// The time per pixel grows with a power of the number of pixels, because larger fields converge more slowly. This is
-/// the maximum exponent. [origin not recorded]
+/// the maximum exponent. [bench plan:stylisations]
 const MAX_GROWTH: f64 = 0.12;
 
 /// Pilot runs of several settings on one input. `ladder` holds the settings, and `usual` is the index of the reference

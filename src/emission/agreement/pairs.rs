@@ -4,10 +4,12 @@
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// `MAX_DISTANCE`: longest distance between two points that is compared. `KERNEL_HALF_WIDTH`: half width of the kernel
-/// that smooths the distances. Both are multiples of the mean distance between nearest neighbours.
-/// [origin not recorded]
+/// Longest distance between two points that is compared, as a multiple of the mean distance between nearest neighbours.
+/// [convention: the statistic is defined with it]
 const MAX_DISTANCE: f64 = 2.5;
+/// Half width of the Epanechnikov kernel that smooths the distances, as a multiple of the mean distance between nearest
+/// neighbours. Stoyan and Stoyan recommend 0.15 / √λ for a density of λ points per area; on a square lattice, 1 / √λ is
+/// the distance between neighbours. [paper: Stoyan and Stoyan 1994, eq. 15.16]
 const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the distances from 0 to the longest one are divided.
 const STEPS: usize = 100;

@@ -10,10 +10,11 @@ use crate::image::try_vec;
 
 /// Weight w of the penalty w e² / A, which is added to a patch's sum of squared differences. Here e is the excess light
 /// in pixels, and A is the mean area of a lamp in pixels. One surplus or missing lamp (e = A) costs w A, as much as a
-/// squared difference of w at each pixel of a lamp. [origin not recorded]
+/// squared difference of w at each pixel of a lamp. The bench prints the light and the distances between lamps, with
+/// and without a lattice. [bench emission]
 ///
-/// - `ON_LATTICE`: about the squared difference, in colour, confidence and distances, of a pixel at which one patch
-///   shows a lamp and the other none.
+/// - `ON_LATTICE`: about the squared difference of a pixel at which one patch shows a lamp and the other none: up to 1
+///   in colour, 1 in confidence, and 1 in each of the two distances.
 /// - `ANYWHERE`, for patterns without a lattice: it must stay below 1/3. A larger weight would select patches with the
 ///   right amount of light but wrong distances between lamps.
 const ON_LATTICE: f64 = 3.0;

@@ -9,14 +9,14 @@ pub struct Chromaticities {
     pub white: [f64; 2],
 }
 
-/// Matrix from CIE XYZ to Bradford cone responses (Lam 1985; ICC.1:2022, annex E).
+/// Matrix from CIE XYZ to Bradford cone responses (Lam 1985; ICC.1:2022, annex E). [convention: ICC]
 const BRADFORD: DMat3 = DMat3::from_cols(
     DVec3::new(0.8951, -0.7502, 0.0389),
     DVec3::new(0.2664, 1.7135, -0.0685),
     DVec3::new(-0.1614, 0.0367, 1.0296),
 );
 
-/// CIE XYZ of the white in the profile connection space of ICC (ICC.1:2022, 7.2.16).
+/// CIE XYZ of the white in the profile connection space of ICC (ICC.1:2022, 7.2.16). [convention: ICC]
 const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
 /// A matrix counts as the identity if every element deviates from the identity by less than this value. Files store
@@ -27,10 +27,10 @@ const SAME: f64 = 1e-3;
 const MAX_ELEMENT: f64 = 1e3;
 
 impl Chromaticities {
-    /// Recommendation ITU-R BT.709-6.
+    /// Recommendation ITU-R BT.709-6. \[convention\]
     pub const REC709: Self = Self { primaries: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], white: [0.3127, 0.3290] };
 
-    /// Adobe RGB (1998), 4.3.1.1.
+    /// Adobe RGB (1998), 4.3.1.1. \[convention\]
     pub const ADOBE_RGB: Self = Self { primaries: [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06]], white: [0.3127, 0.3290] };
 
     /// Returns the chromaticities of a code point for primaries (Recommendation ITU-T H.273, table 2); `None` if the

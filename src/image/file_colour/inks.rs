@@ -16,7 +16,7 @@ use moxcms::{ColorProfile, DataColorSpace, LutDataType, LutStore, LutType, LutWa
 
 const INKS: usize = 4;
 
-/// CIE XYZ of the white in the profile connection space (ICC.1:2022, 7.2.16).
+/// CIE XYZ of the white in the profile connection space (ICC.1:2022, 7.2.16). [convention: ICC]
 const D50: Vec3 = Vec3::new(0.9642, 1.0, 0.8249);
 
 /// The tables that convert a picture of four inks.

@@ -8,7 +8,8 @@ pub const TILE: usize = 8;
 /// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// Largest number of pixels in the coarsest image of a progressive render. [origin not recorded]
+/// Largest number of pixels in the coarsest image of a progressive render. It determines only which pixels get their
+/// first path first: the finished image has the same expected value for any number. [convention]
 const COARSE_PIXELS: usize = 1024;
 
 /// An image divided into tiles, row by row. The tiles of the last column and row may extend beyond the image.

@@ -37,15 +37,17 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Largest number of tiles that the pilot run renders. [origin not recorded]
+/// Largest number of tiles that the pilot run renders, a limit on its work. Predictions are unbiased for any number
+/// (Horvitz and Thompson); `make bench ONLY=plan:renderings` prints their errors. [convention]
 const MAX_TILES: usize = 128;
 /// Paths per pixel of the three passes. Each of the four replications of a pixel gets a power of four of these paths,
 /// because points are stratified best at powers of four.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
-/// Largest number of tiles that the third pass renders. [origin not recorded]
+/// Largest number of tiles that the third pass renders. See `MAX_TILES`. [convention]
 const MAX_DEEP_TILES: usize = 32;
 /// Constant that is added to each tile's selection weight, as a multiple of the mean standard deviation of all tiles,
-/// so that even tiles without variance can be selected. [origin not recorded]
+/// so that even tiles without variance can be selected. Predictions are unbiased for any positive value, and a tile of
+/// mean deviation is selected with the same probability for any value. [convention]
 const MIN_CHANCE: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;

@@ -10,7 +10,8 @@
 
 use glam::{DVec3, Vec3};
 
-/// Number of independently scrambled point sequences per pixel. [origin not recorded]
+/// Number of independently scrambled point sequences per pixel. Four are the fewest that leave two, and thus an
+/// estimate of the variance, in each of the two halves ([`Pixel::half_variances`]). \[convention\]
 pub const REPLICATIONS: u32 = 4;
 
 /// Sums over the paths of a pixel so far.

@@ -20,11 +20,11 @@ use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
-/// Number of paths through each pixel of a coarse grid, from which the median radiance of the image is estimated.
-/// [origin not recorded]
+/// Number of paths through each pixel of a coarse grid, from which the median radiance of the image is estimated. The
+/// median serves only roulette, which is unbiased with any weights. [convention]
 const PATHS: u32 = 4;
-/// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of
-/// this stride. [origin not recorded]
+/// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of this
+/// stride. Roulette is unbiased with any weights. [convention]
 const STEP: usize = 2;
 /// Salt of the prepass's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;

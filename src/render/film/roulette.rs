@@ -15,10 +15,12 @@ use crate::job::Job;
 use glam::{DVec3, Vec3};
 
 /// A measured mean radiance is blended with a prior, which counts as this number of paths. The prior of a pixel is the
-/// mean of its tile; the prior of a tile is the median of the image. [origin not recorded]
+/// mean of its tile; the prior of a tile is the median of the image. Roulette is unbiased with any weights, so any
+/// value from 4 to 16 gives the same expected image. [convention]
 const PRIOR_PATHS: f64 = 8.0;
-/// Upper bound on the ratio of the median radiance to a pixel's radiance; its reciprocal is the lower bound. [origin
-/// not recorded]
+/// Upper bound on the ratio of the median radiance to a pixel's radiance; its reciprocal is the lower bound. Like
+/// `PRIOR_PATHS`, it does not change the expected image; any value from 25 to 100 changes the roulette only of pixels
+/// that are darker or brighter than the median by more than four f-stops. [convention]
 const MAX_WEIGHT: f64 = 50.0;
 
 /// Returns the median, over the tiles, of the mean radiance of a tile, per channel; `None` if no pixel has paths.

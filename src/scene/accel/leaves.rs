@@ -107,7 +107,7 @@ impl Chunk {
             let area = half_area(&this);
             // Pair this triangle with the previous one if that lowers the expected cost of a ray. By the surface area
             // heuristic, a pair costs the area of its common box, and two single triangles cost the sum of the areas
-            // of their boxes. Require a saving of a quarter. [origin not recorded]
+            // of their boxes. Require a saving of a quarter. [bench rays]
             if let Some(before) = alone.take()
                 && let Some(leaf) = chunk.leaves.last_mut()
                 && let both = leaf.aabb().union(&this)

@@ -86,8 +86,7 @@ impl Accel {
     }
 
     /// The AVX2 code compiled with AVX-512 encoding, whose 32 registers and broadcast operands make it slightly
-    /// faster. Three uses of the wider registers and masks of AVX-512 were measured to be slower: both bounds of a
-    /// node's boxes in one register of sixteen lanes, leaves of sixteen triangles, and children sorted in a register.
+    /// faster. No use of the wider registers themselves pays (docs/notes/rays.md).
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
     fn traverse_avx512<const ANY: bool>(

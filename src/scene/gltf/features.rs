@@ -50,7 +50,7 @@ const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_
 type Neutral = (&'static str, f64);
 
 /// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
-/// effect off if they have their default values.
+/// effect off if they have their default values. [convention: glTF extensions]
 const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),

@@ -6,8 +6,10 @@ use glam::{DVec2, DVec3};
 /// Cosine of 1°. If the axes of the smallest rectangle differ by less than this angle from the axes aligned with the
 /// world, the aligned axes are used instead. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
-/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
-/// recorded]
+/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. A rectangle that
+/// is turned by an angle θ is smaller than the aligned one around it by at least the share sin 2θ / (1 + sin 2θ), which
+/// is 3.4 % at the 1° of `COS_SNAP`. So any value from 1e-5, above the rounding of f32, to 0.03 gives the same result
+/// for rectangles. [convention]
 const MIN_SAVING: f64 = 1e-3;
 /// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;

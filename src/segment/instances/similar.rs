@@ -87,7 +87,7 @@ struct Limits {
     pixels: f64,
 }
 
-/// Limits for any region.
+/// Limits for any region: the minima of the model as they are, no pixel under negative strokes, any size. [convention]
 const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0 };
 /// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
 /// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer than 30 pixels have no clear

@@ -4,6 +4,7 @@ use super::{Kind, Stroke, StrokeSet};
 use crate::error::{Error, Result};
 use crate::image::{Image, colour, try_collect, try_push, try_vec};
 
+/// The colours of strokes in sRGB. [convention]
 const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::Plane, [0.0, 1.0, 0.0]),
     (Kind::NotPlane, [1.0, 0.0, 0.0]),
@@ -11,7 +12,8 @@ const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::NotLight, [0.0, 0.0, 1.0]),
 ];
 /// Largest deviation from a stroke colour in any sRGB channel, in `[0, 1]`. It allows for JPEG artefacts and soft
-/// brushes; two stroke colours are too far apart for a pixel to match both. [origin not recorded]
+/// brushes. Stroke colours differ by 1 in some channel, so no pixel matches two below 0.5; any value from 0.2 to 0.49
+/// reads strokes with noise of up to 0.2 alike. [convention]
 const TOLERANCE: f32 = 0.3;
 /// Minimum number of pixels of a stroke; smaller components are compression artefacts.
 const SPECK: usize = 4;
