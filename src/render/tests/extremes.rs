@@ -169,17 +169,17 @@ fn closed_white_rooms_end_with_the_right_energy() {
     scene.materials[0] = matt(1.0, 0.0);
     // Let the lamp cover nearly the whole ceiling. It emits on both sides.
     scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
-    let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
+    let film = render(&world(scene), &camera, &Params { samples: 128, ..SMALL() });
     assert_mean(&film, 100.0);
     // Test emissive walls of albedo 0.99, whose radiance is the emission divided by 1 - albedo.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.99, 1.0)], ..Scene::default() };
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
-    let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
+    let film = render(&world(scene), &camera, &Params { samples: 128, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
     // Test emissive walls of albedo 0.998: a share of 0.998^1000 = 0.135 of their light has scattered more than a
     // thousand times.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.998, 0.2)], ..Scene::default() };
-    let film = render(&world(scene), &camera, &Params { samples: 256, width: 8, height: 8, ..SMALL() });
+    let film = render(&world(scene), &camera, &Params { samples: 128, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
 }
 
