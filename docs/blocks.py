@@ -1,11 +1,14 @@
-"""The blocks of code in the guide: what is shown is what works.
+"""Checks and runs the code blocks of the guide, so that all code shown there works.
 
-    blocks.py check                    each is part of a program that a test compiles or runs, or can be run itself
-    blocks.py run FOLDER LIBRARY [LANGUAGE...]    runs those of Python and shell, page by page; what they draw goes into FOLDER
+    blocks.py check
+        checks that each block is part of a program that a test compiles or runs, or can be run itself
+    blocks.py run FOLDER LIBRARY [LANGUAGE...]
+        runs the Python and shell blocks page by page; their pictures go into FOLDER
 
-A block is either nothing but `--8<--` lines, which name parts of programs, or Python or shell. A page's Python blocks are one
-program, and so are its shell blocks. Python works in FOLDER/PAGE/. Shell works in a tree of links that looks like the source
-tree with a library built in it, so that nothing is left behind; `luxfer` is on its path, as the wheel installs it.
+A block consists either of `--8<--` lines only, which name parts of programs, or of Python or shell code. The Python
+blocks of a page form one program, and so do its shell blocks. Python runs in FOLDER/PAGE/. Shell runs in a tree of
+links that looks like the source tree after a build, so that it leaves no files in the source tree; `luxfer` is on its
+path as if the wheel were installed.
 """
 
 from __future__ import annotations

@@ -1,11 +1,17 @@
-"""What mkdocs.yml asks for beyond Markdown: pictures made by programs, the reference, and values that are never typed.
+"""The hooks of mkdocs.yml: they add the pictures and the reference, and replace these tags on the pages of the guide:
 
-On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
-`{{ limits stage }}` is what the source of a stage says it leaves out, `{{ constant stage NAME }}` is a limit of its warnings, `{{ figure name }}` is a figure of `make bench`,
-`{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, `{{ table name bench }}` a table, and `{{ front name }}` the settings of a plot of error
-against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py
-or tests/studio/screenshot.js. Names of the C interface
-in code spans become links; one that does not exist is an error.
+    {{ settings luxfer_x_params }}, {{ fields luxfer_x_report }}    the fields of a struct with their comments
+    {{ limits stage }}                  what a stage does not model, from its source
+    {{ constant stage NAME }}           a threshold of a stage's warnings, from its source
+    {{ figure name }}                   a figure of `make bench`
+    {{ figures prefix ... }}            a table of the figures whose names begin so
+    {{ plot name }}                     a plot that a bench has drawn
+    {{ table name bench }}              a table that a bench has written
+    {{ front name }}                    the Pareto front of a plot of error against time
+    {{ test name }}                     the name of a test, which must exist
+    {{ screenshot name caption }}       a picture by docs/screenshots.py or tests/studio/screenshot.js
+
+Names of the C interface in code spans become links; an unknown name is an error.
 """
 
 from __future__ import annotations
@@ -123,7 +129,8 @@ def value(kind: str, words: list[str], path: str, files) -> str:
 
 
 def front(name: str, path: str) -> str:
-    """The Pareto front of a plot whose first axis is time and whose second is to be small; of each problem, if curves are called "problem: method"."""
+    """The Pareto front of a plot of error against time. If the curves are named "problem: method", each problem has a
+    front of its own."""
     if not (BENCH / f"{name}.csv").exists():
         return ""
     with open(BENCH / f"{name}.csv", newline="") as file:

@@ -1,5 +1,6 @@
-"""Uses the add-on in a Blender that docs/screenshots.py has started, and takes pictures of its window. Photo and scenes are those
-that the library makes itself."""
+"""Uses the add-on in a Blender that docs/screenshots.py has started, and takes pictures of its window.
+
+The library generates the photo and the scenes."""
 
 from __future__ import annotations
 

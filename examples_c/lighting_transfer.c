@@ -2,9 +2,9 @@
  *
  *   lighting_transfer [PHOTO SCENE --surface NAME --strokes FILE] [--distance M] [--size WxH] [--samples N] [--out DIR]
  *
- * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the
- * strokes: an image of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt).
- * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR, and prints the
+ * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the strokes: an image
+ * of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt). Writes
+ * overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR, and prints the
  * warnings about the result.
  */
 #include "luxfer.h"

@@ -4,8 +4,8 @@
  *
  * The exemplar is the sphere on a table that comes with the library, painted by three programs in place of artists; the
  * target is a still life. Writes stylize.png (above: the exemplar and its artworks; below: the target, stylised) and
- * each result as stylize_<style>.png into DIR; and sheet.png, the exemplar to be printed on A4 and painted by hand. A photo of
- * the painted sheet, loaded with luxfer_image_load, becomes an artwork by luxfer_sheet_align.
+ * each result as stylize_<style>.png into DIR, and sheet.png, the exemplar to be printed on A4 and painted by hand.
+ * luxfer_sheet_align makes an artwork from a photo of the painted sheet that luxfer_image_load has loaded.
  */
 #include "common.h"
 #include "panels.h"

@@ -1,9 +1,10 @@
-"""The functions of include/luxfer.h as a table that decodes bytes into calls, and programs (tests/conformance/script.py) encoded as
-such bytes: both by the same kinds of arguments, so that what one writes the other reads.
+"""Encodes calls of the C ABI as bytes, for the fuzz target `calls`.
 
-    python3 calls.py     prints the table, Rust that src/calls.rs includes
+    python3 calls.py     prints the decoder's table of functions in Rust, which src/calls.rs includes
 
-A call is the number of its function in two bytes, and its arguments one after the other; src/calls.rs says how each kind is read.
+`table` makes this table from include/luxfer.h; `Program` encodes programs (tests/conformance/script.py) as bytes that
+the decoder reads. A call is the index of its function in two bytes and then its arguments; src/calls.rs defines how
+each kind of argument is read.
 """
 
 from __future__ import annotations
@@ -108,7 +109,7 @@ class Program:
         return out
 
 
-# ---------------------------------------------------------------------------------------------------------------- the table
+# ------------------------------------------------------------------------------------------------------------ the table
 
 
 def expression(function: str, f: script.generate.Field) -> str:

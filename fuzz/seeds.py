@@ -1,4 +1,4 @@
-"""What the corpora grow from: small files of every kind, made here and by the library itself, and a dictionary for each kind.
+"""Writes the initial corpora of the fuzz targets, small files of every format, and a dictionary for each target.
 
     python3 seeds.py FOLDER     writes FOLDER/TARGET/* and FOLDER/TARGET.dict
 """
@@ -24,7 +24,7 @@ import scenarios  # noqa: E402
 import luxfer  # noqa: E402
 from luxfer.image import np  # noqa: E402
 
-# ------------------------------------------------------------------------------------------------------------------- images
+# --------------------------------------------------------------------------------------------------------------- images
 
 
 def png(depth: int, colour: int, interlaced: int = 0, size: int = 4) -> bytes:
@@ -65,7 +65,8 @@ def notes(orientation: int) -> bytes:
 
 
 def tiff(samples: int, bits: int, photometric: int, compression: int = 1, predictor: int = 1, tile: int = 0, planar: int = 1) -> bytes:
-    """Four pixels square, in strips of two rows or in tiles, with colours for a palette; floating point if of 32 bits."""
+    """A TIFF file of 4 x 4 pixels, in strips of two rows or in tiles; with a palette if the photometric interpretation
+    asks for one; of floating-point samples if they have 32 bits."""
     row = bytes(range(-(-4 * samples * bits // 8 // (samples if planar == 2 else 1))))
     rows = tile or 2
     pixels = row * rows * (tile // 4 if tile else 1)
@@ -184,7 +185,7 @@ def layered(context: luxfer.Context) -> list[bytes]:
         return [*plain, path.read_bytes()]
 
 
-# ------------------------------------------------------------------------------------------------------------------- scenes
+# --------------------------------------------------------------------------------------------------------------- scenes
 
 
 def scene(context: luxfer.Context) -> bytes:
@@ -262,7 +263,7 @@ def words(tree) -> set[str]:
     return set(tree if isinstance(tree, dict) else ()).union(*map(words, below))
 
 
-# ------------------------------------------------------------------------------------------------------- luminaires, networks
+# ------------------------------------------------------------------------------------------------- luminaires, networks
 
 SHAPE = "1 1000 1 3 2 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0 180\n100 80 0\n100 90 10\n"
 IES = [
@@ -304,7 +305,7 @@ def networks() -> list[bytes]:
     return [*out, n.file(n.add("Squeeze", n.add("Conv", x, n.noise(1, 4, 1, 1)), axes=[1]))]
 
 
-# --------------------------------------------------------------------------------------------------------------------- texts
+# ---------------------------------------------------------------------------------------------------------------- texts
 
 #: What a glTF file may say and ours does not.
 MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized", "extras", "minVersion", "COLOR_0"}

@@ -1,8 +1,10 @@
 //! Checks rules of the source code: which module may use which, which files may contain `unsafe`, which macros are
-//! banned, how long files may be, and that float constants state their origin.
+//! banned, how long files and comment lines may be, and that float constants state their origin.
 
 #[path = "layering/circles.rs"]
 mod circles;
+#[path = "layering/comments.rs"]
+mod comments;
 
 use std::path::{Path, PathBuf};
 
@@ -88,21 +90,31 @@ const JUDGED: usize = 100;
 /// Maximum number of lines of a file.
 const MAX_LINES: usize = 600;
 
-fn sources() -> Vec<(PathBuf, String)> {
+/// The text files of a folder of the project and of its subfolders, without built and generated ones.
+fn files(folder: &str) -> Vec<(PathBuf, String)> {
     fn walk(folder: &Path, out: &mut Vec<(PathBuf, String)>) {
         let mut entries: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
         entries.sort();
         for path in entries {
+            if comments::SKIPPED.iter().any(|name| path.ends_with(name)) {
+                continue;
+            }
             if path.is_dir() {
                 walk(&path, out);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let text = std::fs::read_to_string(&path).unwrap();
+            } else if let Ok(text) = std::fs::read_to_string(&path) {
                 out.push((path, text));
             }
         }
     }
     let mut out = Vec::new();
-    walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut out);
+    walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut out);
+    out
+}
+
+/// The Rust files of the library.
+fn sources() -> Vec<(PathBuf, String)> {
+    let mut out = files("src");
+    out.retain(|(path, _)| path.extension().is_some_and(|e| e == "rs"));
     assert!(out.len() > 20, "the sources were not found");
     out
 }
@@ -171,6 +183,22 @@ fn nothing_unfinished_nothing_printed_nothing_too_long() {
         let lines = text.lines().count();
         assert!(lines <= MAX_LINES, "{} has {lines} lines; split it along a step of its algorithm", path.display());
     }
+}
+
+#[test]
+fn comment_lines_are_not_too_long() {
+    let all = comments::FOLDERS.iter().flat_map(|folder| files(folder));
+    let long = |(path, text): (PathBuf, String)| {
+        comments::long_comments(&path, &text).into_iter().map(move |line| format!("{}:{line}", path.display()))
+    };
+    let found: Vec<String> = all.flat_map(long).collect();
+    assert!(found.is_empty(), "comment lines of more than 120 characters:\n{}", found.join("\n"));
+    // Test the check itself: characters count, not bytes, and code does not count.
+    let line = |start: &str, length: usize| format!("{start}{}\n", "é".repeat(length - start.len()));
+    let rust = line("// ", 120) + &line("let a = ", 130) + &line("// ", 121);
+    assert_eq!(comments::long_comments(Path::new("a.rs"), &rust), [3]);
+    let python = line("\"\"\"A ", 110) + &line("", 121) + "\"\"\"\na = \"\"\"\n" + &line("# ", 121) + "\"\"\"\n# ";
+    assert_eq!(comments::long_comments(Path::new("a.py"), &line(&python, python.len() + 120)), [2, 7]);
 }
 
 /// The comment above a line, also if other constants stand in between: neighbouring constants share one comment.

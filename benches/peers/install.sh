@@ -68,8 +68,8 @@ case " ${wanted:-texture_synthesis} " in
     ;;
 esac
 
-# ebsynth, CPU back end: in no package registry, so only where its source can be reached; EBSYNTH_SOURCE may name a copy of
-# its repository.
+# ebsynth with its CPU back end. No package registry has it, so it is installed only if its repository can be reached;
+# EBSYNTH_SOURCE may name a copy of the repository.
 install_ebsynth() {
   case " ${wanted:-ebsynth} " in *" ebsynth "*) ;; *) return ;; esac
   [ -x target/peers/ebsynth/bin/ebsynth ] && return

@@ -1,10 +1,11 @@
 """Gradients of Mitsuba 3's `prb`: mitsuba_adjoint.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET SPP SEEDS
 
-The scene's lamp has a texture of WIDTH x HEIGHT texels, all of one value. What is differentiated is the mean irradiance of the
-surface whose material has the index TARGET, by an irradiance meter: first by each texel of the lamp; then, the texels being
-those of a smooth pattern (`pattern` below), by where the pattern lies: its offset along u and v, its scale along both and its
-rotation, all about the centre. For each of SEEDS seeds OUT gets a row of 32-bit floats: the texels' gradients (rows, columns,
-channels), and for each of the five numbers of the placement its gradient, channel by channel.
+An irradiance meter measures the mean irradiance of the surface whose material has the index TARGET. The program
+differentiates it twice: with respect to each texel of the lamp, whose texture has WIDTH x HEIGHT texels of one value;
+and, with a smooth pattern (`pattern` below) as the texture, with respect to the five numbers of the pattern's
+placement: its offset along u and v, its scale along both and its rotation, all about the centre. For each of SEEDS
+seeds, a row of 32-bit floats is written to OUT: the gradients of the texels (rows, columns, channels), then those of
+the five numbers, channel by channel.
 """
 
 import json

@@ -1,10 +1,13 @@
-"""Solves for the colour of a lamp with Mitsuba 3's `prb` and Adam: mitsuba_relight.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET
+"""Solves for the colour of a lamp with Mitsuba 3's `prb` and Adam.
 
-TARGET is the index of the material whose surface is to have a given mean irradiance, measured there by an irradiance meter:
-the gradient is of that alone, with no image in between. The lamp starts white, and should come out 0.8, 1 and 1.25 times as
-bright; what that asks of the target is measured with many samples first. The learning rate falls as iterations go, as noise
-would keep the answer moving. Prints a line of JSON for each number of samples per iteration: seconds until the worst channel
-stays within 1 % for five iterations (null if it does not), and seconds per iteration. What compiles kernels is not counted.
+    mitsuba_relight.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET
+
+TARGET is the index of a material. An irradiance meter measures the mean irradiance of the surface with this material;
+its gradient is computed directly, without an image. The lamp starts white. The solution is known: 0.8, 1 and 1.25 times
+the initial red, green and blue; the irradiance wanted is the one that this colour gives, rendered first with many
+samples. The learning rate decreases with the iterations so that noise does not keep the solution moving. Prints a line
+of JSON for each number of samples per iteration: seconds until the worst channel stays within 1 % for five iterations
+(null if it never does), and seconds per iteration. The time of compiling kernels is not counted.
 """
 
 import json

@@ -87,11 +87,11 @@ def coated_albedo(ior, alpha):
 def bsdf(glb, material):
     """Metallic-roughness out of Mitsuba's own parts.
 
-    Its `principled` is another model: the diffuse part sends light back towards where it came from, and nothing is taken
-    from it for what the coat reflects. glTF's dielectric is `roughplastic`, whose diffuse part gets what the coat leaves
-    on both ways; as it loses more the rougher it is (9 % at an alpha of 0.1), its base is made brighter by that. At full
-    roughness the coat is hardly to be told from the diffuse part: there it is `diffuse` with the albedo of both. Metals
-    are conductors that reflect the base colour.
+    Mitsuba's `principled` is another model: its diffuse part is retro-reflective and does not lose the light that the
+    coat reflects. glTF's dielectric is `roughplastic`, whose coat attenuates the light of the diffuse part on its way
+    in and out. `roughplastic` loses more energy the rougher it is (9 % at an alpha of 0.1), so the base colour is
+    brightened by as much. At full roughness the coat looks almost like a diffuse surface, and the material is
+    `diffuse` with the albedo of both. Metals are conductors that reflect the base colour.
     """
     pbr = material.get("pbrMetallicRoughness", {})
     color = pbr.get("baseColorFactor", [1, 1, 1, 1])

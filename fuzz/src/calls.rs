@@ -1,5 +1,5 @@
-//! Bytes as calls to the C ABI, with right handles and wrong ones. Every call must give one of its statuses, and every handle
-//! asked for after success; what address sanitizer sees, and panics, are for libFuzzer.
+//! Decodes bytes into calls of the C ABI, with valid and invalid handles. A call must return a status that calls may
+//! return, and write its handle if and only if it succeeds. libFuzzer reports panics and what AddressSanitizer finds.
 
 use crate::check;
 use std::collections::BTreeMap;

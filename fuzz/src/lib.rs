@@ -1,6 +1,8 @@
-//! What each target does with its bytes: the public C ABI and nothing else, as a host uses it. What loads is used.
+//! The functions of the fuzz targets. They call only the public C ABI, as a host does. What they load,
+//! they also use.
 //!
-//! A status that says "a defect" fails, and so does every panic, also where the library would catch it: libFuzzer ends the process.
+//! A target fails if a call returns LUXFER_INTERNAL or LUXFER_UNKNOWN, or if anything panics: libFuzzer ends the
+//! process even where the library would catch the panic.
 
 mod calls;
 

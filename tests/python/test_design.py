@@ -171,7 +171,7 @@ class Grids(Case):
 
 
 class Direct(Case):
-    """A black box under one luminaire without size, whose illuminance is intensity times cosine over squared distance."""
+    """A black box under one point luminaire, whose illuminance is intensity times cosine over squared distance."""
 
     def setUp(self):
         super().setUp()
