@@ -30,7 +30,7 @@ HEADLINES = [
 
 
 def replaced(path: pathlib.Path, marks: tuple[str, str], table: str) -> None:
-    """Writes a table between two marks of a file."""
+    """Replaces the table between two marks of a file."""
     text = path.read_text()
     begin, end = marks
     if begin not in text or end not in text:

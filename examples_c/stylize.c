@@ -26,7 +26,7 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     check(luxfer_guides_create(context, &guides), title);
     check(luxfer_guides_set_scene(guides, scene), title);
     check(luxfer_guides_start(guides, params, &job), title);
-    finish(job, title);
+    wait_and_release(job, title);
     luxfer_release(scene);
     return guides;
 }
@@ -115,7 +115,7 @@ int main(int argc, char **argv) {
         check(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
-        finish(job, names[i]);
+        wait_and_release(job, names[i]);
         check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), names[i]);
         check(luxfer_stylize_get_report(stylize, &report, sizeof report), names[i]);
         /* --8<-- [end:paint] */

@@ -59,7 +59,7 @@ def run(spp, seed):
     return seconds, pixels.reshape(height, width, 4)[::-1, :, :3]
 
 
-# What preparing the scene and writing the file cost is not counted: a render of one sample stands for it.
+# Exclude the time for preparing the scene and writing the file: it is estimated by a render of one sample.
 run(1, 0)
 base, _ = run(1, 1)
 print(json.dumps({"ready": bpy.app.version_string}), flush=True)

@@ -1,4 +1,4 @@
-"""Line segments with OpenCV's `LineSegmentDetector`: reads lines of JSON, {"image", "width", "height", "out"}.
+"""Detects line segments with OpenCV's `LineSegmentDetector`: reads lines of JSON, {"image", "width", "height", "out"}.
 
 "image" is a file of 8-bit grey pixels. For each segment, four float32 (the coordinates of its ends; pixel centres have
 integer coordinates) are written to "out". Prints a line of JSON for each image: the seconds that the detection took.

@@ -143,7 +143,7 @@ def averages(
     return out
 
 
-def told(text: Any, *_: Any) -> None:
+def print_progress(text: Any, *_: Any) -> None:
     """Handler that prints the progress of Cycles, for versions of Blender that do not print it."""
     if isinstance(text, str):
         print(text, flush=True)
@@ -186,7 +186,7 @@ def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.nd
 def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.ndarray]:
     """Renders the guides: arrays (height, width, 3) in Blender's units of radiance."""
     set_up(scene, layer, samples)
-    bpy.app.handlers.render_stats.append(told)
+    bpy.app.handlers.render_stats.append(print_progress)
     found = render(scene, 0.0, 0.6)
     light = {
         "full": found["Combined"][:3],
