@@ -88,7 +88,7 @@ MSRV := $(shell sed -n '/^rust-version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
 msrv:
 	@if ! command -v rustup >/dev/null; then echo "skipped: Rust $(MSRV) needs rustup"; \
 	elif rustup run $(MSRV) rustc --version >/dev/null 2>&1 || \
-	  timeout 300 rustup --quiet toolchain install $(MSRV) --profile minimal --no-self-update </dev/null; then \
+	  timeout 120 rustup --quiet toolchain install $(MSRV) --profile minimal --no-self-update </dev/null; then \
 	  rustup run $(MSRV) cargo check --quiet --lib --locked --target-dir target/msrv && echo "Rust $(MSRV) compiles the library"; \
 	else echo "skipped: Rust $(MSRV) cannot be downloaded"; fi
 
@@ -98,8 +98,10 @@ lint: format clippy doc
 
 # Tools are downloaded while the library is built; checks of the source use the time in which the downloads wait.
 test: packages format
-	@$(MAKE) --no-print-directory tools & tools=$$!; nice $(MAKE) --no-print-directory clippy doc msrv & checks=$$!; \
-	  $(MAKE) --no-print-directory lib && wait $$tools && wait $$checks || { kill $$tools $$checks 2>/dev/null; exit 1; }
+	@$(MAKE) --no-print-directory tools & tools=$$!; \
+	  nice $(MAKE) --no-print-directory clippy doc & source=$$!; nice $(MAKE) --no-print-directory msrv & oldest=$$!; \
+	  $(MAKE) --no-print-directory lib && wait $$tools && wait $$source && wait $$oldest || \
+	  { kill $$tools $$source $$oldest 2>/dev/null; exit 1; }
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
