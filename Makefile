@@ -1,6 +1,8 @@
 # make demo   builds the library and two C programs; runs a lighting transfer and a stylisation, which write into out/
-# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI) and runs every test
+# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI), checks formatting,
+#             documentation, clippy and the oldest Rust, and runs every test
 # make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
+# make msrv   checks that the oldest Rust of Cargo.toml (rust-version) compiles the library; rustup installs it
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
 #             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
@@ -28,7 +30,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format lint test bench trade blender studio studio-setup docs peers setup packages tools clean
+.PHONY: all lib demo format doc clippy msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -69,19 +71,37 @@ tools: packages
 	@benches/peers/install.sh mitsuba python dask exr usd report onnx docs studio
 	@$(MAKE) --no-print-directory studio-setup
 
-# Rustup's minimal profile lacks rustfmt and clippy, so a missing tool is reported and skipped.
+# Rustup's minimal profile lacks rustfmt and clippy, so a missing tool is reported and skipped; in CI it is an error.
+skip = { echo "skipped: $(1)"; [ -z "$$CI" ]; }
 format:
-	@if $(CARGO) fmt --version >/dev/null 2>&1; then $(CARGO) fmt --check; else echo "skipped: cargo fmt is not installed"; fi
+	@if $(CARGO) fmt --version >/dev/null 2>&1; then $(CARGO) fmt --check; else $(call skip,cargo fmt is not installed); fi
+CLIPPY_OF ?= --lib
+clippy:
+	@if $(CARGO) clippy --version >/dev/null 2>&1; then $(CARGO) clippy --quiet --locked $(CLIPPY_OF) -- -D warnings; \
+	  else $(call skip,cargo clippy is not installed); fi
+doc:
+	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc --quiet --locked --no-deps
 
-lint: format
-	@if $(CARGO) clippy --version >/dev/null 2>&1; then $(CARGO) clippy --quiet --all-targets -- -D warnings; \
-	  else echo "skipped: cargo clippy is not installed"; fi
-	@$(CARGO) doc --quiet --no-deps
+# A toolchain that cannot be downloaded is reported and skipped, in CI too: not all machines reach the Rust servers.
+# The folder of its own keeps the builds of the usual toolchain.
+MSRV := $(shell sed -n '/^rust-version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
+msrv:
+	@if ! command -v rustup >/dev/null; then echo "skipped: Rust $(MSRV) needs rustup"; \
+	elif rustup run $(MSRV) rustc --version >/dev/null 2>&1 || \
+	  timeout 120 rustup --quiet toolchain install $(MSRV) --profile minimal --no-self-update </dev/null; then \
+	  rustup run $(MSRV) cargo check --quiet --lib --locked --target-dir target/msrv && echo "Rust $(MSRV) compiles the library"; \
+	else echo "skipped: Rust $(MSRV) cannot be downloaded"; fi
+
+lint: CLIPPY_OF := --all-targets
+lint: format clippy doc
 	@if $(CARGO) deny --version >/dev/null 2>&1; then $(CARGO) deny check; else echo "skipped: cargo deny is not installed"; fi
 
-# Tools are downloaded while the library is built.
+# Tools are downloaded while the library is built; checks of the source use the time in which the downloads wait.
 test: packages format
-	@$(MAKE) --no-print-directory tools & $(MAKE) --no-print-directory lib && wait $$! || { kill $$! 2>/dev/null; exit 1; }
+	@$(MAKE) --no-print-directory tools & tools=$$!; \
+	  nice $(MAKE) --no-print-directory clippy doc & source=$$!; nice $(MAKE) --no-print-directory msrv & oldest=$$!; \
+	  $(MAKE) --no-print-directory lib && wait $$tools && wait $$source && wait $$oldest || \
+	  { kill $$tools $$source $$oldest 2>/dev/null; exit 1; }
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2

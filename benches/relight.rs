@@ -84,7 +84,7 @@ fn demo() -> Result<Case, String> {
     Ok(Case { scene: Arc::new(setting.scene), emitter, target: ceiling.triangles })
 }
 
-/// Solves with so many paths that the result serves as the reference.
+/// Solves with enough paths for the result to serve as the reference.
 fn truth(case: &Case) -> DVec3 {
     let params = Params { paths: 1 << 22, target_error: 0.0, seed: 1 << 40, ..Params::default() };
     let (seconds, solution) = time(Clock::Wall, || case.solve(&case.world(), &params));
@@ -154,10 +154,10 @@ fn others() {
         let emitter = setting.scene.materials.len() - 1;
         let mut case = Case { scene: Arc::new(setting.scene), emitter, target: Vec::new() };
         let (ready, world) = time(Clock::Wall, || case.world());
-        let probe = Params { quantity: Quantity::Incident, paths: 1 << 14, ..Params::default() };
+        let trial = Params { quantity: Quantity::Incident, paths: 1 << 14, ..Params::default() };
         let is_lit = floors(&case.scene, emitter).into_iter().any(|floor| {
             case.target = floor;
-            case.try_solve(&world, &probe).is_ok()
+            case.try_solve(&world, &trial).is_ok()
         });
         if !is_lit {
             println!("# {name}: the lamp reaches none of its floors");

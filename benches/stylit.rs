@@ -1,6 +1,6 @@
 //! Benchmark of stylisation on the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides).
 //! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
-//! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`rivals`); other methods in the same
+//! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`baselines`); other methods in the same
 //! engine (`methods`); quality against time for every setting (`knobs`); the final votes on drawn styles and on pairs
 //! with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted pictures (`autocomplete`)
 //! and exemplars with defects (`doubts`) of the demonstration scenes, which need no test data.
@@ -77,8 +77,8 @@ fn main() {
     if wants("sizes") {
         sizes(&pair, &pool);
     }
-    if wants("rivals") {
-        rivals(&pair, &pool);
+    if wants("baselines") {
+        baselines(&pair, &pool);
     }
     if wants("votes") {
         votes::compare(&pair, &pool);
@@ -364,7 +364,7 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
             }
             let asked = Instant::now();
             monitor.cancel();
-            assert!(stopped.join().expect("it does not panic"), "it ended before it was told to stop");
+            assert!(stopped.join().expect("it does not panic"), "the run ended before the cancel request");
             asked.elapsed().as_secs_f64()
         })
     };
@@ -379,8 +379,8 @@ fn occurrence(weight: f32) -> Params {
 
 /// Compares luxfer with plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. luxfer
 /// runs before and after the others, so that other work on the machine affects all of them.
-fn rivals(pair: &Pair, pool: &Pool) {
-    let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
+fn baselines(pair: &Pair, pool: &Pool) {
+    let mut made: Vec<Outcome> = Vec::new();
     let stylise = |file: &str, params: &Params| {
         let (seconds, output) = time(Clock::Wall, || pair.stylise(params, pool));
         save(file, &output.image);
@@ -388,27 +388,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     };
     let (before, ours) = stylise("stylit_full", &Params::default());
 
-    // Run plain EM with luxfer's numbers of iterations, and with as many iterations as fit into luxfer's time.
-    let plain = Params {
-        mode: Mode::Nearest,
-        sweeps: 3,
-        vote: VoteMode::Plain,
-        final_vote: VoteMode::Plain,
-        ..Params::default()
-    };
-    let (seconds, file) = stylise("stylit_plain_em", &plain);
-    made.push(("plain EM", Some(seconds), file));
-    let more = |count: usize| ((count as f64 * before / seconds).round() as usize).clamp(1, 100);
-    let longer = Params {
-        iterations: more(plain.iterations),
-        coarse_iterations: more(plain.coarse_iterations),
-        finest_iterations: more(plain.finest_iterations + plain.polish),
-        polish: 0,
-        ..plain.clone()
-    };
-    let name = format!("plain EM, {} + {} iterations", longer.iterations, longer.finest_iterations);
-    let (seconds, file) = stylise("stylit_plain_em_long", &longer);
-    made.push((&name, Some(seconds), file));
+    made.extend(plain_em(&stylise, before));
 
     // Run uniform usage, as a constraint and as a cost.
     let uniform = Params { mode: Mode::Uniform, ..Params::default() };
@@ -419,12 +399,12 @@ fn rivals(pair: &Pair, pool: &Pool) {
         ("occurrence, lambda 1", "stylit_occurrence_1", occurrence(1.0)),
     ] {
         let (seconds, file) = stylise(file, &params);
-        made.push((name, Some(seconds), file));
+        made.push((name.to_string(), Some(seconds), file));
     }
 
     let theirs = match ebsynth(pair) {
         Ok((seconds, file)) => {
-            made.push(("ebsynth", Some(seconds), file));
+            made.push(("ebsynth".to_string(), Some(seconds), file));
             Some(seconds)
         }
         Err(reason) => {
@@ -433,8 +413,8 @@ fn rivals(pair: &Pair, pool: &Pool) {
         }
     };
     let (after, _) = time(Clock::Wall, || pair.stylise(&Params::default(), pool));
-    made.insert(0, ("ours, full", Some(0.5 * (before + after)), ours));
-    made.push(("the artwork itself", None, pair.folder.join("source_style.png")));
+    made.insert(0, ("ours, full".to_string(), Some(0.5 * (before + after)), ours));
+    made.push(("the artwork itself".to_string(), None, pair.folder.join("source_style.png")));
     if let Some(theirs) = theirs {
         figure("stylit.ebsynth.seconds", theirs, "s");
         figure("stylit.ebsynth.speedup", 2.0 * theirs / (before + after), "x");
@@ -443,13 +423,40 @@ fn rivals(pair: &Pair, pool: &Pool) {
     score(pair, pool, &made);
 }
 
-/// Prints the scores of pictures; each has a name, the seconds it took, and a file.
-fn score(pair: &Pair, pool: &Pool, made: &[(&str, Option<f64>, PathBuf)]) {
+/// Runs plain EM with luxfer's numbers of iterations, and with as many iterations as fit into luxfer's time.
+fn plain_em(stylise: &impl Fn(&str, &Params) -> (f64, PathBuf), seconds_of_ours: f64) -> [Outcome; 2] {
+    let plain = Params {
+        mode: Mode::Nearest,
+        sweeps: 3,
+        vote: VoteMode::Plain,
+        final_vote: VoteMode::Plain,
+        ..Params::default()
+    };
+    let (seconds, file) = stylise("stylit_plain_em", &plain);
+    let short = ("plain EM".to_string(), Some(seconds), file);
+    let more = |count: usize| ((count as f64 * seconds_of_ours / seconds).round() as usize).clamp(1, 100);
+    let longer = Params {
+        iterations: more(plain.iterations),
+        coarse_iterations: more(plain.coarse_iterations),
+        finest_iterations: more(plain.finest_iterations + plain.polish),
+        polish: 0,
+        ..plain.clone()
+    };
+    let name = format!("plain EM, {} + {} iterations", longer.iterations, longer.finest_iterations);
+    let (seconds, file) = stylise("stylit_plain_em_long", &longer);
+    [short, (name, Some(seconds), file)]
+}
+
+/// A picture to score: its name, the seconds it took, and its file.
+type Outcome = (String, Option<f64>, PathBuf);
+
+/// Prints the scores of pictures.
+fn score(pair: &Pair, pool: &Pool, made: &[Outcome]) {
     let head =
         ["", "seconds", "coherence", "guide", "used %", "hf", "hf worst", "Eq. 3", "verbatim %", "at all offsets"];
     let mut table = Table::new(head);
     for (name, seconds, file) in made {
-        let mut row = vec![name.to_string(), seconds.map_or("-".to_string(), |s| format!("{s:.2}"))];
+        let mut row = vec![name.clone(), seconds.map_or("-".to_string(), |s| format!("{s:.2}"))];
         let line = judge(pair, file).unwrap_or_default();
         row.extend(JUDGED.map(|(_, before, _)| number(&line, before).unwrap_or("-").to_string()));
         if seconds.is_some() {
@@ -463,7 +470,7 @@ fn score(pair: &Pair, pool: &Pool, made: &[(&str, Option<f64>, PathBuf)]) {
         }
         table.row(row);
     }
-    table.print("rivals, 1200 x 912, 2 threads; five columns by stylit_judge.py, three by harness/judge.rs");
+    table.print("baselines, 1200 x 912, 2 threads; five columns by stylit_judge.py, three by harness/judge.rs");
 }
 
 /// Runs ebsynth with its default settings and the weights of our guides; returns its seconds and the path of its

@@ -1,7 +1,8 @@
-"""Writes the figures that `make bench` printed (out/bench/figures.txt) into docs/figures.md, and ten of them into README.md.
+"""Writes the figures that `make bench` printed (out/bench/figures.txt) into docs/figures.md, and ten of them into
+README.md.
 
-Each bench replaces its own lines, so that the tables can be brought up to date bench by bench. Without new figures the
-README's table is written anew from docs/figures.md.
+Each bench replaces its own lines only, so the benches need not all be run. Without new figures, the table of README.md
+is written from docs/figures.md.
 """
 
 import pathlib
@@ -29,7 +30,7 @@ HEADLINES = [
 
 
 def replaced(path: pathlib.Path, marks: tuple[str, str], table: str) -> None:
-    """Writes a table between two marks of a file."""
+    """Replaces the table between two marks of a file."""
     text = path.read_text()
     begin, end = marks
     if begin not in text or end not in text:

@@ -1,8 +1,9 @@
 # Part of the Makefile: installation and distribution. Run `make` first, then:
 #
-# make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
-#                   of the shared library go into .debug/ beside it, where gdb looks for them; the command line `luxfer`,
-#                   with the Python package that it runs (it needs python3 and numpy)
+# make install      installs the shared library with its SONAME and symlinks, the static library, headers, pkg-config
+#                   and CMake files, licences, and the command line `luxfer` with the Python package that it runs (it
+#                   needs python3 and numpy); the debug symbols of the shared library go into .debug/ beside it, where
+#                   gdb looks for them
 # make uninstall    removes the installed files
 # make dist         packs the last commit into out/luxfer-VERSION.tar.gz
 #

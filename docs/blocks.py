@@ -1,11 +1,14 @@
-"""The blocks of code in the guide: what is shown is what works.
+"""Checks and runs the code blocks of the guide, so that all code shown there works.
 
-    blocks.py check                    each is part of a program that a test compiles or runs, or can be run itself
-    blocks.py run FOLDER LIBRARY [LANGUAGE...]    runs those of Python and shell, page by page; what they draw goes into FOLDER
+    blocks.py check
+        checks that each block is part of a program that a test compiles or runs, or can be run itself
+    blocks.py run FOLDER LIBRARY [LANGUAGE...]
+        runs the Python and shell blocks page by page; their pictures go into FOLDER
 
-A block is either nothing but `--8<--` lines, which name parts of programs, or Python or shell. A page's Python blocks are one
-program, and so are its shell blocks. Python works in FOLDER/PAGE/. Shell works in a tree of links that looks like the source
-tree with a library built in it, so that nothing is left behind; `luxfer` is on its path, as the wheel installs it.
+A block consists either of `--8<--` lines only, which name parts of programs, or of Python or shell code. The Python
+blocks of a page form one program, and so do its shell blocks. Python runs in FOLDER/PAGE/. Shell runs in a tree of
+links that looks like the source tree after a build, so that it leaves no files in the source tree; `luxfer` is on its
+path as if the wheel were installed.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 GUIDE = ROOT / "docs" / "guide"
-#: Programs that tests compile and run, all of them, as tests/CMakeLists.txt has it.
+#: Programs that tests compile and run (tests/CMakeLists.txt).
 TESTED = re.compile(r"examples_c/\w+\.[ch]|tests/docs/\w+\.(cpp|hpp|c|py)|tests/package/(CMakeLists\.txt|consumer\.(c|cpp)|check\.sh)")
 RUN = {"python": "python", "sh": "sh"}
 FENCE = re.compile(r"^([ \t]*)(`{3,}|~{3,})([^\n]*)\n(.*?)^\1\2[ \t]*$", re.S | re.M)
@@ -31,7 +34,7 @@ def pages() -> list[Path]:
 
 
 def blocks(page: Path) -> list[tuple[int, str, str]]:
-    """Line, language and text of each block of a page."""
+    """Returns line number, language and text of each code block of a page."""
     text = page.read_text()
     found = [(text.count("\n", 0, m.start()) + 1, m[3].strip(), m[4]) for m in FENCE.finditer(text)]
     if len(re.findall(r"^[ \t]*(?:```|~~~)", text, re.M)) != 2 * len(found):
@@ -40,7 +43,7 @@ def blocks(page: Path) -> list[tuple[int, str, str]]:
 
 
 def parts(text: str) -> list[str] | None:
-    """The parts of programs that a block consists of; None if it is something else."""
+    """Returns the parts of programs that a block names; None if the block is not made of such names."""
     lines = [line.strip() for line in text.strip().split("\n")]
     names = [re.fullmatch(r'--8<-- "([^"]+)"', line) for line in lines]
     return [name[1] for name in names if name] if all(names) else None
@@ -68,7 +71,7 @@ def check() -> list[str]:
 
 
 def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
-    """Runs a page's Python blocks as one program; lines are counted as in the page."""
+    """Runs a page's Python blocks as one program; line numbers in error messages are those of the page."""
     source, at = "", 1
     for line, language, text in blocks(page):
         if language == "python" and parts(text) is None:
@@ -83,7 +86,7 @@ def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
 
 
 def run_sh(page: Path, library: Path, environment: dict[str, str]) -> int:
-    """Runs a page's shell blocks as one script."""
+    """Runs the shell blocks of a page as one script."""
     script = "\n".join(text for _, language, text in blocks(page) if language == "sh" and parts(text) is None)
     if not script:
         return 0
@@ -105,7 +108,7 @@ def run_sh(page: Path, library: Path, environment: dict[str, str]) -> int:
 
 
 def quiet(command: list[str], program: str, folder: Path, environment: dict[str, str]) -> int:
-    """Runs a program, and shows what it prints if it fails."""
+    """Runs a program; prints its output if it fails."""
     done = subprocess.run(command, input=program, capture_output=True, text=True, cwd=folder, env=environment)
     if done.returncode != 0:
         print(done.stdout, done.stderr, sep="", file=sys.stderr)

@@ -1,11 +1,17 @@
-"""What mkdocs.yml asks for beyond Markdown: pictures made by programs, the reference, and values that are never typed.
+"""The hooks of mkdocs.yml: they add the pictures and the reference, and replace these tags on the pages of the guide:
 
-On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
-`{{ limits stage }}` is what the source of a stage says it leaves out, `{{ constant stage NAME }}` is a limit of its warnings, `{{ figure name }}` is a figure of `make bench`,
-`{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, `{{ table name bench }}` a table, and `{{ front name }}` the settings of a plot of error
-against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py
-or tests/studio/screenshot.js. Names of the C interface
-in code spans become links; one that does not exist is an error.
+    {{ settings luxfer_x_params }}, {{ fields luxfer_x_report }}    the fields of a struct with their comments
+    {{ limits stage }}                  what a stage does not model, from its source
+    {{ constant stage NAME }}           a threshold of a stage's warnings, from its source
+    {{ figure name }}                   a figure of `make bench`
+    {{ figures prefix ... }}            a table of the figures whose names begin so
+    {{ plot name }}                     a plot that a bench has drawn
+    {{ table name bench }}              a table that a bench has written
+    {{ front name }}                    the Pareto front of a plot of error against time
+    {{ test name }}                     the name of a test, which must exist
+    {{ screenshot name caption }}       a picture by docs/screenshots.py or tests/studio/screenshot.js
+
+Names of the C interface in code spans become links; an unknown name is an error.
 """
 
 from __future__ import annotations
@@ -25,17 +31,17 @@ from mkdocs.structure.files import File  # noqa: E402
 
 ROOT = reference.ROOT
 BENCH = ROOT / "out" / "bench"
-#: Where docs/blocks.py has run the guide's own blocks, and the C examples have run, each in a folder of its name.
+#: Folders with the pictures of docs/blocks.py and of the C examples; each page and each example has a subfolder.
 PICTURES = Path(os.environ.get("LUXFER_DOCS_PICTURES", ROOT / "target" / "docs" / "pictures"))
 EXAMPLES = Path(os.environ.get("LUXFER_DOCS_EXAMPLES", ROOT / "target" / "docs" / "examples"))
 
-#: Names like those of the interface that are options of a build or of a binding.
+#: Names that look like those of the C interface but are options of a build or of a binding.
 OPTIONS = re.findall(
     r"\bLUXFER_\w+",
     "".join((ROOT / f).read_text() for f in ("CMakeLists.txt", "bindings/cpp/luxfer/result.hpp", "bindings/python/luxfer/_library.py")),
 )
 
-#: What tests are looked up in.
+#: The files in which tests are looked up.
 SOURCES = [file.read_text() for folder in ("src", "tests") for file in sorted((ROOT / folder).rglob("*.rs"))]
 
 header = reference.Header()
@@ -73,7 +79,7 @@ def on_page_markdown(markdown, page, config, files):
 
 
 def written(text: str, path: str, files) -> str:
-    """Prose with what it asks for in place."""
+    """Replaces the tags in a piece of prose."""
     text = re.sub(r"\{\{ (\w+) (.*?) \}\}", lambda m: value(m[1], m[2].split(), path, files), text)
 
     def link(match: re.Match) -> str:
@@ -123,7 +129,8 @@ def value(kind: str, words: list[str], path: str, files) -> str:
 
 
 def front(name: str, path: str) -> str:
-    """The Pareto front of a plot whose first axis is time and whose second is to be small; of each problem, if curves are called "problem: method"."""
+    """The Pareto front of a plot of error against time. If the curves are named "problem: method", each problem has a
+    front of its own."""
     if not (BENCH / f"{name}.csv").exists():
         return ""
     with open(BENCH / f"{name}.csv", newline="") as file:
@@ -144,7 +151,7 @@ def front(name: str, path: str) -> str:
 
 
 def table(name: str, bench: str) -> str:
-    """A table that a bench has written."""
+    """Returns a table that a bench has written."""
     if not (BENCH / f"{name}.csv").exists():
         return f"*(`make bench ONLY={bench}` prints the table that belongs here.)*"
     with open(BENCH / f"{name}.csv", newline="") as file:
@@ -153,7 +160,7 @@ def table(name: str, bench: str) -> str:
 
 
 def limits(stage: str, path: str) -> str:
-    """The paragraphs of a stage's overview that begin with "Not modelled" or "Known weaknesses"."""
+    """Returns the paragraphs of a stage's overview that begin with "Not modelled" or "Known weaknesses"."""
     lines = re.findall(r"^//! ?(.*)$", (ROOT / "src" / stage / "mod.rs").read_text(), re.M)
     text = " ".join(re.sub(r"\[(`[^`]+`)\](?:\(\w+\))?", r"\1", line) or "\n" for line in lines)
     out = re.findall(r"(?:Known weaknesses|Not modelled)[^\n]*", text)
@@ -163,7 +170,7 @@ def limits(stage: str, path: str) -> str:
 
 
 def constant(stage: str, name: str, path: str) -> str:
-    """The number that a limit of a stage's warnings has in the source."""
+    """Returns the value of a constant of a stage's warnings, from the source."""
     found = re.search(rf"const {name}: \w+ = ([\d.]+);", (ROOT / "src" / stage / "warnings.rs").read_text())
     if not found:
         raise PluginError(f"{path}: src/{stage}/warnings.rs has no limit {name}")
@@ -171,7 +178,8 @@ def constant(stage: str, name: str, path: str) -> str:
 
 
 def figures() -> dict[str, tuple[str, str]]:
-    """The figures of docs/figures.md from `make bench`, or newer ones that this machine has printed."""
+    """Returns the figures of docs/figures.md, replaced by the newer ones of this machine's `make bench` if there are
+    any."""
     rows = re.findall(r"^\| `([^`]+)` \| (\S+) \| (.+) \|$", (ROOT / "docs" / "figures.md").read_text(), re.M)
     out = {name: (number, unit) for name, number, unit in rows}
     if (BENCH / "figures.txt").exists():

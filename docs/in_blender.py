@@ -1,5 +1,6 @@
-"""Uses the add-on in a Blender that docs/screenshots.py has started, and takes pictures of its window. Photo and scenes are those
-that the library makes itself."""
+"""Uses the add-on in a Blender that docs/screenshots.py has started, and takes pictures of its window.
+
+The library generates the photo and the scenes."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ def run() -> Steps:
 
 
 def paint_strokes() -> Steps:
-    """Strokes painted on the photo of an office while the masks follow them."""
+    """Takes the pictures of strokes on the photo of an office, with the masks that follow them."""
     editor, view = areas()
     window.place("target-room")
     show_camera(view)
@@ -51,7 +52,7 @@ def paint_strokes() -> Steps:
 
 
 def transfer_light() -> Steps:
-    """The room in the light of the photo, and the material that gives it."""
+    """Takes the pictures of the room in the light of the photo, and of the emissive material."""
     left, right = areas()
     with over(left):
         bpy.ops.luxfer.transfer("INVOKE_DEFAULT")
@@ -73,7 +74,7 @@ def transfer_light() -> Steps:
 
 
 def stylise() -> Steps:
-    """A still life painted like a ball on a table."""
+    """Takes the pictures of a still life that is stylised by the example of a painted ball."""
     left, right = areas()
     window.place("still-life")
     bpy.context.scene.luxfer.guide_samples = 16
@@ -104,7 +105,7 @@ def until_done() -> Steps:
 
 
 def show_image(area: bpy.types.Area, name: str) -> Steps:
-    """An image, as large as an Image Editor can show it."""
+    """Shows an image in an Image Editor, as large as it fits."""
     area.spaces.active.mode = "VIEW"
     area.spaces.active.image = bpy.data.images[name]
     yield 0.3
@@ -114,7 +115,7 @@ def show_image(area: bpy.types.Area, name: str) -> Steps:
 
 
 def show_rendering(area: bpy.types.Area) -> Steps:
-    """The scene, by Cycles."""
+    """Renders the scene by Cycles and shows the result."""
     with over(area):
         bpy.ops.render.render()
     yield 0.5
@@ -122,7 +123,7 @@ def show_rendering(area: bpy.types.Area) -> Steps:
 
 
 def show_tab(area: bpy.types.Area) -> Steps:
-    """The add-on's tab in an area's sidebar: the pointer tries one place after the other."""
+    """Opens the add-on's tab in an area's sidebar: clicks at one position after the other until the tab is shown."""
     area.spaces.active.show_region_ui = True
     yield 0.5
     sidebar, drawn = region(area, "UI"), []
@@ -142,7 +143,7 @@ def show_tab(area: bpy.types.Area) -> Steps:
 
 
 def show_second_panel(area: bpy.types.Area) -> Steps:
-    """Closes the first panel of a sidebar, and opens the one below it."""
+    """Closes the first panel of a sidebar and opens the one below it."""
     sidebar = region(area, "UI")
     for below in (14, 40):
         yield from click((sidebar.x + 60, sidebar.y + sidebar.height - below))
@@ -150,7 +151,7 @@ def show_second_panel(area: bpy.types.Area) -> Steps:
 
 
 def seen() -> np.ndarray:
-    """What the screen shows, (height, width, 3): Xvfb keeps it in a file of the X Window Dump format."""
+    """Reads the screen (height, width, 3) from the file in X Window Dump format in which Xvfb keeps it."""
     data = SCREEN.read_bytes()
     head = np.frombuffer(data, ">u4", 25)
     length, width, height, line, colours = head[0], head[4], head[5], head[12], head[19]
@@ -159,7 +160,7 @@ def seen() -> np.ndarray:
 
 
 def take(name: str, still: bool = True) -> Steps:
-    """A picture of the window, when it stands still."""
+    """Saves a picture of the window; with `still`, once the window no longer changes."""
     before = None
     while still and not np.array_equal(before, now := seen()):
         before = now

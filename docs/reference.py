@@ -1,6 +1,6 @@
-"""The reference part of the guide: from include/luxfer.h, and from the docstrings of the Python package.
+"""Makes the reference part of the guide from include/luxfer.h and from the docstrings of the Python package.
 
-What has no description is an error, so the reference is complete whenever it can be built.
+A public item without a description is an error, so the reference is complete whenever it can be built.
 """
 
 from __future__ import annotations
@@ -13,27 +13,27 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "bindings" / "python"))
 
-import generate  # noqa: E402  what reads the header for the Python package
+import generate  # noqa: E402  parses the header, for the Python package
 
 PACKAGE = ROOT / "bindings" / "python" / "luxfer"
-#: A bar in a table's cell; in code an entity would be shown as it is.
+#: A vertical bar in a cell of a table; an HTML entity would be shown literally in code.
 BAR = "\\|"
 KINDS = ("constant", "integer", "callback", "opaque", "struct", "function")
 
 
 class Undocumented(Exception):
-    """Something public has no description."""
+    """A public item has no description."""
 
 
 def slug(title: str) -> str:
     return re.sub(r"\W+", "-", title.lower()).strip("-")
 
 
-# ------------------------------------------------------------------------------------------------------------ the C header
+# --------------------------------------------------------------------------------------------------------- the C header
 
 
 class Header:
-    """Sections of the header with their items, and where each item is described."""
+    """The sections of the header with their items, and the page on which each item is described."""
 
     def __init__(self) -> None:
         self.sections: dict[str, dict] = {}
@@ -52,13 +52,13 @@ class Header:
             code = re.sub(r"^\s*/\*\*(?:(?!\*/).)*\*/\s*", "", match[0], flags=re.S).strip()
             section["items"].append((kind, name, doc, code))
             self.pages[name] = page
-            # The three parts of the version share one comment.
+            # The three macros of the version share one comment.
             if not doc and not name.startswith("LUXFER_VERSION_"):
                 missing.append(name)
             if kind == "struct":
                 self.fields[name] = generate.members(item["body"])
                 missing += [f"{name}.{f.name}" for f in self.fields[name] if not f.doc]
-        # An inline function stands beside its struct, and is described there.
+        # An inline function stands beside its struct in the header and is described with it.
         pattern = re.compile(r"^static inline luxfer_status (luxfer_\w+)\((luxfer_\w+) \*", re.M)
         headers = sorted((generate.HEADER.parent / "luxfer").glob("*.h"))
         self.inline = dict(pair for header in headers for pair in pattern.findall(header.read_text()))
@@ -69,12 +69,13 @@ class Header:
     # -- prose
 
     def link(self, name: str, page: str) -> str:
-        """A name as code, and as a link to where it is described if that is anywhere."""
+        """Formats a name as code, with a link to its description if there is one."""
         known = self.pages.get(name)
         return f"[`{name}`]({relative(known, page)}#{self.inline.get(name, name)})" if known else f"`{name}`"
 
     def prose(self, text: str, page: str) -> str:
-        """A comment as Markdown: names become links, code becomes code, errors a paragraph of their own."""
+        """Converts a comment to Markdown: names become links, code is marked as code, and errors get their own
+        paragraph."""
         text = re.sub(r"(?<=\.)\n(?=LUXFER_|As luxfer_)", "\n\n", text)
         token = re.compile(r'\b(?:luxfer|LUXFER)_\w+|"[^"\n]*[<>*\[\]|^][^"\n]*"|(?<![\w*])\*\w+|[<>*|]')
 
@@ -89,7 +90,7 @@ class Header:
         return token.sub(mark, text)
 
     def table(self, struct: str, page: str, skip: tuple[str, ...] = ()) -> str:
-        """The fields of a struct."""
+        """Returns the table of the fields of a struct."""
         rows = ["| field | type | |", "|---|---|---|"]
         for f in self.fields[struct]:
             if f.name not in skip:
@@ -129,7 +130,7 @@ class Header:
         return "\n".join(out)
 
     def outline(self, text: str, page: str) -> str:
-        """The introduction of a section; lines set in by four are code."""
+        """Returns the introduction of a section; lines that are indented by four spaces are code."""
         parts = []
         for part in text.split("\n\n"):
             parts.append(f"```c\n{part}\n```" if part.startswith("    ") else self.prose(part, page))
@@ -137,20 +138,20 @@ class Header:
 
 
 def relative(target: str, page: str) -> str:
-    """The path from one page to another."""
+    """Returns the relative path from one page to another."""
     up = page.count("/")
     return "../" * up + target
 
 
-# --------------------------------------------------------------------------------------------------------- the Python package
+# --------------------------------------------------------------------------------------------------- the Python package
 
 
 def python_pages() -> dict[str, tuple[str, str]]:
-    """Title and text of each page, by path."""
+    """Returns title and text of each page, by path."""
     exported = ast.parse((PACKAGE / "__init__.py").read_text())
     names = exported_names(exported)
     out = {"reference/python/index.md": ("Overview", f"# The Python package\n\n{ast.get_docstring(exported)}\n")}
-    described = {"abi", "library"}  # the C interface, described as such
+    described = {"abi", "library"}  # the modules of the C interface, which the header describes
     for path in sorted(PACKAGE.glob("[a-z]*.py")):
         tree = ast.parse(path.read_text())
         listed = path.stem in ("types", "errors")
@@ -175,7 +176,7 @@ def python_pages() -> dict[str, tuple[str, str]]:
 
 
 def exported_names(module: ast.Module) -> set[str]:
-    """The names of a module's __all__."""
+    """Returns the names in a module's __all__."""
     return next(
         {c.value for c in ast.walk(node.value) if isinstance(c, ast.Constant)}
         for node in module.body
@@ -184,7 +185,8 @@ def exported_names(module: ast.Module) -> set[str]:
 
 
 def design_page() -> str:
-    """The page of luxfer.design: what the package exports, and every public function of the modules that it exports."""
+    """Returns the page of luxfer.design: the items that the package exports, and all public functions of its
+    modules."""
     exported = ast.parse((PACKAGE / "design" / "__init__.py").read_text())
     names, described = exported_names(exported), set()
     text = ["# luxfer.design\n", docstring(exported, "design"), ""]
@@ -194,7 +196,7 @@ def design_page() -> str:
         for node in tree.body:
             if not isinstance(node, (ast.ClassDef, ast.FunctionDef)) or node.name.startswith("_"):
                 continue
-            # A name that a listed module exports is called by its module.
+            # A name that belongs to an exported module is shown with the name of the module.
             if node.name in names or path.stem in ("areas", "observers"):
                 described |= {node.name}
                 owner = path.stem if path.stem in ("areas", "observers") else ""
@@ -205,7 +207,7 @@ def design_page() -> str:
 
 
 def docstring(node: ast.AST, name: str) -> str:
-    """A docstring as Markdown, its examples as code."""
+    """Converts a docstring to Markdown, with its examples as code."""
     text = ast.get_docstring(node)
     if not text:
         raise Undocumented(f"{name} of the Python package has no docstring")

@@ -1,9 +1,9 @@
-"""Pictures of the Blender add-on, for the guide.
+"""Takes pictures of the Blender add-on for the guide.
 
     screenshots.py FOLDER LIBRARY
 
-It takes Xvfb, xvfb-run and `blender` (or what BLENDER names), 3.4 or newer; where they are missing it says so and all is well.
-What is done in Blender is docs/in_blender.py.
+It needs Xvfb, xvfb-run and `blender` (or the program that BLENDER names) from version 3.4 on. If one is missing, it
+prints which and succeeds. docs/in_blender.py is the program that runs in Blender.
 """
 
 import sys

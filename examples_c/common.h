@@ -35,7 +35,7 @@ static inline int show_progress(void *title, double fraction) {
 }
 
 /* Waits for a job, with a progress bar in a terminal, and releases it. */
-static inline void finish(luxfer_job *job, const char *title) {
+static inline void wait_and_release(luxfer_job *job, const char *title) {
     check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
     check(luxfer_release(job), title);
 }
@@ -69,7 +69,7 @@ static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t
     params.samples = samples;
     check(luxfer_demo_photo_create(context, &demo), "photo");
     check(luxfer_demo_photo_start(demo, &params, &job), "photo");
-    finish(job, "taking the photo");
+    wait_and_release(job, "taking the photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
     check(luxfer_release(demo), "photo");
     return photo;

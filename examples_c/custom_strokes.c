@@ -15,7 +15,7 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
     luxfer_image *confidence = NULL;
     luxfer_job *job = NULL;
     check(luxfer_transfer_start(transfer, first, last, NULL, &job), "segmentation");
-    finish(job, "segmenting");
+    wait_and_release(job, "segmenting");
     check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
     if (last == LUXFER_STAGE_PLANE) printf("ceiling: %.1f %% wrong on strokes held out\n", 100 * report.plane_error);
     else printf("lamps:   %.1f %% wrong on strokes held out\n", 100 * report.lights_error);

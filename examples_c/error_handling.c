@@ -58,17 +58,17 @@ int main(void) {
     view.height = 3;
     view.data = pixels;
     view.byte_size = sizeof pixels;
-    report("Pixels of 2 x 2 that are said to be 2 x 3:", luxfer_image_create(context, &view, &image),
+    report("2 x 2 pixels declared as 2 x 3:", luxfer_image_create(context, &view, &image),
            LUXFER_INVALID_ARGUMENT);
 
     if (luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
-    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
+    report("A misspelt name:", luxfer_scene_find_surface(scene, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     luxfer_material_params_init(&material, sizeof material);
     material.roughness = NAN;
-    report("A number that is none:", luxfer_scene_add_material(scene, &material, NULL), LUXFER_INVALID_ARGUMENT);
+    report("A parameter that is NaN:", luxfer_scene_add_material(scene, &material, NULL), LUXFER_INVALID_ARGUMENT);
     if (luxfer_render_create(context, &render) != LUXFER_OK) return 1;
-    report("A rendering of no scene:", luxfer_render_start(render, NULL, &job), LUXFER_INVALID_OPERATION);
-    report("An expression that is none:",
+    report("A rendering without a scene:", luxfer_render_start(render, NULL, &job), LUXFER_INVALID_OPERATION);
+    report("An invalid light path expression:",
            luxfer_render_add_expression(render, "direct", "C<RD>L("), LUXFER_INVALID_ARGUMENT);
 
     /* The wait for a job returns its errors; the library checks settings when a job starts or runs. */

@@ -57,7 +57,7 @@ int main(void) {
     params.height = 180;
     params.samples = 24;
     check(luxfer_render_start(render, &params, &job), "render");
-    finish(job, "rendering");
+    wait_and_release(job, "rendering");
 
     /* --8<-- [start:layers] */
     /* Get the picture, then find the groups by their names. */

@@ -2,9 +2,9 @@
  *
  *   lighting_transfer [PHOTO SCENE --surface NAME --strokes FILE] [--distance M] [--size WxH] [--samples N] [--out DIR]
  *
- * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the
- * strokes: an image of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt).
- * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR, and prints the
+ * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the strokes: an image
+ * of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt). Writes
+ * overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR, and prints the
  * warnings about the result.
  */
 #include "luxfer.h"
@@ -108,7 +108,7 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_strokes *strokes;
     check(luxfer_demo_photo_create(context, &demo), "demo");
     check(luxfer_demo_photo_start(demo, NULL, &job), "demo");
-    finish(job, "photographing the office");
+    wait_and_release(job, "photographing the office");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, photo), "demo photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_STROKES, &drawing), "demo strokes");
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
@@ -152,7 +152,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     check(luxfer_render_set_scene(render, scene), title);
     check(luxfer_render_set_camera(render, camera), title);
     check(luxfer_render_start(render, &params, &job), title);
-    finish(job, title);
+    wait_and_release(job, title);
     check(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &image), title);
     luxfer_release(render);
     return image;
@@ -245,7 +245,7 @@ int main(int argc, char **argv) {
     params.render = &render;
     params.plane_distance = o.distance;
     check(luxfer_transfer_start(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, &params, &job), "transfer");
-    finish(job, "transferring the lighting");
+    wait_and_release(job, "transferring the lighting");
 
     /* Get its results. */
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &lit), "render");

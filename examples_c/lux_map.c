@@ -47,7 +47,7 @@ int main(void) {
     params.rows = ROWS;
     params.samples = 256;
     check(luxfer_illuminance_start_grid(illuminance, &grid, &params, &job), "grid");
-    finish(job, "measuring");
+    wait_and_release(job, "measuring");
 
     check(luxfer_illuminance_get_report(illuminance, &report, sizeof report), "report");
     /* --8<-- [end:grid] */

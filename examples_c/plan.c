@@ -36,14 +36,14 @@ int main(void) {
 
         check(luxfer_plan_create(context, &plan), "plan");
         check(luxfer_plan_start_render(plan, render, &settings, &params, &job), "plan");
-        finish(job, "planning");
+        wait_and_release(job, "planning");
         check(luxfer_plan_get_report(plan, &expected, sizeof expected), "plan");
         check(luxfer_plan_get_render_params(plan, &settings, sizeof settings), "plan");
         luxfer_release(plan);
         /* --8<-- [end:plan] */
 
         check(luxfer_render_start(render, &settings, &job), "render");
-        finish(job, "rendering");
+        wait_and_release(job, "rendering");
         check(luxfer_render_get_report(render, &report, sizeof report), "report");
         printf("%s: %.2f s and an error of %.1f %% expected; it is %.1f %% with %u paths per pixel\n", goals[i],
                expected.seconds, 100 * expected.error, 100 * report.error, report.samples);

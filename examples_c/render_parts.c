@@ -35,7 +35,7 @@ static void render_part(luxfer_render *render, const luxfer_render_params *param
     luxfer_job *job = NULL;
     check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part, sizeof part), "part");
     check(luxfer_render_start_part(render, params, &part, file, &job), file);
-    finish(job, file);
+    wait_and_release(job, file);
 }
 /* --8<-- [end:part] */
 
@@ -47,7 +47,7 @@ static void merge(luxfer_render *render, const luxfer_render_params *params, cha
     check(luxfer_render_clear_parts(render), "merge");
     for (i = 0; i < count; i++) check(luxfer_render_add_part(render, files[i]), files[i]);
     check(luxfer_render_start_merge(render, params, &job), "merge");
-    finish(job, "merging");
+    wait_and_release(job, "merging");
     check(luxfer_render_write_exr(render, "render_parts.exr"), "render_parts.exr");
 }
 /* --8<-- [end:merge] */
@@ -84,7 +84,7 @@ static int demonstrate(luxfer_render *render, const luxfer_render_params *params
     merged = pixels(render, &view);
 
     check(luxfer_render_start_part(render, params, NULL, whole, &job), whole);
-    finish(job, whole);
+    wait_and_release(job, whole);
     merge(render, params, &whole, 1);
     at_once = pixels(render, &view);
     differs = memcmp(merged, at_once, view.byte_size) != 0;

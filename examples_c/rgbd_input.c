@@ -29,7 +29,7 @@ static luxfer_image *measure_depth(void) {
     params.height = HEIGHT;
     params.samples = 2;
     check(luxfer_render_start(render, &params, &job), "depth");
-    finish(job, "measuring the depth");
+    wait_and_release(job, "measuring the depth");
     check(luxfer_render_find_layer(render, "Depth", &layer), "depth");
     check(luxfer_render_get_layer(render, layer, &depth), "depth");
     luxfer_release(render);
@@ -46,7 +46,7 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     float *pixels;
     size_t k;
     check(luxfer_features_start(features, NULL, &job), title);
-    finish(job, title);
+    wait_and_release(job, title);
     check(luxfer_features_get_report(features, &report, sizeof report), title);
     printf("%-14s trust in the depth %.2f\n", title, report.depth_confidence);
     check(luxfer_features_get_image(features, LUXFER_FEATURES_CHANNELS, &channels), title);

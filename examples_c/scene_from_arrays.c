@@ -94,7 +94,7 @@ int main(void) {
     check(luxfer_render_params_init(&params, sizeof params), "render");
     params.width = 300, params.height = 200, params.samples = 16;
     check(luxfer_render_start(render, &params, &job), "render");
-    finish(job, "rendering");
+    wait_and_release(job, "rendering");
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_image_save(picture, "scene_from_arrays.png", 0.008f), "picture");
     check(luxfer_scene_export(scene, "scene_from_arrays.glb"), "glTF");

@@ -4,8 +4,8 @@
  *
  * The exemplar is the sphere on a table that comes with the library, painted by three programs in place of artists; the
  * target is a still life. Writes stylize.png (above: the exemplar and its artworks; below: the target, stylised) and
- * each result as stylize_<style>.png into DIR; and sheet.png, the exemplar to be printed on A4 and painted by hand. A photo of
- * the painted sheet, loaded with luxfer_image_load, becomes an artwork by luxfer_sheet_align.
+ * each result as stylize_<style>.png into DIR, and sheet.png, the exemplar to be printed on A4 and painted by hand.
+ * luxfer_sheet_align makes an artwork from a photo of the painted sheet that luxfer_image_load has loaded.
  */
 #include "common.h"
 #include "panels.h"
@@ -26,7 +26,7 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     check(luxfer_guides_create(context, &guides), title);
     check(luxfer_guides_set_scene(guides, scene), title);
     check(luxfer_guides_start(guides, params, &job), title);
-    finish(job, title);
+    wait_and_release(job, title);
     luxfer_release(scene);
     return guides;
 }
@@ -115,7 +115,7 @@ int main(int argc, char **argv) {
         check(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
-        finish(job, names[i]);
+        wait_and_release(job, names[i]);
         check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), names[i]);
         check(luxfer_stylize_get_report(stylize, &report, sizeof report), names[i]);
         /* --8<-- [end:paint] */

@@ -1,10 +1,9 @@
-//! Has the table of calls made from the header.
+//! Runs calls.py, which makes the table of functions from the header.
 
 use std::process::Command;
 
 fn main() {
-    for source in
-        ["calls.py", "../include/luxfer", "../tests/conformance/script.py", "../bindings/python/generate.py"]
+    for source in ["calls.py", "../include/luxfer", "../tests/conformance/script.py", "../bindings/python/generate.py"]
     {
         println!("cargo::rerun-if-changed={source}");
     }

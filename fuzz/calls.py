@@ -1,9 +1,10 @@
-"""The functions of include/luxfer.h as a table that decodes bytes into calls, and programs (tests/conformance/script.py) encoded as
-such bytes: both by the same kinds of arguments, so that what one writes the other reads.
+"""Encodes calls of the C ABI as bytes, for the fuzz target `calls`.
 
-    python3 calls.py     prints the table, Rust that src/calls.rs includes
+    python3 calls.py     prints the decoder's table of functions in Rust, which src/calls.rs includes
 
-A call is the number of its function in two bytes, and its arguments one after the other; src/calls.rs says how each kind is read.
+`table` makes this table from include/luxfer.h; `Program` encodes programs (tests/conformance/script.py) as bytes that
+the decoder reads. A call is the index of its function in two bytes and then its arguments; src/calls.rs defines how
+each kind of argument is read.
 """
 
 from __future__ import annotations
@@ -17,21 +18,22 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "conforma
 
 import script  # noqa: E402
 
-#: In the header's order; those that give no status need no fuzzing.
+#: The fuzzed functions in the header's order: all that return a status.
 NAMES = [name for name, (result, _) in script.HEADER.functions.items() if result == "luxfer_status"]
-#: Numbers that are not here are enumerations, and as int32_t.
+#: Formats of `struct` for the types of numbers; all other types are enumerations, which are int32_t.
 FORMATS = {"float": "<f", "double": "<d", "uint64_t": "<Q", "size_t": "<Q"}
-#: What only the caller could know is never a lie that may be told: how much memory there is, by the name of its count.
+#: Exclusive upper bounds for parameters that state a size of memory, by the ends of their names: the library cannot
+#: check these sizes, so the fuzzer must not overstate them.
 BOUNDS = {"count": 257, "capacity": 257, "size": script.ROOM + 1, "stride": 256, "num_threads": 4}
-#: Files that calls read and write, in the folder the fuzzer works in.
+#: Paths of the files that calls read and write, in the fuzzer's working folder.
 PATHS = ["", "no/such/place/a.png", *(f"{name}.{ending}" for name in "ab" for ending in ("png", "exr", "glb", "ldt", "ies", "csv"))]
 PATHS += ["layers.exr", "part0.exr", "part1.exr", "lamps.csv"]
-#: Bytes of an array in a file of calls; the memory behind it repeats them.
+#: Maximum number of bytes of an array in the encoded calls; the decoder repeats them to fill its memory.
 LONGEST = 192
 
 
 def is_record(kind: str) -> bool:
-    """Whether a struct tells its size."""
+    """Whether a type is a struct that begins with its size."""
     return kind in script.STRUCTS and script.STRUCTS[kind][0].name == "struct_size"
 
 
@@ -50,7 +52,8 @@ def number(kind: str, value: float) -> bytes:
 
 @dataclass
 class Program:
-    """What the decoder knows when it comes to an argument: the references to each kind of handle, oldest first."""
+    """Encodes a program. `held` mirrors the state of the decoder: the references to each kind of handle, oldest
+    first."""
 
     held: dict[str, list[int]] = field(default_factory=dict)
 
@@ -90,7 +93,7 @@ class Program:
             return bytes([255 if kind == "null" else PATHS.index(bytes.fromhex(rest[0]).decode())])
         if is_record(f.type):
             return self.record(*rest) if kind == "struct" else bytes([0])
-        if kind == "struct" and f.type == "void":  # any struct, which the call fills
+        if kind == "struct" and f.type == "void":  # a struct of any type, which the call fills
             return struct.pack("<H", 0)
         if kind == "struct":
             raise SystemExit(f"{function}: {f.name} has no struct_size")
@@ -108,11 +111,11 @@ class Program:
         return out
 
 
-# ---------------------------------------------------------------------------------------------------------------- the table
+# ------------------------------------------------------------------------------------------------------------ the table
 
 
 def expression(function: str, f: script.generate.Field) -> str:
-    """How an argument is read."""
+    """The Rust expression that reads an argument."""
     if script.makes(f):
         return f'a.made("{f.type}").cast()'
     if script.is_handle(f):
@@ -129,7 +132,7 @@ def expression(function: str, f: script.generate.Field) -> str:
 
 
 def member(f: script.generate.Field) -> str:
-    """The kind of a struct's member."""
+    """The Rust expression for a `Member` of a struct."""
     if not f.stars:
         count = 1
         for n in f.dims:

@@ -1,4 +1,4 @@
-"""What the corpora grow from: small files of every kind, made here and by the library itself, and a dictionary for each kind.
+"""Writes the initial corpora of the fuzz targets, small files of every format, and a dictionary for each target.
 
     python3 seeds.py FOLDER     writes FOLDER/TARGET/* and FOLDER/TARGET.dict
 """
@@ -24,18 +24,18 @@ import scenarios  # noqa: E402
 import luxfer  # noqa: E402
 from luxfer.image import np  # noqa: E402
 
-# ------------------------------------------------------------------------------------------------------------------- images
+# --------------------------------------------------------------------------------------------------------------- images
 
 
 def png(depth: int, colour: int, interlaced: int = 0, size: int = 4) -> bytes:
-    """A picture of a PNG colour type: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha."""
+    """A PNG file of a colour type: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha."""
 
     def chunk(kind: bytes, content: bytes) -> bytes:
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
     channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
     row = bytes(range(-(-size * channels * depth // 8)))
-    # Rows of every filter; interlaced ones are black, and no fewer than there are in seven passes.
+    # Use every row filter. Interlaced pictures are black, with enough zero bytes for the rows of all seven passes.
     data = bytes(300) if interlaced else b"".join(bytes([y % 5]) + row for y in range(size))
     head = chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, depth, colour, 0, 0, interlaced))
     palette = chunk(b"PLTE", bytes(range(48))) + chunk(b"tRNS", bytes(9)) if colour == 3 else b""
@@ -43,21 +43,21 @@ def png(depth: int, colour: int, interlaced: int = 0, size: int = 4) -> bytes:
 
 
 def jpeg(channels: int) -> bytes:
-    """Sixteen pixels square; every block is of one colour, said in two bits."""
+    """A JPEG file of 16 x 16 pixels; each block has one colour, which takes two bits."""
 
     def segment(marker: int, content: bytes) -> bytes:
         return struct.pack(">BBH", 0xFF, marker, len(content) + 2) + content
 
     parts = b"".join(bytes([c + 1, 0x11, 0]) for c in range(channels))
     frame = segment(0xC0, struct.pack(">BHHB", 8, 16, 16, channels) + parts)
-    # One code of one bit each: a difference of 0, and the end of a block.
+    # Each Huffman table has one code of one bit: a difference of 0, and the end of a block.
     tables = b"".join(segment(0xC4, bytes([which, 1, *[0] * 15, 0])) for which in (0x00, 0x10))
     scan = bytes([channels]) + b"".join(bytes([c + 1, 0]) for c in range(channels)) + bytes([0, 63, 0])
     return b"\xff\xd8" + segment(0xDB, bytes([0, *[1] * 64])) + frame + tables + segment(0xDA, scan) + bytes(3 * channels) + b"\xff\xd9"
 
 
 def notes(orientation: int) -> bytes:
-    """EXIF: a photo held on its side, and its exposure."""
+    """EXIF metadata: an orientation (a photo taken in portrait format) and an exposure."""
     camera = [(0x829A, 5, 68), (0x829D, 5, 76), (0x8827, 3, 100), (0xA405, 3, 26)]
     picture = [(0x0112, 3, orientation), (0x8769, 4, 84)]
     first, second = (struct.pack("<H", len(e)) + b"".join(struct.pack("<HHII", t, k, 1, v) for t, k, v in e) for e in (picture, camera))
@@ -65,12 +65,13 @@ def notes(orientation: int) -> bytes:
 
 
 def tiff(samples: int, bits: int, photometric: int, compression: int = 1, predictor: int = 1, tile: int = 0, planar: int = 1) -> bytes:
-    """Four pixels square, in strips of two rows or in tiles, with colours for a palette; floating point if of 32 bits."""
+    """A TIFF file of 4 x 4 pixels, in strips of two rows or in tiles; with a palette if the photometric interpretation
+    asks for one; of floating-point samples if they have 32 bits."""
     row = bytes(range(-(-4 * samples * bits // 8 // (samples if planar == 2 else 1))))
     rows = tile or 2
     pixels = row * rows * (tile // 4 if tile else 1)
     literal = b"".join(bytes([len(pixels[i : i + 99]) - 1]) + pixels[i : i + 99] for i in range(0, len(pixels), 99))
-    # LZW: clear, a code for each byte, the end; all of nine bits.
+    # LZW: a clear code, a code for each byte, and the end code, all of nine bits.
     codes = "".join(f"{code:09b}" for code in (256, *pixels[:200], 257))
     lzw = int(codes.ljust(-(-len(codes) // 8) * 8, "0"), 2).to_bytes(-(-len(codes) // 8), "big")
     packed = {1: pixels, 5: lzw, 8: zlib.compress(pixels), 32773: literal}[compression]
@@ -78,7 +79,7 @@ def tiff(samples: int, bits: int, photometric: int, compression: int = 1, predic
     fields = {256: 4, 257: 4, 258: bits, 259: compression, 262: photometric, 274: 6, 277: samples, 284: planar, 317: predictor}
     fields |= {322: tile, 323: tile} if tile else {278: rows}
     fields |= {339: 3 if bits == 32 else 1} | ({338: 2} if samples in (2, 4) and photometric != 5 else {})
-    # What is too long for an entry follows the directory, then the pixels.
+    # Values that are too long for a directory entry follow the directory; the pixels come last.
     tail = 8 + 2 + 12 * (len(fields) + 2 + (photometric == 3)) + 4
     start = tail + (8 * count if count > 1 else 0) + (6 << bits if photometric == 3 else 0)
     lists = {
@@ -104,13 +105,13 @@ def bmp(bits: int) -> bytes:
 
 
 def gif(interlaced: int = 0) -> bytes:
-    """Two pixels of two colours behind a comment."""
+    """A GIF file with a comment and two pixels of two colours."""
     head = b"GIF89a" + struct.pack("<HHBBB", 2, 1, 0x80, 0, 0) + bytes(range(6)) + b"\x21\xfe\x01a\0\x21\xf9\x04\x01\0\0\1\0"
     return head + b"\x2c" + struct.pack("<HHHHB", 0, 0, 2, 1, interlaced << 6) + b"\x02\x02\x44\x0a\0;"
 
 
 def webp(extended: bool) -> bytes:
-    """A black pixel without loss: every code has one symbol."""
+    """A lossless WebP file of one black pixel; every prefix code has one symbol."""
     pixel = b"\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07"
 
     def chunk(name: bytes, content: bytes) -> bytes:
@@ -123,7 +124,7 @@ def webp(extended: bool) -> bytes:
 
 
 def profile(space: bytes, tables: dict[bytes, bytes]) -> bytes:
-    """A colour profile with these tags."""
+    """An ICC profile with the given tags."""
     start, entries, content = 132 + 12 * len(tables), b"", b""
     for name, table in tables.items():
         entries += name + struct.pack(">II", start + len(content), len(table))
@@ -133,7 +134,7 @@ def profile(space: bytes, tables: dict[bytes, bytes]) -> bytes:
 
 
 def inks() -> list[bytes]:
-    """JPEG files of four inks and of three colours, with profiles that have tables of two grid points."""
+    """JPEG files of four inks and of three colours, with ICC profiles whose tables have two grid points per axis."""
     out = []
     for channels, space in ((4, b"CMYK"), (3, b"RGB ")):
         one = struct.pack(">i", 65536)
@@ -149,7 +150,7 @@ def inks() -> list[bytes]:
 
 
 def photos() -> list[bytes]:
-    """Pictures with notes of a camera, and formats of photos beside PNG and JPEG."""
+    """Pictures with the metadata of a camera, and picture formats besides PNG and JPEG."""
     exif = b"Exif\0\0" + notes(6)
     plain = jpeg(3)
     camera = plain[:2] + struct.pack(">BBH", 0xFF, 0xE1, len(exif) + 2) + exif + plain[2:]
@@ -175,7 +176,7 @@ def saved(thing, ending: str) -> bytes:
 
 
 def layered(context: luxfer.Context) -> list[bytes]:
-    """OpenEXR files: of one, three and four channels, and of many layers."""
+    """OpenEXR files with one, three and four channels, and with many layers."""
     plain = [saved(luxfer.Image(context, np.linspace(0, 1, 6 * 4 * n, dtype=np.float32).reshape(4, 6, n)), "exr") for n in (1, 3, 4)]
     render = luxfer.Render(context, luxfer.Scene.demo(context, "sphere-on-table"), expressions={"direct": "LDE"}, aovs=0x7F)
     render.run(width=9, height=5, samples=1)
@@ -184,11 +185,11 @@ def layered(context: luxfer.Context) -> list[bytes]:
         return [*plain, path.read_bytes()]
 
 
-# ------------------------------------------------------------------------------------------------------------------- scenes
+# --------------------------------------------------------------------------------------------------------------- scenes
 
 
 def scene(context: luxfer.Context) -> bytes:
-    """All that a GLB file of ours can hold, once."""
+    """A GLB file with one of each thing that the library exports."""
     out = luxfer.Scene(context)
     out.add_material(name="Paint", base_color=(0.5, 0.4, 0.3), roughness=0.5, metallic=0.5)
     out.add_material(name="Lamp", emission=(50, 40, 30), double_sided=1)
@@ -208,14 +209,14 @@ def scene(context: luxfer.Context) -> bytes:
 
 
 def as_text(glb: bytes) -> bytes:
-    """A GLB as a .gltf with its buffer inside."""
+    """Converts a GLB file to a .gltf file with an embedded buffer."""
     length = struct.unpack_from("<I", glb, 12)[0]
     tree = json.loads(glb[20 : 20 + length])
     tree["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(glb[28 + length :]).decode()
     return json.dumps(tree, separators=(",", ":")).encode()
 
 
-#: Two triangles in Draco's compression, once in sequence and once by the edge breaker.
+#: Draco streams of two triangles: one with sequential encoding, one with edgebreaker encoding.
 DRACO = [
     "RFJBQ08CAgEBAAAABAIAAgAAAR//AREB/wAAAQAJAwAAAgABAQEBgAJVFQEQARD////vrQoFooQ0UqsAAAAA/wAAAAAAAAAAAAAAAAAAAAAAgD8I",
     "RFJBQ08CAgEBAAAABAIAAgAAAR//AREB/wAAAQAJAwAAAgEBAQAJAwEgARATARADADCQSgAC/gEAAAAA/wAAAAAAAAAAAAAAAAAAAAAAgD8I",
@@ -223,7 +224,7 @@ DRACO = [
 
 
 def compressed(stream: str) -> bytes:
-    """A glTF file with a Draco stream."""
+    """A glTF file whose mesh is a Draco stream."""
     size, name = len(base64.b64decode(stream)), "KHR_draco_mesh_compression"
     settings = {"bufferView": 0, "attributes": {"POSITION": 0}}
     tree = {
@@ -239,7 +240,7 @@ def compressed(stream: str) -> bytes:
 
 
 def posed() -> bytes:
-    """A glTF file with a skin, a morph target and colours of vertices."""
+    """A glTF file with a skin, a morph target and vertex colours."""
     numbers = np.float32([0, 0, 0, 1, 0, 0, 0, 1, 0, *np.eye(4).ravel(), *[0, 0, 0, 0] * 3, *[1, 0, 0, 0] * 3, *np.linspace(0, 1, 12)])
     uri = "data:;base64," + base64.b64encode(numbers.tobytes()).decode()
     places = (("VEC3", 3, 0), ("MAT4", 1, 36), ("VEC4", 3, 100), ("VEC4", 3, 148), ("VEC4", 3, 196))
@@ -257,12 +258,12 @@ def posed() -> bytes:
 
 
 def words(tree) -> set[str]:
-    """All keys of a JSON tree."""
+    """All keys of a JSON tree, at any depth."""
     below = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
     return set(tree if isinstance(tree, dict) else ()).union(*map(words, below))
 
 
-# ------------------------------------------------------------------------------------------------------- luminaires, networks
+# ------------------------------------------------------------------------------------------------- luminaires, networks
 
 SHAPE = "1 1000 1 3 2 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0 180\n100 80 0\n100 90 10\n"
 IES = [
@@ -273,7 +274,7 @@ IES = [
 
 
 def networks() -> list[bytes]:
-    """One file for each operator, and one that is as they are exported."""
+    """ONNX files: one for each operator, and one network like those that frameworks export."""
 
     def of(kind: str, *more, opset: int = 13, outputs: int = 1, **attributes) -> bytes:
         n = onnx_file.Network([1, 3, 8, 8], opset)
@@ -304,13 +305,13 @@ def networks() -> list[bytes]:
     return [*out, n.file(n.add("Squeeze", n.add("Conv", x, n.noise(1, 4, 1, 1)), axes=[1]))]
 
 
-# --------------------------------------------------------------------------------------------------------------------- texts
+# ---------------------------------------------------------------------------------------------------------------- texts
 
-#: What a glTF file may say and ours does not.
+#: Words of glTF that the seed files do not contain, for the dictionary.
 MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized", "extras", "minVersion", "COLOR_0"}
 MORE |= {"EXT_mesh_gpu_instancing", "TRANSLATION", "ROTATION", "SCALE", "EXT_texture_webp", "KHR_materials_clearcoat", "weights", "skin"}
 MORE |= {"EXT_meshopt_compression", "fallback", "mode", "filter", "ATTRIBUTES", "TRIANGLES", "INDICES", "OCTAHEDRAL", "EXPONENTIAL"}
-#: 1, infinity and not a number, in 32 and 64 bits.
+#: 1, infinity and NaN as floats of 32 and 64 bits, for the dictionaries of binary formats.
 NUMBERS = [rf"\x00\x00{end}" for end in (r"\x80\x3f", r"\x80\x7f", r"\xc0\x7f", r"\xf0\x3f", r"\xf0\x7f", r"\xf8\x7f")]
 
 PNG_WORDS = ["IHDR", "PLTE", "tRNS", "IDAT", "IEND", "gAMA", "iCCP", "fdAT", "eXIf"]
@@ -323,7 +324,7 @@ STROKES = ["plane 2 5 5 9 9\nnot-plane 1.5 40 2 42 20\n", "light 2 5 5\n# a rema
 
 
 def parts(context: luxfer.Context) -> list[bytes]:
-    """Sums of the rendering that the target merges."""
+    """Files of rendering parts, for the rendering that the target `part` merges."""
     render, size = luxfer.Render(context, luxfer.Scene.demo(context, "sphere-on-table")), {"width": 9, "height": 5, "samples": 4}
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder, name)) for name in "abc"]
@@ -333,7 +334,7 @@ def parts(context: luxfer.Context) -> list[bytes]:
 
 
 def seeds() -> dict[str, tuple[list[bytes], list[str]]]:
-    """Files and words for each target."""
+    """For each target, its seed files and the words of its dictionary."""
     context = luxfer.Context(num_threads=1)
     glb = scene(context)
     tree = json.loads(glb[20 : 20 + struct.unpack_from("<I", glb, 12)[0]])

@@ -439,7 +439,7 @@ fn one_line_comments(text: &str) -> String {
 
 /// Turns the head comment (`//!`) of a source file into a section heading of the header.
 fn banner(source: &str) -> String {
-    let rule = "=".repeat(116);
+    let rule = "=".repeat(114);
     let lines = source.lines().map_while(|l| l.strip_prefix("//!"));
     let text: String = lines.map(|l| format!(" *{l}\n")).collect();
     format!("\n/* {rule}\n{text} * {rule} */\n\n")

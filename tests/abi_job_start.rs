@@ -47,7 +47,7 @@ fn run(
     (status, text, user.statuses, late)
 }
 
-/// Rates the glare of an observer in the box, with so many paths that the call takes minutes.
+/// Rates the glare of an observer in the box. The number of paths makes the call take minutes.
 unsafe fn rate_for_minutes(scene: *mut luxfer_scene) -> luxfer_status {
     let observer = luxfer_observer { position: [1.0, 1.0, 1.0], direction: [1.0, 0.0, 0.0] };
     let mut rating = unsafe { std::mem::zeroed::<luxfer_observer_glare>() };

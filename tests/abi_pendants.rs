@@ -180,6 +180,56 @@ fn masks_without_a_whole_lamp_say_what_to_paint() {
     release([context]);
 }
 
+/// Adds lamps to a scene. Returns the status, the first mesh and the material.
+fn add_lamps(
+    scene: *mut luxfer_scene,
+    lamp: &luxfer_pendant,
+    places: &[f64],
+    count: u32,
+    diameter: f32,
+    luminance: f32,
+) -> (luxfer_status, u32, u32) {
+    let (mut mesh, mut material) = (99, 99);
+    let places = if places.is_empty() { null() } else { places.as_ptr() };
+    let out = (&raw mut mesh, &raw mut material);
+    let status = unsafe { luxfer_scene_add_pendants(scene, lamp, places, count, diameter, luminance, out.0, out.1) };
+    (status, mesh, material)
+}
+
+/// Lamps of unknown size, wrong lamps and wrong places are refused, and nothing is written.
+fn refuse_wrong_lamps(
+    context: *mut luxfer_context,
+    scene: *mut luxfer_scene,
+    open: &luxfer_pendant,
+    sized: &luxfer_pendant,
+    places: &[f64],
+) {
+    let add = |lamp: &luxfer_pendant, places: &[f64], count, diameter, luminance| {
+        add_lamps(scene, lamp, places, count, diameter, luminance)
+    };
+    let bad = LUXFER_INVALID_ARGUMENT;
+    let nowhere = [0.0, f64::NAN, 0.0];
+    let [mut short, mut falling, mut dark, mut thin] = [*sized; 4];
+    (short.struct_size, falling.profile[3][1], dark.radiance[5][1]) = (8, -0.1, f32::NAN);
+    thin.profile_count = 66;
+    let refused = [
+        (add(open, places, 2, 0.0, 100.0), bad),
+        (add(sized, &[], 2, 0.0, 100.0), bad),
+        (add(sized, places, 0, 0.0, 100.0), bad),
+        (add(sized, &nowhere, 1, 0.0, 100.0), bad),
+        (add(sized, places, 2, f32::NAN, 100.0), bad),
+        (add(sized, places, 2, 0.0, -1.0), bad),
+        (add(&short, places, 2, 0.0, 100.0), bad),
+        (add(&falling, places, 2, 0.0, 100.0), bad),
+        (add(&dark, places, 2, 0.0, 100.0), bad),
+        (add(&thin, places, 2, 0.0, 100.0), bad),
+        (add(&unsafe { std::mem::zeroed() }, places, 2, 0.4, 100.0), bad),
+    ];
+    for (i, ((status, mesh, _), expected)) in refused.into_iter().enumerate() {
+        assert_eq!((status, mesh), (expected, 99), "{i}: {}", message(context));
+    }
+}
+
 /// The bodies stand in the scene with their upper ends at the places, and the same input gives the same bits.
 #[test]
 fn lamps_are_added_to_a_scene() {
@@ -194,39 +244,11 @@ fn lamps_are_added_to_a_scene() {
         assert_eq!(unsafe { luxfer_scene_get_counts(scene, &mut counts, size) }, LUXFER_OK);
         (counts.meshes, counts.materials)
     };
-    let add = |lamp: &luxfer_pendant, places: &[f64], count, diameter, luminance| {
-        let (mut mesh, mut material) = (99, 99);
-        let places = if places.is_empty() { null() } else { places.as_ptr() };
-        let out = (&raw mut mesh, &raw mut material);
-        let status =
-            unsafe { luxfer_scene_add_pendants(scene, lamp, places, count, diameter, luminance, out.0, out.1) };
-        (status, mesh, material)
-    };
     let before = counts();
     assert!(open.doubts & LUXFER_DOUBT_SIZE != 0 && open.diameter[0].is_nan() && open.diameter[1] == 0.0);
-    let bad = LUXFER_INVALID_ARGUMENT;
-    let nowhere = [0.0, f64::NAN, 0.0];
-    let [mut short, mut falling, mut dark, mut thin] = [sized; 4];
-    (short.struct_size, falling.profile[3][1], dark.radiance[5][1]) = (8, -0.1, f32::NAN);
-    thin.profile_count = 66;
-    let refused = [
-        (add(&open, &places, 2, 0.0, 100.0), bad),
-        (add(&sized, &[], 2, 0.0, 100.0), bad),
-        (add(&sized, &places, 0, 0.0, 100.0), bad),
-        (add(&sized, &nowhere, 1, 0.0, 100.0), bad),
-        (add(&sized, &places, 2, f32::NAN, 100.0), bad),
-        (add(&sized, &places, 2, 0.0, -1.0), bad),
-        (add(&short, &places, 2, 0.0, 100.0), bad),
-        (add(&falling, &places, 2, 0.0, 100.0), bad),
-        (add(&dark, &places, 2, 0.0, 100.0), bad),
-        (add(&thin, &places, 2, 0.0, 100.0), bad),
-        (add(&unsafe { std::mem::zeroed() }, &places, 2, 0.4, 100.0), bad),
-    ];
-    for (i, ((status, mesh, _), expected)) in refused.into_iter().enumerate() {
-        assert_eq!((status, mesh), (expected, 99), "{i}: {}", message(context));
-    }
+    refuse_wrong_lamps(context, scene, &open, &sized, &places);
     assert_eq!(counts(), before);
-    let (status, mesh, material) = add(&sized, &places, 2, 0.0, 100.0);
+    let (status, mesh, material) = add_lamps(scene, &sized, &places, 2, 0.0, 100.0);
     assert_eq!((status, mesh, material), (LUXFER_OK, before.0, before.1), "{}", message(context));
     assert_eq!(counts(), (before.0 + 2, before.1 + 1));
     let mut info = unsafe { std::mem::zeroed::<luxfer_mesh_info>() };

@@ -133,8 +133,8 @@ fn estimated(camera: &Perspective, rng: &mut Rng) -> (Perspective, Vec<Perspecti
     (estimate, shifted.map(|[pitch, roll, stretch]| changed(&estimate, pitch, roll, stretch)).to_vec())
 }
 
-/// The camera has errors of 0.6° and of 2 % of its focal length. Of 60 intervals of 95 %, fewer than 51 hold the truth with
-/// a probability of 0.1 %; without the errors, fewer than half hold it.
+/// The camera has errors of 0.6° and of 2 % of its focal length. That fewer than 51 of 60 intervals of 95 % hold the
+/// truth has a probability of 0.1 %. Intervals that ignore the errors hold it in fewer than half of the cases.
 #[test]
 fn intervals_hold_errors_of_the_camera() {
     let (mut held, mut all) = ([0; 2], 0);

@@ -72,7 +72,7 @@ fn vanishing_points_of_photos_meet_their_truth() {
 /// Views cut out of panoramas have no distortion, so their estimates stay near 0, relative to the stated error. York
 /// Urban's camera has barrel distortion, which must be found.
 #[test]
-fn distortion_is_told_of_lenses_that_have_some() {
+fn distortion_is_reported_for_lenses_that_have_some() {
     let measured = |name: &str, photo: &Image| {
         let view = rectify::find_view(photo, &Params::default(), Monitor::default().job()).unwrap();
         let share = view.distortion.map(|found| found.corner / found.error);

@@ -85,7 +85,7 @@ fn errors(view: &View, truth: &Perspective, photo: &Image) -> (f64, f64) {
 }
 
 #[test]
-fn exact_lines_give_the_camera_where_the_principal_point_is_told() {
+fn exact_lines_give_the_camera_if_the_principal_point_is_given() {
     let (truth, job) = (camera(), Monitor::default());
     let photo = photo(&truth);
     let read = |principal: Option<DVec2>| {
@@ -94,13 +94,16 @@ fn exact_lines_give_the_camera_where_the_principal_point_is_told() {
     };
     let view = read(Some(truth.principal));
     let (degrees, aspect) = errors(&view, &truth, &photo);
-    println!("told: focal {:.2}, axes {degrees:.4} degrees, aspect {aspect:.4}", view.perspective.focal);
+    println!(
+        "principal point given: focal {:.2}, axes {degrees:.4} degrees, aspect {aspect:.4}",
+        view.perspective.focal
+    );
     assert_eq!(view.perspective.principal, truth.principal);
     assert!((view.perspective.focal / FOCAL - 1.0).abs() < 5e-3 && degrees < 0.1 && aspect < 0.01);
     // If the image centre is taken for the principal point, the estimated axes are wrong.
     let view = read(None);
     let (degrees, _) = errors(&view, &truth, &photo);
-    println!("not told: focal {:.2}, axes {degrees:.4} degrees", view.perspective.focal);
+    println!("principal point not given: focal {:.2}, axes {degrees:.4} degrees", view.perspective.focal);
     assert!(degrees > 3.0);
 }
 
@@ -112,11 +115,11 @@ fn a_photo_of_a_shifted_lens_is_read_from_its_pixels() {
         let params = Params { principal, ..Params::default() };
         errors(&rectify::find_view(&photo, &params, job.job()).unwrap(), &truth, &photo)
     };
-    let (told, untold) = (read(Some(truth.principal)), read(None));
+    let (given, guessed) = (read(Some(truth.principal)), read(None));
     println!(
-        "axes off by {:.2} degrees, untold by {:.2}; aspect by {:.3} and {:.3}",
-        told.0, untold.0, told.1, untold.1
+        "with the principal point given and guessed: axes off by {:.2} and {:.2} degrees; aspect by {:.3} and {:.3}",
+        given.0, guessed.0, given.1, guessed.1
     );
-    assert!(told.0 < 2.0 && told.1 < 0.05);
-    assert!(untold.0 > 2.0 * told.0);
+    assert!(given.0 < 2.0 && given.1 < 0.05);
+    assert!(guessed.0 > 2.0 * given.0);
 }

@@ -120,7 +120,7 @@ fn noise_in_the_photo_does_not_change_the_design() {
 }
 
 #[test]
-fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
+fn the_pattern_lies_on_the_surface_as_the_settings_state() {
     let pool = Pool::new(0).unwrap();
     let monitor = Monitor::default();
     let (mut transfer, _) = prepared(&pool, 8, 3);

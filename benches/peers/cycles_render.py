@@ -1,8 +1,8 @@
 """Renders a GLB with Cycles (bpy): cycles_render.py SCENE.glb WIDTH HEIGHT OUT
 
-Prints a line of JSON when ready. Then each line "SPP SEED" of standard input makes an image, written to OUT (rows of
-linear RGB, 32-bit floats), and is answered by a line of JSON: spp, seed, seconds. Clamping, denoising, adaptive sampling
-and light thresholds are off, so that the estimate is as unbiased as Cycles allows.
+Prints a line of JSON when it is ready. For each line "SPP SEED" of standard input it then renders an image, writes it
+to OUT (rows of linear RGB, 32-bit floats) and prints a line of JSON: spp, seed, seconds. Clamping, denoising, adaptive
+sampling and light thresholds are off, so that the estimate is as unbiased as Cycles allows.
 """
 
 import json
@@ -59,7 +59,7 @@ def run(spp, seed):
     return seconds, pixels.reshape(height, width, 4)[::-1, :, :3]
 
 
-# What preparing the scene and writing the file cost is not counted: a render of one sample stands for it.
+# Exclude the time for preparing the scene and writing the file: it is estimated by a render of one sample.
 run(1, 0)
 base, _ = run(1, 1)
 print(json.dumps({"ready": bpy.app.version_string}), flush=True)

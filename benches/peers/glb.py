@@ -30,12 +30,13 @@ class Glb:
         return values[: accessor["count"] * width].reshape(accessor["count"], width)
 
     def image(self, texture):
-        """Bytes of the encoded image of a texture."""
+        """Returns the bytes of the encoded image of a texture."""
         source = self.json["textures"][texture]["source"]
         return io.BytesIO(self.view(self.json["images"][source]["bufferView"]))
 
     def primitives(self):
-        """Material index, positions, normals or None, two sets of uvs or None, triangles; nodes only translate."""
+        """Yields material index, positions, normals or None, two sets of texture coordinates or None, and triangles of
+        each primitive. Of the transforms of nodes, only translations are applied."""
         for node in self.json["nodes"]:
             if "mesh" not in node:
                 continue
@@ -47,7 +48,7 @@ class Glb:
                 yield primitive["material"], positions, get("NORMAL"), [get("TEXCOORD_0"), get("TEXCOORD_1")], triangles
 
     def camera(self):
-        """Position, forward, up and vertical field of view in radians of the first camera."""
+        """Returns position, forward, up and vertical field of view in radians of the first camera."""
         node = next(n for n in self.json["nodes"] if "camera" in n)
         x, y, z, w = node.get("rotation", (0, 0, 0, 1))
         up = np.array([2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)])

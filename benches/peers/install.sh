@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs what tests and benches compare with, each in a virtual environment under target/peers: those named, or all.
-# What cannot be installed is left out; tests and benches then say so.
+# Installs the programs and packages that tests and benches compare with: the named ones, or all. Each gets a virtual
+# environment under target/peers. One that cannot be installed is left out; tests and benches report that they skip it.
 cd "$(dirname "$0")/../.." || exit 1
 
 wanted=$*
@@ -17,15 +17,15 @@ install() { # name, packages...
 
 # For the tests of the Python package.
 install python numpy 'setuptools>=70.1'
-# The same on a cluster.
+# For the tests of the Python package on a Dask cluster.
 install dask numpy distributed
-# What else reads and writes OpenEXR files.
+# Another reader and writer of OpenEXR files.
 install exr OpenEXR numpy
 # Readers of pictures, scenes and luminaires, to compare public files with.
 install corpora DracoPy eulumdat eulumdat-py networkx numpy OpenEXR photompy Pillow trimesh
-# Pixar's library for USD files, which the Python package reads and writes them with.
+# Pixar's library, with which the Python package reads and writes USD files.
 install usd usd-core numpy
-# What writes PDF reports of lighting designs.
+# The library that writes PDF reports of lighting designs.
 install report numpy 'reportlab>=4'
 # Another runtime for ONNX files.
 install onnx onnxruntime numpy
@@ -34,7 +34,8 @@ install studio numpy starlette uvicorn websockets
 # For the guide.
 install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy
-# Its vectorised back end needs a shared LLVM that knows this processor: 15 has no maximum for vectors of AVX-512.
+# Mitsuba's vectorised back end needs a shared LLVM that supports this processor: LLVM 15 lacks the maximum of AVX-512
+# vectors.
 install_llvm() {
   case " ${wanted:-mitsuba} " in *" mitsuba "*) ;; *) return ;; esac
   ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && return
@@ -56,7 +57,7 @@ install open3d open3d numpy
 # grabCut, a random forest and a support vector machine, for masks from strokes; a detector of line segments.
 install segment opencv-python-headless scikit-learn numpy
 
-# What `stylit_judge.py` beside the test data runs on.
+# The packages that `stylit_judge.py`, beside the test data, needs.
 install judge numpy scipy pillow
 
 # Embark's example-based synthesis of textures.
@@ -68,8 +69,8 @@ case " ${wanted:-texture_synthesis} " in
     ;;
 esac
 
-# ebsynth, CPU back end: in no package registry, so only where its source can be reached; EBSYNTH_SOURCE may name a copy of
-# its repository.
+# ebsynth with its CPU back end. No package registry has it, so it is installed only if its repository can be reached;
+# EBSYNTH_SOURCE may name a copy of the repository.
 install_ebsynth() {
   case " ${wanted:-ebsynth} " in *" ebsynth "*) ;; *) return ;; esac
   [ -x target/peers/ebsynth/bin/ebsynth ] && return

@@ -1,7 +1,7 @@
-"""Line segments with OpenCV's `LineSegmentDetector`: reads lines of JSON, {"image", "width", "height", "out"}.
+"""Detects line segments with OpenCV's `LineSegmentDetector`: reads lines of JSON, {"image", "width", "height", "out"}.
 
-Files hold 8-bit grey pixels, and four float32 for each segment, pixel centres at whole coordinates. Answers each with the seconds
-that the detection took.
+"image" is a file of 8-bit grey pixels. For each segment, four float32 (the coordinates of its ends; pixel centres have
+integer coordinates) are written to "out". Prints a line of JSON for each image: the seconds that the detection took.
 """
 
 import json

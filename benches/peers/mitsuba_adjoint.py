@@ -1,10 +1,11 @@
-"""Gradients of Mitsuba 3's `prb`: mitsuba_adjoint.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET SPP SEEDS
+"""Computes gradients with Mitsuba 3's `prb`: mitsuba_adjoint.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET SPP SEEDS
 
-The scene's lamp has a texture of WIDTH x HEIGHT texels, all of one value. What is differentiated is the mean irradiance of the
-surface whose material has the index TARGET, by an irradiance meter: first by each texel of the lamp; then, the texels being
-those of a smooth pattern (`pattern` below), by where the pattern lies: its offset along u and v, its scale along both and its
-rotation, all about the centre. For each of SEEDS seeds OUT gets a row of 32-bit floats: the texels' gradients (rows, columns,
-channels), and for each of the five numbers of the placement its gradient, channel by channel.
+An irradiance meter measures the mean irradiance of the surface whose material has the index TARGET. The program
+differentiates it twice: with respect to each texel of the lamp, whose texture has WIDTH x HEIGHT texels of one value;
+and, with a smooth pattern (`pattern` below) as the texture, with respect to the five numbers of the pattern's
+placement: its offset along u and v, its scale along both and its rotation, all about the centre. For each of SEEDS
+seeds, a row of 32-bit floats is written to OUT: the gradients of the texels (rows, columns, channels), then those of
+the five numbers, channel by channel.
 """
 
 import json
@@ -27,12 +28,12 @@ def attach(index, properties):
 
 
 def pattern(u, v):
-    """Of period 1 along both coordinates, positive."""
+    """Returns the pattern's value at a point: positive, with period 1 along both coordinates."""
     return 1 + 0.6 * dr.sin(dr.two_pi * u) + 0.3 * dr.cos(dr.two_pi * v)
 
 
 def placed(numbers, width, height):
-    """The pattern's values at the centres of texels."""
+    """Returns the placed pattern's values at the centres of texels."""
     x, y = dr.meshgrid(dr.arange(mi.Float, width), dr.arange(mi.Float, height))
     u, v = ((x + 0.5) / width - 0.5) * numbers[2], ((y + 0.5) / height - 0.5) * numbers[3]
     sine, cosine = dr.sincos(numbers[4])
@@ -49,7 +50,7 @@ def main():
     integrator = mi.load_dict({"type": "prb", "max_depth": -1, "rr_depth": 5})
 
     def gradients(texels, leaves, channels, seed):
-        """Of the mean irradiance in some channels."""
+        """Returns the gradients of the mean irradiance in some channels with respect to `leaves`."""
         parameters[key] = texels
         parameters.update()
         image = mi.render(scene, parameters, sensor=sensor, integrator=integrator, spp=spp, seed=seed, seed_grad=seed + 500)
@@ -60,7 +61,7 @@ def main():
     for seed in range(1, seeds + 1):
         texels = mi.TensorXf(np.ones((height, width, 3), np.float32))
         dr.enable_grad(texels)
-        # A channel of the light depends on that of the texels alone.
+        # A channel of the irradiance depends only on the same channel of the texels, so one pass gives all channels.
         row = [gradients(texels, [texels], range(3), seed)]
         for c in range(3):
             numbers = [mi.Float(v) for v in (*OFFSET, *SCALE, ROTATION)]

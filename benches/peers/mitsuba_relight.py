@@ -1,10 +1,13 @@
-"""Solves for the colour of a lamp with Mitsuba 3's `prb` and Adam: mitsuba_relight.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET
+"""Solves for the colour of a lamp with Mitsuba 3's `prb` and Adam.
 
-TARGET is the index of the material whose surface is to have a given mean irradiance, measured there by an irradiance meter:
-the gradient is of that alone, with no image in between. The lamp starts white, and should come out 0.8, 1 and 1.25 times as
-bright; what that asks of the target is measured with many samples first. The learning rate falls as iterations go, as noise
-would keep the answer moving. Prints a line of JSON for each number of samples per iteration: seconds until the worst channel
-stays within 1 % for five iterations (null if it does not), and seconds per iteration. What compiles kernels is not counted.
+    mitsuba_relight.py VARIANT SCENE.glb WIDTH HEIGHT OUT TARGET
+
+TARGET is the index of a material. An irradiance meter measures the mean irradiance of the surface with this material;
+its gradient is computed directly, without an image. The lamp starts white. The solution is known: 0.8, 1 and 1.25 times
+the initial red, green and blue; the irradiance wanted is the one that this colour gives, rendered first with many
+samples. The learning rate decreases with the iterations so that noise does not keep the solution moving. Prints a line
+of JSON for each number of samples per iteration: seconds until the worst channel stays within 1 % for five iterations
+(null if it never does), and seconds per iteration. The time of compiling kernels is not counted.
 """
 
 import json
@@ -30,13 +33,13 @@ def attach(index, properties):
 
 
 def measure(scene, sensor, passes):
-    """Mean irradiance per channel."""
+    """Measures the mean irradiance per channel."""
     render = lambda seed: np.array(mi.render(scene, sensor=sensor, spp=1 << 18, seed=seed), np.float64).ravel()
     return np.mean([render(1000 + i) for i in range(passes)], axis=0)
 
 
 def solve(scene, sensor, keys, start, target, spp):
-    """Seconds and colour of the lamp, relative to its start, after each iteration."""
+    """Returns, after each iteration, the seconds and the colour of the lamp relative to its initial colour."""
     parameters = mi.traverse(scene)
     integrator = mi.load_dict({"type": "prb", "max_depth": -1, "rr_depth": 5})
     optimiser = mi.ad.Adam(lr=RATE)
@@ -54,7 +57,7 @@ def solve(scene, sensor, keys, start, target, spp):
         loss = dr.sum(dr.square(light / goal - 1))
         dr.backward(loss)
         if iteration < 0:
-            # The kernels are compiled; their gradient does not count.
+            # Discard the gradient of the first iteration, which only compiled the kernels.
             optimiser["colour"] = mi.Color3f(1, 1, 1)
             continue
         optimiser.set_learning_rate(RATE * DECAY**iteration)
@@ -68,7 +71,7 @@ def main():
     scene = mitsuba_render.build(attach)
     dr.set_thread_count(2)
     sensor = next(i for i, s in enumerate(scene.sensors()) if tuple(s.film().size()) == (1, 1))
-    # A lamp that shines on both sides is two.
+    # A lamp that shines on both sides consists of two emitters.
     keys = [k for k in mi.traverse(scene).keys() if k.endswith("emitter.radiance.value")]
     start = np.array(mi.traverse(scene)[keys[0]]).ravel()
     target = measure(scene, sensor, 16) * TRUTH

@@ -1,8 +1,8 @@
 """Renders a GLB with Mitsuba 3: mitsuba_render.py VARIANT SCENE.glb WIDTH HEIGHT OUT
 
-Prints a line of JSON when ready. Then each line "SPP SEED" of standard input makes an image, written to OUT (rows of
-linear RGB, 32-bit floats), and is answered by a line of JSON: spp, seed, seconds. The first render of each number of
-samples is preceded by one that compiles its kernels and is not counted.
+Prints a line of JSON when it is ready. For each line "SPP SEED" of standard input it then renders an image, writes it
+to OUT (rows of linear RGB, 32-bit floats) and prints a line of JSON: spp, seed, seconds. Before the first render with a
+number of samples, it renders once without timing, to compile the kernels.
 """
 
 import functools
@@ -24,12 +24,12 @@ import drjit as dr
 
 from glb import Glb
 
-# Paths traced at once: bounds the memory of the vectorised back ends.
+# Maximum number of paths traced at once; it limits the memory of the vectorised back ends.
 WAVEFRONT = 1 << 22
 
 
 def bitmap(glb, reference):
-    """The image of a texture in linear light."""
+    """Returns the image of a texture with linear values."""
     path = f"{out}.texture.png"
     with open(path, "wb") as file:
         file.write(glb.image(reference["index"]).read())
@@ -37,12 +37,12 @@ def bitmap(glb, reference):
 
 
 def coat_albedo(ior, alpha):
-    """What a rough interface reflects of light from everywhere: GGX with Smith's masking and Schlick's Fresnel."""
+    """Returns the hemispherical albedo of a rough interface: GGX with Smith masking and Schlick's Fresnel term."""
     f0 = ((ior - 1) / (ior + 1)) ** 2
     random = np.random.default_rng(1)
     u, v, a, b = random.random((4, 1 << 16))
     wo = np.stack([np.sqrt(u), 0 * u, np.sqrt(1 - u)])
-    # Facets by their projected area, and the reflection about them.
+    # Sample microfacet normals in proportion to their projected area, and reflect the direction about them.
     z = np.sqrt((1 - a) / (1 + (alpha * alpha - 1) * a))
     r, angle = np.sqrt(1 - z * z), 2 * np.pi * b
     h = np.stack([r * np.cos(angle), r * np.sin(angle), z])
@@ -56,7 +56,8 @@ def coat_albedo(ior, alpha):
 
 
 def scaled(base, gain, offset=0):
-    """gain * base + offset, of a colour or an image; as an image, since colours above 1 are refused."""
+    """Returns gain * base + offset for a colour or an image. The result is an image, because Mitsuba refuses colours
+    above 1."""
     texels = np.array(base["bitmap"] if base["type"] == "bitmap" else [[base["value"]]], np.float32)
     return {"type": "bitmap", "bitmap": mi.Bitmap(texels * np.float32(gain) + np.float32(offset)), "raw": True}
 
@@ -70,7 +71,8 @@ def coated(ior, alpha, base):
 
 @functools.cache
 def coated_albedo(ior, alpha):
-    """What Mitsuba's coated white spreads of light from everywhere, without what the coat reflects."""
+    """Returns the hemispherical albedo of a white diffuse surface under Mitsuba's coat, without the coat's
+    reflection."""
     random = np.random.default_rng(1).random((5, 1 << 16))
     context = mi.BSDFContext()
     albedos = []
@@ -85,13 +87,13 @@ def coated_albedo(ior, alpha):
 
 
 def bsdf(glb, material):
-    """Metallic-roughness out of Mitsuba's own parts.
+    """Builds a metallic-roughness material from Mitsuba's BSDFs.
 
-    Its `principled` is another model: the diffuse part sends light back towards where it came from, and nothing is taken
-    from it for what the coat reflects. glTF's dielectric is `roughplastic`, whose diffuse part gets what the coat leaves
-    on both ways; as it loses more the rougher it is (9 % at an alpha of 0.1), its base is made brighter by that. At full
-    roughness the coat is hardly to be told from the diffuse part: there it is `diffuse` with the albedo of both. Metals
-    are conductors that reflect the base colour.
+    Mitsuba's `principled` is another model: its diffuse part is retro-reflective and does not lose the light that the
+    coat reflects. glTF's dielectric is `roughplastic`, whose coat attenuates the light of the diffuse part on its way
+    in and out. `roughplastic` loses more energy the rougher it is (9 % at an alpha of 0.1), so the base colour is
+    brightened by as much. At full roughness the coat looks almost like a diffuse surface, and the material is
+    `diffuse` with the albedo of both. Metals are conductors that reflect the base colour.
     """
     pbr = material.get("pbrMetallicRoughness", {})
     color = pbr.get("baseColorFactor", [1, 1, 1, 1])
@@ -109,7 +111,8 @@ def bsdf(glb, material):
         dielectric = {"type": "diffuse", "reflectance": scaled(base, 1 - coat, coat)}
     else:
         dielectric = coated(ior, alpha, scaled(base, (1 - coat_albedo(ior, alpha)) / coated_albedo(ior, alpha)))
-    # A mirror of index n and absorption k that reflects the base colour along the normal (Gulbrandsen 2014).
+    # Compute the index of refraction n and the absorption k of a conductor whose reflectance at normal incidence is the
+    # base colour (Gulbrandsen 2014).
     f0 = np.clip(np.array(color[:3]), 0, 0.999)
     n = (1 - f0) / (1 + f0)
     k = np.sqrt(np.maximum(f0 * (n + 1) ** 2 - (n - 1) ** 2, 0) / (1 - f0))
@@ -128,7 +131,7 @@ def bsdf(glb, material):
 
 
 def emitter(glb, material):
-    """Emission of a material, or None."""
+    """Returns the emitter of a material, or None."""
     strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
     radiance = [strength * e for e in material.get("emissiveFactor", [0, 0, 0])]
     if max(radiance) == 0:
@@ -142,7 +145,8 @@ def emitter(glb, material):
 
 
 def both_sides(glb):
-    """The primitives; of lamps that shine on both sides a second one behind the first, as Mitsuba's shine on one."""
+    """Yields the primitives. A lamp that shines on both sides gets a second, reversed primitive, because emitters of
+    Mitsuba shine on one side."""
     for index, positions, normals, uvs, triangles in glb.primitives():
         yield index, positions, normals, uvs, triangles
         material = glb.json["materials"][index]
@@ -155,7 +159,7 @@ def both_sides(glb):
 
 
 def build(attach=lambda index, properties: None):
-    """The scene; `attach` may give the mesh of a material more properties."""
+    """Builds the scene; `attach` may add properties to the mesh of a material."""
     glb = Glb(scene_path)
     position, forward, up, fov = glb.camera()
     scene = {
@@ -175,7 +179,7 @@ def build(attach=lambda index, properties: None):
         properties = mi.Properties()
         properties["mesh_bsdf"] = mi.load_dict(bsdf(glb, material))
         light = emitter(glb, material)
-        # Mitsuba's meshes have one set: that of the emission, where there is any.
+        # Mitsuba's meshes have one set of texture coordinates; use the set of the emissive texture if there is one.
         uvs = uvs[material.get("emissiveTexture", {}).get("texCoord", 0)]
         if light is not None:
             properties["mesh_emitter"] = light

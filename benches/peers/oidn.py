@@ -1,6 +1,8 @@
-"""Open Image Denoise on request: a line "<input> <output> <width> <height>" names a file with the picture, its albedo
-and its normals (three images of linear RGB, 32-bit floats) and the file for the result; the answer is a line of JSON:
-seconds of processor time."""
+"""Filters pictures with Open Image Denoise: reads lines "INPUT OUTPUT WIDTH HEIGHT".
+
+INPUT is a file with the picture, its albedo and its normals (three images of linear RGB, 32-bit floats); the result is
+written to OUTPUT. Prints a line of JSON for each: the seconds of processor time.
+"""
 
 import json
 import sys

@@ -1,6 +1,7 @@
-"""Normals with Open3D: reads lines `POINTS NORMALS K`, two files of float32 triples and a number of neighbours.
+"""Estimates normals with Open3D: reads lines `POINTS NORMALS K`.
 
-Answers each with a line of JSON: the seconds that `estimate_normals` took, of which building its tree is part.
+POINTS is a file of float32 triples, K the number of neighbours; the normals are written to NORMALS, as float32 triples.
+Prints a line of JSON for each: the seconds that `estimate_normals` took, including the construction of its tree.
 """
 
 import json

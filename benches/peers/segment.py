@@ -1,8 +1,10 @@
-"""Masks from strokes with OpenCV's grabCut, and scikit-learn's random forest and RBF support vector machine.
+"""Computes masks from strokes with OpenCV's grabCut, and with scikit-learn's random forest and RBF support vector
+machine.
 
-Reads lines of JSON: {"method", "features" or "photo", "width", "height", "channels", "use", "strokes", "within", "out"}. Files
-hold float32 features, 8-bit BGR, and bytes for strokes (0 none, 1 negative, 2 positive) and masks. Answers each with the seconds
-that training and inference took. Like ours, the classifiers draw at most 1000 samples per class.
+Reads lines of JSON: {"method", "features" or "photo", "width", "height", "channels", "use", "strokes", "within",
+"out"}. Files hold float32 features, 8-bit BGR, and bytes for strokes (0 none, 1 negative, 2 positive) and masks. Prints
+a line of JSON for each: the seconds that training and inference took. Like ours, the classifiers draw at most 1000
+samples per class.
 """
 
 import json

@@ -1,8 +1,8 @@
-"""Perspective warps with OpenCV: reads lines of JSON, {"image", "width", "height", "map", "out_width", "out_height",
-"interpolation", "out"}.
+"""Warps images by homographies with OpenCV: reads lines of JSON, {"image", "width", "height", "map", "out_width",
+"out_height", "interpolation", "out"}.
 
-Files hold float32 RGB; `map` leads from pixels of the result to those of the image, row by row, pixel centres at whole
-coordinates. Answers each with the seconds that the warp took, on the wall and of processor time.
+Files hold float32 RGB. `map` is the homography from pixels of the result to pixels of the image, row by row; pixel
+centres have integer coordinates. Prints a line of JSON for each: the wall-clock and the processor seconds of the warp.
 """
 
 import json

@@ -72,7 +72,7 @@ pub fn tune_without_strokes(words: &[String]) {
         }
         tally.lines.push(line);
     }
-    sheets.finish();
+    sheets.save_last_rows();
     tally.table("Generated photos without strokes; × is the factor from the true lamps to the texture's");
     tally.by_pattern();
 }
@@ -99,7 +99,7 @@ fn run(section: &str, first: u64, count: usize) -> (Tally, Tally) {
         photo.strokes = strokes::parse(&made.ten, photo.image.width, photo.image.height).expect("strokes");
         ten.lines.push(Line::of(photo, &Outcome::masks(photo)));
     }
-    sheets.finish();
+    sheets.save_last_rows();
     tally.table("Generated photos by strokes; × is the factor from the true lamps to the texture's");
     tally.by_pattern();
     tally.distances(section);

@@ -61,7 +61,7 @@ fn rows(letter: char) -> u32 {
     }
 }
 
-/// Writes a text on a dark ground. `at` is the top left corner in pixels, and each dot is a square of `dot` pixels.
+/// Writes a text on a dark background. `at` is the top left corner in pixels, and each dot is a square of `dot` pixels.
 pub fn write(image: &mut Image, text: &str, at: [usize; 2], dot: usize, ink: Vec3) {
     let advance = (WIDTH + 1) * dot;
     let size = [text.chars().count() * advance + dot, (HEIGHT + 2) * dot];

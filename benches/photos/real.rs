@@ -64,7 +64,7 @@ fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool, prepare: f
             Err(reason) => println!("# {} is absent: {reason}", source.name),
         }
     }
-    sheets.finish();
+    sheets.save_last_rows();
     tally.table("Real photos; × is the factor from the true lamps to the texture's");
     Some(tally)
 }

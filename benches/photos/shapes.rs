@@ -118,8 +118,8 @@ impl Lamps {
         kinds.collect()
     }
 
-    /// Joins the lamps that lie side by side with at most `bar` between them: panes with bars of this width between them
-    /// are one window.
+    /// Joins lamps that lie side by side, at most `bar` apart: panes with bars of this width between them are one
+    /// window.
     pub fn joined(&self, bar: f64) -> Self {
         if bar <= 0.0 {
             return self.clone();
@@ -146,8 +146,8 @@ impl Lamps {
         Self { whole: whole.collect(), ..self.clone() }
     }
 
-    /// Lamps that were listed by hand: a window of several panes is one of them. The bars between panes have at most the
-    /// share [`MAX_BAR`] of the lamps' shorter side, and half of the width of any gap between two lamps.
+    /// For lamps listed by hand, where a window of several panes is one lamp: sets the width of the bars between panes.
+    /// It is at most [`MAX_BAR`] times the lamps' shorter side and at most half of the narrowest gap between two lamps.
     pub fn with_bars(self) -> Self {
         let pairs = self.whole.iter().enumerate().flat_map(|(i, a)| self.whole[..i].iter().filter_map(|b| a.gap(b)));
         let side = median(self.whole.iter().map(|s| s.sides.y)).unwrap_or(0.0);

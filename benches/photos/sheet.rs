@@ -43,10 +43,10 @@ impl Sheets {
     pub fn add(&mut self, photo: &Photo, outcome: &Outcome, caption: &str) {
         let results = outcome.results();
         let mut panels = vec![strokes(photo), masks(photo, outcome)];
-        panels.push(results.unwarped.as_ref().map_or_else(blank, |unwarped| unwarped.image.clone()));
-        panels.push(results.emission.as_ref().map_or_else(blank, |emission| emission.texture.clone()));
-        panels.push(results.film.as_ref().map_or_else(blank, |film| scaled(&film.beauty, EXPOSURE)));
-        let mut row = ground(WIDTHS.iter().sum::<usize>() + GAP * WIDTHS.len(), HEIGHT + GAP);
+        panels.push(results.unwarped.as_ref().map_or_else(empty_panel, |unwarped| unwarped.image.clone()));
+        panels.push(results.emission.as_ref().map_or_else(empty_panel, |emission| emission.texture.clone()));
+        panels.push(results.film.as_ref().map_or_else(empty_panel, |film| scaled(&film.beauty, EXPOSURE)));
+        let mut row = blank(WIDTHS.iter().sum::<usize>() + GAP * WIDTHS.len(), HEIGHT + GAP);
         for (panel, what) in panels.iter().zip(PANELS).filter(|_| self.keeps_panels) {
             save(panel, &format!("{}_{}_{what}", self.name, photo.name));
         }
@@ -63,7 +63,7 @@ impl Sheets {
     }
 
     /// Saves the rows that are left.
-    pub fn finish(mut self) {
+    pub fn save_last_rows(mut self) {
         if !self.rows.is_empty() {
             self.write();
         }
@@ -71,7 +71,7 @@ impl Sheets {
 
     fn write(&mut self) {
         let rows = std::mem::take(&mut self.rows);
-        let mut sheet = ground(rows[0].width, rows.iter().map(|row| row.height).sum());
+        let mut sheet = blank(rows[0].width, rows.iter().map(|row| row.height).sum());
         let mut top = 0;
         for row in &rows {
             paste(&mut sheet, row, [0, top]);
@@ -133,11 +133,11 @@ fn masks(photo: &Photo, outcome: &Outcome) -> Image {
     image
 }
 
-fn blank() -> Image {
-    ground(64, 64)
+fn empty_panel() -> Image {
+    blank(64, 64)
 }
 
-fn ground(width: usize, height: usize) -> Image {
+fn blank(width: usize, height: usize) -> Image {
     Image::from_fn(width, height, |_, _| GROUND.to_array()).expect("an image")
 }
 

@@ -16,8 +16,8 @@
 // - Structs XParams are the C structs luxfer_X_params, filled with the defaults.
 // - A pointer and a count in C are a Span; text that C copies into a buffer is a std::string; NULL for "none" is an
 //   empty object.
-// - Failures are exceptions: luxfer::Error, with a status and the library's message. If LUXFER_NO_EXCEPTIONS is defined,
-//   functions return luxfer::Result<T> instead, which holds a T or an Error; see luxfer/result.hpp.
+// - Failures are exceptions: luxfer::Error, with a status and the library's message. If LUXFER_NO_EXCEPTIONS is
+//   defined, functions return luxfer::Result<T> instead, which holds a T or an Error; see luxfer/result.hpp.
 // - Progress functions may throw: this cancels the job, and wait() rethrows the exception.
 //
 // The wrapper is header only: a method calls the C function and reads the message if that fails. An object holds two

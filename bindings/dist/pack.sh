@@ -3,7 +3,8 @@
 #
 #   pack.sh TARGET    see targets.sh; writes into out/dist
 #
-#   luxfer-VERSION-TARGET.tar.gz (.zip)   library without debug symbols, headers, CMake package, luxfer.pc, licences, SBOM
+#   luxfer-VERSION-TARGET.tar.gz (.zip)   the library without debug symbols, headers, CMake package, luxfer.pc,
+#                                         licences, SBOM
 #   luxfer-VERSION-TARGET-debug.tar.gz    the debug symbols: unpack it over the archive, where debuggers find them
 #   luxfer-VERSION-py3-none-*.whl         the Python package with the library inside
 set -eu

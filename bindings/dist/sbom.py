@@ -27,7 +27,7 @@ def metadata(triple: str) -> dict:
 
 
 def named_by_tree(triple: str) -> set[tuple[str, str]]:
-    """Names and versions of the crates that are linked. Only `cargo tree` chooses features as a build without tests does."""
+    """Names and versions of the linked crates. Only `cargo tree` chooses features as a build without tests does."""
     command = [CARGO, "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}", "--target", triple]
     tree = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return set(re.findall(r"^(\S+) v(\S+)", tree, re.M))

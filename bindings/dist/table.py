@@ -1,6 +1,7 @@
-"""Writes the table of docs/guide/platforms.md from what `make dist-check` has found (out/dist/check/*.txt), and prints it.
+"""Writes the table of docs/guide/platforms.md from the results of `make dist-check` (out/dist/check/*.txt), and prints
+it.
 
-A target that has not been checked since the folder was made keeps its row.
+A target without results there keeps its row.
 """
 
 from __future__ import annotations

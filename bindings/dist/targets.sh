@@ -8,7 +8,7 @@
 #   emulator      the command that runs its programs here; empty: none is needed
 root="$(cd "$(dirname "$0")/../.." && pwd)"
 version="$(sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' "$root/Cargo.toml")"
-# The oldest C library of GNU on which the Linux libraries run: that of manylinux2014, and the oldest that Rust supports.
+# The oldest glibc on which the Linux libraries run: the one of manylinux2014, and the oldest that Rust supports.
 glibc=2.17
 emulator="" archive=tar.gz library=libluxfer.so
 case "$target" in

@@ -1,5 +1,5 @@
-//! Bytes as calls to the C ABI, with right handles and wrong ones. Every call must give one of its statuses, and every handle
-//! asked for after success; what address sanitizer sees, and panics, are for libFuzzer.
+//! Decodes bytes into calls of the C ABI, with valid and invalid handles. A call must return a status that calls may
+//! return, and write its handle if and only if it succeeds. libFuzzer reports panics and what AddressSanitizer finds.
 
 use crate::check;
 use std::collections::BTreeMap;
@@ -9,14 +9,15 @@ use std::time::Duration;
 
 include!(concat!(env!("OUT_DIR"), "/table.rs"));
 
-/// Bytes behind every pointer, zeros or what the input repeats: more than any call that is not a lie needs.
+/// Size in bytes of the memory behind every pointer: zeros, or the input's bytes repeated. It is larger than any call
+/// with truthful sizes needs.
 const ROOM: usize = 1 << 16;
-/// Calls of one input.
-const MOST_CALLS: usize = 100;
-/// Times that work takes longer.
+/// Maximum number of calls that one input makes.
+const MAX_CALLS: usize = 100;
+/// Factor by which work takes longer under Miri.
 const SLOWER: u64 = if cfg!(miri) { 200 } else { 1 };
 
-/// A struct that tells its size, and what its members are.
+/// A struct that begins with its size (`struct_size`), and its members with their offsets.
 struct Record {
     size: usize,
     init: Option<fn(*mut u8) -> luxfer_status>,
@@ -24,27 +25,29 @@ struct Record {
 }
 
 enum Member {
-    /// So many bytes, and below what number they have to stay, if not 0.
+    /// Size of the number in bytes, and its exclusive upper bound; 0 if it has none.
     Number(usize, u64),
     Text,
     Memory,
     Record(&'static Record),
 }
 
-/// What is left of the input, and the memory and handles of its calls.
+/// Decodes the arguments of calls: the remaining input, and the memory and handles of the calls so far.
 struct Arguments<'a> {
     input: &'a [u8],
     memory: Vec<Box<[u64]>>,
     texts: Vec<CString>,
-    /// One for each reference, by kind.
+    /// The handles by kind; a handle occurs once for each of its references.
     handles: BTreeMap<&'static str, Vec<*mut u8>>,
-    /// Where the call under way puts its handles, and the references that are its own if it succeeds.
+    /// `places`: where the current call writes the handles that it creates, with their kinds. `retained`: the handle
+    /// that the current call retains. Both are added to `handles` if the call succeeds.
     places: Vec<(&'static str, *mut u64)>,
     retained: Option<(&'static str, *mut u8)>,
+    /// Remaining time for waits.
     patience: Duration,
 }
 
-/// Calls what the bytes say, and releases everything.
+/// Decodes the bytes into calls, makes these calls, and releases all handles.
 pub fn calls(input: &[u8]) {
     let mut a = Arguments {
         input,
@@ -55,7 +58,7 @@ pub fn calls(input: &[u8]) {
         retained: None,
         patience: Duration::from_millis(200 * SLOWER),
     };
-    for _ in 0..MOST_CALLS {
+    for _ in 0..MAX_CALLS {
         if a.input.len() < 2 {
             break;
         }
@@ -73,31 +76,32 @@ impl Arguments<'_> {
         bytes
     }
 
-    /// A number of the parameter's type; zeros where the input has ended.
+    /// Reads a number of the parameter's type; bytes after the end of the input are 0.
     fn number<T: Copy>(&mut self) -> T {
         let mut room = [0u64; 2];
         let bytes = self.bytes(size_of::<T>());
-        // SAFETY: all parameters that are no pointers are plain numbers of at most 8 bytes.
+        // SAFETY: every parameter that is not a pointer is a plain number of at most 8 bytes.
         unsafe {
             std::ptr::copy_nonoverlapping(bytes.as_ptr(), room.as_mut_ptr().cast(), bytes.len());
             room.as_ptr().cast::<T>().read()
         }
     }
 
-    /// A count of what memory there is, or one that no memory can hold.
+    /// Reads a count below `limit`, for which the memory suffices, or one with the highest bit set, which no memory
+    /// can hold.
     fn below<T: TryFrom<u64>>(&mut self, limit: u64) -> T {
         let number = if size_of::<T>() == 8 { self.number() } else { u64::from(self.number::<u32>()) };
         T::try_from(if number >> 63 == 1 { number } else { number % limit }).ok().expect("it fits")
     }
 
-    /// Milliseconds to wait for a job: few.
+    /// Reads the milliseconds to wait for a job: at most 100, and at most the remaining time for waits.
     fn patience(&mut self) -> i32 {
         let time = Duration::from_millis(SLOWER * u64::from(self.number::<u32>().min(100))).min(self.patience);
         self.patience -= time;
         time.as_millis() as i32
     }
 
-    /// A pointer that is not a handle, for these bytes.
+    /// Returns a pointer that is not a handle if `byte` stands for one: NULL, memory of zeros, or an odd address.
     fn stranger(&mut self, byte: u8) -> Option<*mut u8> {
         match byte {
             250 => Some(std::ptr::null_mut()),
@@ -107,7 +111,7 @@ impl Arguments<'_> {
         }
     }
 
-    /// A handle of this kind or of another, NULL, or a pointer that is not a handle.
+    /// Reads a handle of this kind or of another kind, NULL, or a pointer that is not a handle.
     fn handle(&mut self, kind: &'static str) -> *mut u8 {
         let byte = self.number::<u8>();
         if let Some(stranger) = self.stranger(byte) {
@@ -121,7 +125,7 @@ impl Arguments<'_> {
         }
     }
 
-    /// The place of a handle of any kind, or else a pointer that is not a handle.
+    /// Reads the kind and the index of a handle; `Err` holds a pointer that is not a handle.
     fn pick(&mut self) -> Result<(&'static str, usize), *mut u8> {
         let byte = self.number::<u8>();
         if let Some(stranger) = self.stranger(byte) {
@@ -131,16 +135,19 @@ impl Arguments<'_> {
         all().nth(usize::from(byte) % all().count().max(1)).ok_or(std::ptr::null_mut())
     }
 
+    /// Reads a handle of any kind.
     fn any(&mut self) -> *mut u8 {
         self.pick().map_or_else(|stranger| stranger, |(kind, place)| self.handles[kind][place])
     }
 
+    /// Reads the argument of `luxfer_retain`.
     fn retained(&mut self) -> *mut u8 {
         let picked = self.pick().map(|(kind, place)| (kind, self.handles[kind][place]));
         self.retained = picked.ok();
         picked.map_or_else(|stranger| stranger, |(_, handle)| handle)
     }
 
+    /// Reads the argument of `luxfer_release`, and removes the reference from `handles`.
     fn given_back(&mut self) -> *mut u8 {
         match self.pick() {
             Ok((kind, place)) => self.handles.get_mut(kind).expect("it was picked").remove(place),
@@ -148,16 +155,17 @@ impl Arguments<'_> {
         }
     }
 
+    /// Returns where a call writes the handle that it creates.
     fn made(&mut self, kind: &'static str) -> *mut u64 {
         let place = self.room();
         self.places.push((kind, place));
         place
     }
 
-    /// After a call: whose its handles are.
+    /// Ends a call: checks that it has written its handles if and only if it succeeded, and adds them to `handles`.
     fn settle(&mut self, name: &str, succeeded: bool) {
         for (kind, place) in std::mem::take(&mut self.places) {
-            // SAFETY: the place is in memory that is kept.
+            // SAFETY: the place lies in `memory`, which lives as long as `self`.
             let handle = unsafe { *place } as *mut u8;
             assert_eq!(succeeded, !handle.is_null(), "{name}: its handle and its status");
             if succeeded {
@@ -169,12 +177,13 @@ impl Arguments<'_> {
         }
     }
 
+    /// Allocates `ROOM` bytes of zeros.
     fn room(&mut self) -> *mut u64 {
         self.memory.push(vec![0; ROOM / 8].into());
         self.memory.last_mut().expect("just pushed").as_mut_ptr()
     }
 
-    /// Memory that repeats the bytes of the input; or none.
+    /// Reads a length and as many bytes, and returns memory in which these bytes repeat; NULL for the largest length.
     fn memory(&mut self) -> *mut c_void {
         let length = self.number::<u16>();
         if length == u16::MAX {
@@ -183,7 +192,7 @@ impl Arguments<'_> {
         let content = self.bytes(length.into()).to_vec();
         let room = self.room().cast::<u8>();
         if !content.is_empty() {
-            // SAFETY: the memory is ours, and so long.
+            // SAFETY: `room` has just allocated these bytes.
             let room = unsafe { std::slice::from_raw_parts_mut(room, ROOM) };
             for piece in room.chunks_mut(content.len()) {
                 piece.copy_from_slice(&content[..piece.len()]);
@@ -207,6 +216,7 @@ impl Arguments<'_> {
         if byte == u8::MAX { std::ptr::null() } else { PATHS[usize::from(byte) % PATHS.len()].as_ptr() }
     }
 
+    /// Reads a struct: NULL, or zeros or default values, with some members replaced by values from the input.
     fn record(&mut self, record: &'static Record) -> *mut u8 {
         let base = self.number::<u8>() % 3;
         if base == 0 {
@@ -218,7 +228,7 @@ impl Arguments<'_> {
             (2, Some(init)) => {
                 init(place);
             }
-            // SAFETY: the memory is ours and longer than any struct; the first member is its size.
+            // SAFETY: the allocated memory is longer than any struct, and the first member of a struct is its size.
             _ => unsafe { place.cast::<u32>().write(record.size as u32) },
         }
         for _ in 0..self.number::<u8>() % 32 {
@@ -267,11 +277,11 @@ impl Arguments<'_> {
         [None, Some(succeed as _), Some(fail as _)][usize::from(self.number::<u8>() % 3)]
     }
 
-    /// Releases every handle that is left; all of these calls must succeed.
+    /// Releases all remaining handles; each of these calls must succeed.
     fn release(&mut self) {
         for (kind, handles) in std::mem::take(&mut self.handles) {
             for handle in handles {
-                // SAFETY: a live handle with a reference of ours.
+                // SAFETY: the handle is alive, because this reference to it has not been released.
                 let status = unsafe { luxfer_release(handle.cast()) };
                 assert!(check("luxfer_release", status), "luxfer_release of a live {kind}");
             }

@@ -1,6 +1,8 @@
-//! What each target does with its bytes: the public C ABI and nothing else, as a host uses it. What loads is used.
+//! The functions of the fuzz targets. They call only the public C ABI, as a host does. What they load,
+//! they also use.
 //!
-//! A status that says "a defect" fails, and so does every panic, also where the library would catch it: libFuzzer ends the process.
+//! A target fails if a call returns LUXFER_INTERNAL or LUXFER_UNKNOWN, or if anything panics: libFuzzer ends the
+//! process even where the library would catch the panic.
 
 mod calls;
 
@@ -14,17 +16,19 @@ use std::os::fd::AsRawFd;
 use std::ptr::{null, null_mut};
 use std::sync::LazyLock;
 
-/// For pixels, meshes and textures of an input, in MiB; tests/fuzz.sh allows single allocations of twice that.
+/// Memory budget of the context, for pixels, meshes and textures of an input, in MiB. tests/fuzz.sh allows single
+/// allocations of twice this size.
 const BUDGET: u64 = 64;
 
-/// Whether a call succeeded; fails if it gave a status that no call may give.
+/// Returns whether a call succeeded. Panics if it returned a status that no call may return.
 fn check(name: &str, status: luxfer_status) -> bool {
     let is_known = (LUXFER_OK..=LUXFER_UNREACHABLE).contains(&status);
     assert!(is_known && status != LUXFER_INTERNAL && status != LUXFER_UNKNOWN, "{name} returned {status}");
     status == LUXFER_OK
 }
 
-/// Makes something with a function that puts its handle where its last argument says.
+/// Creates an object by `make`, which writes the handle to its argument. Panics unless the handle is non-null exactly
+/// if the call succeeds.
 fn made<T>(name: &str, make: impl FnOnce(*mut *mut T) -> luxfer_status) -> Option<*mut T> {
     let mut thing = null_mut();
     let succeeded = check(name, make(&mut thing));
@@ -34,21 +38,21 @@ fn made<T>(name: &str, make: impl FnOnce(*mut *mut T) -> luxfer_status) -> Optio
 
 /// A handle that all inputs share; any thread may use it.
 struct Shared<T>(*mut T);
-// SAFETY: so says the header.
+// SAFETY: the header allows handles to be used on any thread.
 unsafe impl<T> Send for Shared<T> {}
 unsafe impl<T> Sync for Shared<T> {}
 
-/// A context of one thread: what one input leaves behind, later ones see.
+/// The context of all inputs, with one thread. It is shared so that an input can reveal damage done by an earlier one.
 fn context() -> *mut luxfer_context {
     static CONTEXT: LazyLock<Shared<luxfer_context>> = LazyLock::new(|| {
         let params = luxfer_context_params { struct_size: 16, num_threads: 1, memory_budget_mib: BUDGET };
-        // SAFETY: of every call here, and below: all pointers are to live memory of ours, or handles of the library.
+        // SAFETY (here and in all calls below): every pointer is to live memory of this program or a valid handle.
         Shared(made("luxfer_context_create", |out| unsafe { luxfer_context_create(&params, out) }).expect("a context"))
     });
     CONTEXT.0
 }
 
-/// A scene to render, as seeds.py has it.
+/// The scene to render; seeds.py uses the same one.
 fn demo() -> *mut luxfer_scene {
     static SCENE: LazyLock<Shared<luxfer_scene>> = LazyLock::new(|| {
         let make = |out| unsafe { luxfer_demo_create_scene(context(), LUXFER_DEMO_SPHERE_ON_TABLE, out) };
@@ -57,17 +61,17 @@ fn demo() -> *mut luxfer_scene {
     SCENE.0
 }
 
-/// Hands the bytes over as a file on the disk, for functions that take a path.
+/// Writes the bytes to a file and calls `work` with its path.
 fn as_file<R>(data: &[u8], work: impl FnOnce(*const c_char) -> R) -> R {
     let path = std::env::temp_dir().join(format!("luxfer-fuzz-{}", std::process::id()));
     let mut file = File::create(&path).expect("a file");
-    // Gone however the process ends; it is reached by its descriptor.
+    // Remove the file's name at once, so that no file is left however the process ends. /proc still leads to it.
     std::fs::remove_file(&path).expect("just made");
     file.write_all(data).and_then(|()| file.rewind()).expect("room on the disk");
     work(CString::new(format!("/proc/self/fd/{}", file.as_raw_fd())).expect("no zero in it").as_ptr())
 }
 
-/// An image in any format.
+/// Loads an image in any format.
 pub fn image(data: &[u8]) {
     let load =
         |out| unsafe { luxfer_image_load_memory(context(), data.as_ptr().cast(), data.len(), LUXFER_COLOUR_SRGB, out) };
@@ -76,12 +80,13 @@ pub fn image(data: &[u8]) {
     }
 }
 
-/// A scene: loaded, traced, asked what it needs, written again.
+/// Loads a scene, traces rays in it, computes its requirements, and exports it.
 pub fn scene(data: &[u8]) {
     extern "C" fn take(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
         0
     }
-    let load = |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), null(), out) };
+    let load =
+        |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), null(), out) };
     let Some(scene) = made("luxfer_scene_load_memory", load) else { return };
     let rays = [[0.0, -1.0, 0.1], [0.1, 0.0, -1.0]].map(|direction| luxfer_ray {
         origin: [0.01, 0.5, 0.02],
@@ -92,13 +97,16 @@ pub fn scene(data: &[u8]) {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
         check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
         let mut needs: luxfer_requirements = std::mem::zeroed();
-        check("luxfer_scene_get_requirements", luxfer_scene_get_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
+        check(
+            "luxfer_scene_get_requirements",
+            luxfer_scene_get_requirements(scene, 0.01, &mut needs, size_of_val(&needs)),
+        );
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));
         luxfer_release(scene.cast());
     }
 }
 
-/// The light of a luminaire, in a LUXFER_DISTRIBUTION_ format.
+/// Loads the light distribution of a luminaire; `format` is a LUXFER_DISTRIBUTION_ constant.
 pub fn distribution(data: &[u8], format: luxfer_distribution_format) {
     let load =
         |out| unsafe { luxfer_distribution_load_memory(context(), data.as_ptr().cast(), data.len(), format, out) };
@@ -110,7 +118,7 @@ pub fn distribution(data: &[u8], format: luxfer_distribution_format) {
     }
 }
 
-/// A neural network, run on a small photo for a while.
+/// Loads a neural network and runs it on a small photo for at most a second.
 pub fn network(data: &[u8]) {
     unsafe {
         let stage = made("luxfer_features_create", |out| luxfer_features_create(context(), out)).expect("a stage");
@@ -125,7 +133,7 @@ pub fn network(data: &[u8]) {
     }
 }
 
-/// A light path expression, and a small rendering by it.
+/// Parses a light path expression and renders a small layer with it.
 pub fn expression(data: &[u8]) {
     let Ok(text) = CString::new(data) else { return };
     unsafe {
@@ -139,17 +147,18 @@ pub fn expression(data: &[u8]) {
     }
 }
 
-/// Strokes as a text.
+/// Parses strokes from a text.
 pub fn strokes(data: &[u8]) {
     let Ok(text) = CString::new(data) else { return };
     unsafe {
-        let strokes = made("luxfer_strokes_create", |out| luxfer_strokes_create(context(), 48, 32, out)).expect("strokes");
+        let strokes =
+            made("luxfer_strokes_create", |out| luxfer_strokes_create(context(), 48, 32, out)).expect("strokes");
         check("luxfer_strokes_add_text", luxfer_strokes_add_text(strokes, text.as_ptr()));
         luxfer_release(strokes.cast());
     }
 }
 
-/// The whole of a small rendering as its only part.
+/// Merges a rendering from a file that claims to be its only part.
 pub fn part(data: &[u8]) {
     unsafe {
         let stage = made("luxfer_render_create", |out| luxfer_render_create(context(), out)).expect("a stage");
@@ -163,7 +172,7 @@ pub fn part(data: &[u8]) {
     }
 }
 
-/// Waits for a job for a second, then lets go of it; how it ended must be a status.
+/// Waits for a job for at most a second, checks the status, and releases the job.
 unsafe fn wait(job: Option<*mut luxfer_job>) {
     if let Some(job) = job {
         unsafe {
@@ -173,7 +182,7 @@ unsafe fn wait(job: Option<*mut luxfer_job>) {
     }
 }
 
-/// As seeds.py has it.
+/// Settings of a small rendering; seeds.py uses the same ones.
 fn small() -> luxfer_render_params {
     unsafe {
         let mut params: luxfer_render_params = std::mem::zeroed();

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Version
  *
  * The macros give the version of this header; the functions give the version of the loaded library. Before 1.0,
@@ -25,7 +25,7 @@ extern "C" {
  * luxfer_get_version() / 100 == LUXFER_VERSION / 100. From 1.0 on it should check that both versions are equal when
  * divided by 10000 and that the library is not older than the header. luxfer::Context::create of bindings/cpp makes
  * this check.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The version of this header. */
 #define LUXFER_VERSION_MAJOR 0
@@ -44,13 +44,13 @@ uint32_t luxfer_get_version(void);
  */
 const char *luxfer_get_version_string(void);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Status
  *
  * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
  * A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
  * words.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The result of a call: LUXFER_OK, or the reason for the failure. */
 typedef int32_t luxfer_status;
@@ -106,13 +106,13 @@ typedef int32_t luxfer_status;
  */
 const char *luxfer_status_get_name(luxfer_status status);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Settings
  *
  * Every struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call
  * the inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose
  * argument the compiler checks; programs in other languages call luxfer_init.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The type of a struct of settings: a LUXFER_STRUCT_ value. */
 typedef int32_t luxfer_struct_type;
@@ -215,7 +215,7 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
                           void *place,
                           size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Context
  *
  * A context owns the worker threads, a memory budget and the error messages. All other objects are created in a
@@ -248,7 +248,7 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
  * Reproducibility: on one machine, equal inputs, parameters and seeds give results that are equal to the bit, for any
  * number of threads and any floating-point mode (rounding, flush to zero) of the host. A call sets the standard mode
  * on entry and restores the mode of the host on return. Callbacks run in the standard mode.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A context: threads, memory budget and error messages. See luxfer_context_create. */
 typedef struct luxfer_context luxfer_context;
@@ -299,12 +299,12 @@ luxfer_status luxfer_context_get_last_error(luxfer_context *context,
                                             size_t capacity,
                                             size_t *needed);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * References
  *
  * Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
  * luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Adds a reference to an object of any kind. Any thread.
@@ -323,14 +323,14 @@ luxfer_status luxfer_retain(void *handle);
  */
 luxfer_status luxfer_release(void *handle);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Image
  *
  * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. It has up to 64
  * channels; width and height are at most 65536 pixels. Rows run from top to bottom. An image never changes after its
  * creation, so results are shared and not copied. A view describes pixels in the caller's memory; the library never
  * keeps a pointer to them.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Flag of a view: the first row in memory is the bottom one. */
 #define LUXFER_VIEW_BOTTOM_UP 1
@@ -485,7 +485,7 @@ luxfer_status luxfer_image_read(luxfer_image *image,
                                 uint32_t first_channel,
                                 const luxfer_image_view *view);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Photo metadata
  *
  * The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
@@ -493,7 +493,7 @@ luxfer_status luxfer_image_read(luxfer_image *image,
  * focal length as a prior, unless the caller sets a focal length; the lines of the photo outweigh the prior where
  * they determine the focal length better. The library does not use white_luminance by itself: to apply it, copy it to
  * luxfer_transfer_params.white_luminance.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * How the colours of an image were interpreted: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
@@ -578,13 +578,13 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
                                         luxfer_photo_metadata *metadata,
                                         size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Strokes
  *
  * Strokes that a user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a
  * drawing or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
  * luxfer_features_set_strokes. A stage copies the strokes; if you add strokes later, hand them to the stage again.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A set of strokes for images of one size. See luxfer_strokes_create. */
 typedef struct luxfer_strokes luxfer_strokes;
@@ -646,7 +646,7 @@ luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
 /** Removes all strokes of a set. Stages keep their copies. Any thread. */
 luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Job
  *
  * Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
@@ -657,7 +657,7 @@ luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
  * waiting job at once. Of all other calls, only luxfer_job_wait and the release of a running job wait for jobs.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A job: work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
@@ -702,13 +702,13 @@ luxfer_status luxfer_job_get_progress(luxfer_job *job,
  */
 luxfer_status luxfer_job_cancel(luxfer_job *job);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Functions of the caller as jobs
  *
  * Synchronous calls, such as loading a file, warping an image or getting an image of a result, may take long for
  * large inputs. luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress
  * and cancel it.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the

@@ -13,12 +13,12 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Demonstration
  *
  * Scenes and artworks for examples and tests. The library generates them without any files. Repeated calls give
  * results that are equal to the bit.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A scene that the library generates: a LUXFER_DEMO_ value. */
 typedef int32_t luxfer_demo;
@@ -69,12 +69,12 @@ luxfer_status luxfer_demo_create_artwork(luxfer_guides *guides,
                                          luxfer_artwork style,
                                          luxfer_image **image);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Demonstration photo
  *
  * Generates a photo of LUXFER_DEMO_EXEMPLAR_ROOM, as a camera would take it, and strokes on the photo, as a user would
  * paint them. Examples and tests pass both to a lighting transfer, so that they need no files.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A generator of the demonstration photo. See luxfer_demo_photo_create. */
 typedef struct luxfer_demo_photo luxfer_demo_photo;

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Renderings in parts
  *
  * Renders an image on several machines. A part is a rectangle of the image and a range of its paths. Each machine
@@ -25,7 +25,7 @@ extern "C" {
  * parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
  *
  * The files are OpenEXR: R, G, B show the part at its place in the image, and integer channels store its sums.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * A part of a rendering. Fill it with luxfer_render_part_init, which sets it to the whole rendering, or with

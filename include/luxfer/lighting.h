@@ -13,13 +13,13 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Illuminance
  *
  * Computes the illuminance in lux at the points of a calculation grid, or at texels of a mesh. The results are an
  * image of the illuminances, an image of their standard errors, and a report with the mean, the minimum and the
  * maximum.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A calculation of illuminance. See luxfer_illuminance_create. */
 typedef struct luxfer_illuminance luxfer_illuminance;
@@ -145,13 +145,13 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
                                             luxfer_illuminance_report *report,
                                             size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Lamps
  *
  * Finds the powers of the lamps of an emission with which a scene comes nearest to several goals. The power of a lamp
  * is a factor for its emission, within bounds. A goal is a surface or a calculation grid that should receive a given
  * light. One set of paths per goal measures the light from all lamps at once, even from thousands.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A solver for the powers of lamps. See luxfer_lamps_create. */
 typedef struct luxfer_lamps luxfer_lamps;
@@ -269,12 +269,12 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
                                  const luxfer_lamps_params *params,
                                  luxfer_job **job);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Goals of lamps
  *
  * A goal is a surface or a calculation grid that should receive a given light, exactly or as a limit. The dimming
  * levels of the lamps' drivers are set here too.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
@@ -327,12 +327,12 @@ luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
 /** Removes all goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Results of lamps
  *
  * The functions of this section return the powers that the solver has found, the light that each goal receives, and
  * the contribution of each lamp to each goal.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Summary of the solution for lamps. */
 typedef struct luxfer_lamps_report {
@@ -466,13 +466,13 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
 luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
                                        luxfer_image **texture);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Importance
  *
  * An importance map holds, for each point of an emitting surface, the light that the point would send to a target.
  * The map is traced once. From the map, the light that the target receives from any emissive texture on that surface,
  * at any scale, rotation and offset, is computed within milliseconds and with a confidence interval.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** An importance map of an emitting surface. See luxfer_importance_create. */
 typedef struct luxfer_importance luxfer_importance;
@@ -586,13 +586,13 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       luxfer_relight_report *report,
                                       size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Placement
  *
  * Finds where to place a texture on an emitting surface so that a target receives the most light, the least light, or
  * a given radiance. The search is a gradient descent on the map that a luxfer_importance has traced; it traces no
  * paths itself.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Objective of a placement: a LUXFER_AIM_ value. */
 typedef int32_t luxfer_aim;
@@ -700,12 +700,12 @@ luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
                                               luxfer_placement *placement,
                                               size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Photometry
  *
  * Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
  * These calls are synchronous: they do their work before they return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The glare of a view: the result of luxfer_image_get_glare. */
 typedef struct luxfer_glare_report {
@@ -776,14 +776,14 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
                                      luxfer_glare_report *report,
                                      size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Glare of observers
  *
  * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
  * scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as
  * seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose opening the eye sees
  * edge-on, have no such area and are not rated.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * An observer: an eye that looks in a direction. Callers pass arrays of this struct, so its size and fields never
@@ -844,12 +844,12 @@ luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      uint64_t seed,
                                      luxfer_observer_glare *ratings);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * False colour
  *
  * Shows a luminance or illuminance image in false colours, with a scale bar. The colours become lighter as the value
  * rises.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The scale that maps values to colours: a LUXFER_SCALE_ value. */
 typedef int32_t luxfer_scale;
@@ -910,13 +910,13 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
                                         const luxfer_false_colour_params *params,
                                         luxfer_image **shown);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Lighting design
  *
  * Helps to realise a computed light with real luminaires. The functions find the drive levels at which LEDs mix a
  * given colour, and the blackbody light that brings a target nearest to a wanted radiance. They also list requirements
  * of the standard EN 12464-1. These calls are synchronous: they do their work before they return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A colour mixed from LED primaries: the result of luxfer_mix_primaries. */
 typedef struct luxfer_mixture {
@@ -1039,7 +1039,7 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
                                      size_t capacity,
                                      size_t *needed);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Pendants
  *
  * Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
@@ -1047,7 +1047,7 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
  * outline of the lamp in a mask. The size is not: a lamp of twice the size at twice the distance has the same outline.
  * The size requires the height of the ceiling and one more length, or the point of the photo where the suspension (the
  * cable or rod on which the lamp hangs) meets the ceiling.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * No length determines the size, or only with a standard deviation above half of the size. The fields drop, diameter

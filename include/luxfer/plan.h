@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Planning
  *
  * Chooses the settings of relighting and rendering, or of a stylisation, for a given error or a given time, before
@@ -26,7 +26,7 @@ extern "C" {
  * The error of a picture is the root mean square error over its pixels, divided by its mean. It includes the noise
  * and the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the
  * error of a stylisation.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A plan: the settings with which work reaches a given error, or ends within a given time. See luxfer_plan_create. */
 typedef struct luxfer_plan luxfer_plan;
@@ -139,13 +139,13 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
                                              luxfer_relight_params *params,
                                              size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Planning of stylisations
  *
  * Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
  * actual input at reduced resolution. These trials take a small share of the time of a stylisation with
  * LUXFER_STYLIZE_FULL; the share falls with the size of the target.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.

@@ -13,12 +13,12 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Rendering
  *
  * A path tracer that renders a scene in cd/m². The image improves pass by pass. While the job runs, and after a
  * cancel, the current image can be read with an estimate of its error.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A rendering of a scene. See luxfer_render_create. */
 typedef struct luxfer_render luxfer_render;
@@ -203,7 +203,7 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
                                        luxfer_render_report *report,
                                        size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Outputs of a rendering
  *
  * Additional images (layers) from the same paths as the main image: light that light path expressions select, and
@@ -234,7 +234,7 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  *
  * Arnold's built-in names work too: beauty, direct, indirect, emission, background, and diffuse, specular,
  * transmission, each alone or with _direct or _indirect.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Distance of the surface from the camera along the viewing direction (depth z), in metres; infinite where there is no

@@ -13,14 +13,14 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene
  *
  * A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
  * world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
  * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the
  * scene unchanged.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A scene. See luxfer_scene_load and luxfer_scene_create. */
 typedef struct luxfer_scene luxfer_scene;
@@ -160,12 +160,12 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           uint32_t *mesh,
                                           uint32_t *material);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene files
  *
  * Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_get_requirements_text name the features of a file that
  * are not rendered.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** From where a luminaire shines: a LUXFER_LUMINAIRE_ value. */
 typedef int32_t luxfer_luminaire_shape;
@@ -256,13 +256,13 @@ luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,
                                       double *y,
                                       double *z);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Materials
  *
  * Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
  * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when
  * its values change.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** How a surface uses its alpha: a LUXFER_ALPHA_ value. */
 typedef int32_t luxfer_alpha_mode;
@@ -436,12 +436,12 @@ luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene description
  *
  * Builds a scene from arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
  * copy the arrays, which may have any alignment and stride.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A triangle mesh in world space. Fill it with luxfer_mesh_params_init. */
 typedef struct luxfer_mesh_params {
@@ -549,13 +549,13 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       luxfer_camera_params *params,
                                       size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Luminous intensity distributions
  *
  * A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63) or
  * EULUMDAT files, and can be written to both formats. These calls are synchronous: they do their work before they
  * return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A luminous intensity distribution. See luxfer_distribution_load. */
 typedef struct luxfer_distribution luxfer_distribution;
@@ -648,12 +648,12 @@ luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distributio
                                                 double gamma,
                                                 double *candela);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Lights of a scene
  *
  * Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
  * luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A kind of punctual light: a LUXFER_LIGHT_ value. */
 typedef int32_t luxfer_light_kind;
@@ -753,12 +753,12 @@ luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
                                          const luxfer_luminaire_params *params,
                                          uint32_t *index);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene queries
  *
  * Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls are
  * synchronous: they do their work before they return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** No index: stands for no mesh, no triangle, no texture or no material. */
 #define LUXFER_NONE 4294967295
@@ -802,13 +802,13 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      size_t count,
                                      luxfer_hit *hits);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene requirements
  *
  * The renderer analyses a scene before the first ray: which kinds of scattering and which lights can occur, and how
  * much light can remain after a bounce. It skips the code for everything that cannot occur, which does not change any
  * image. You need not call these functions: they only report what the renderer does by itself.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** At least one surface scatters diffusely. */
 #define LUXFER_SCATTERING_DIFFUSE 1
@@ -894,12 +894,12 @@ luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
                                                  size_t capacity,
                                                  size_t *needed);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Scene read-back
  *
  * Reads the meshes of a scene back. With luxfer_scene_get_counts and the functions that read materials, textures and
  * cameras, a host can copy these parts of a scene. Lights and the environment cannot be read back.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Sizes and attributes of a mesh. */
 typedef struct luxfer_mesh_info {
@@ -982,14 +982,14 @@ luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
                                           size_t capacity,
                                           uint32_t *indices);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Candidates for the ceiling
  *
  * Lists the objects and the materials of a scene with their area, height and direction, sorted so that the likeliest
  * ceiling comes first. A host can show this list to let the user choose the surface that will carry the lights. Pass
  * the name of the chosen candidate to luxfer_scene_find_surface or luxfer_transfer_set_scene. A list is a copy: later
  * changes of the scene do not change it.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A list of candidates for the ceiling. See luxfer_scene_get_candidates. */
 typedef struct luxfer_candidates luxfer_candidates;

@@ -13,13 +13,13 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Plane geometry
  *
  * Homographies map points between two views of a plane. They are 3 x 3 matrices of homogeneous coordinates, stored
  * row by row. Points are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These
  * calls are synchronous: they do their work before they return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Computes the homography that maps four points to four other points. The array from holds x and y of the four points,
@@ -47,7 +47,7 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
                                 uint32_t height,
                                 luxfer_image **warped);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Rectification
  *
  * Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
@@ -55,7 +55,7 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
  * is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1 is
  * vertical. Camera space is x to the right, y down, z forward. "The paper" is "Single-Exemplar Lighting Style Transfer
  * via Emissive Texture Synthesis and Optimization".
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
 typedef struct luxfer_rectify luxfer_rectify;
@@ -301,14 +301,14 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
                                         luxfer_rectify_report *report,
                                         size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Features
  *
  * Computes ten values for each pixel of a photo, its features, by which segmentation compares pixels: colour, depth,
  * position and normal. The depth comes from the first source that is available: (1) a depth map of the caller; (2) a
  * network in an ONNX file; (3) a box-shaped room, which is fitted to the lines that a luxfer_rectify has found and to
  * strokes on one plane of the room; (4) a fixed default that does not depend on the photo.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
 typedef struct luxfer_features luxfer_features;
@@ -495,13 +495,13 @@ luxfer_status luxfer_features_get_report(luxfer_features *features,
                                          luxfer_features_report *report,
                                          size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Segmentation
  *
  * Computes a mask, with a confidence for each pixel, from a few strokes on a photo. A lighting transfer needs two
  * masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start
  * again.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A segmentation by strokes. See luxfer_segment_create. */
 typedef struct luxfer_segment luxfer_segment;
@@ -669,11 +669,11 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
                                         luxfer_segment_report *report,
                                         size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Laws of an emission
  *
  * A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value. */
 typedef int32_t luxfer_emission_law;
@@ -705,12 +705,12 @@ typedef int32_t luxfer_emission_law;
 /** In results only: the texture is a copied part of the exemplar, or the caller supplied the texture. */
 #define LUXFER_LAW_COPY 6
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Emission
  *
  * Synthesises an emissive texture of any size and lists its luminaires. The texture continues the light pattern of an
  * exemplar: an unwarped photo of a plane with lamps, as luxfer_rectify makes it.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
@@ -996,14 +996,14 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          double *x,
                                          double *y);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Styles and tiles
  *
  * luxfer_emission_add_style adds exemplars, whose lights are then mixed in one texture. Textures that are too large to
  * make as a whole are made in tiles: luxfer_emission_start_plan decides where every lamp lies, and
  * luxfer_emission_render_tile renders any rectangle of the texture. A plan holds the exemplars, the place of each lamp
  * and the outlines of the patches, but no texels.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
@@ -1058,12 +1058,12 @@ luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
                                           uint32_t height,
                                           luxfer_image **tile);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Relighting
  *
  * Solves for the colour and intensity of an emission with which a surface of the scene, the target, has the same
  * colour as in the photo. The solution is a factor for the emission, per channel, with a confidence interval.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A relighting: a solver for the emission of one material. See luxfer_relight_create. */
 typedef struct luxfer_relight luxfer_relight;

@@ -13,13 +13,13 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Guides
  *
  * Renders the guide images of a stylisation: images of one scene, each of which shows one kind of its light, its
  * normals, its edges or its materials. A stylisation needs the guides of the exemplar scene and of the target scene.
  * Guides from another renderer do not need this object: see luxfer_stylize_add_guide.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** The guides of a scene. See luxfer_guides_create. */
 typedef struct luxfer_guides luxfer_guides;
@@ -131,12 +131,12 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
                                        luxfer_guides *previous,
                                        luxfer_image **motion);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Settings of a stylisation
  *
  * Presets and settings. "The paper" is Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based Stylization of 3D
  * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value. */
 typedef int32_t luxfer_stylize_mode;
@@ -343,7 +343,7 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
                                            luxfer_stylize_preset preset,
                                            size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Stylisation
  *
  * Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
@@ -353,7 +353,7 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
  *
  * Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
  * functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Flag of luxfer_stylize_add_guides: add the normals. */
 #define LUXFER_GUIDES_WITH_NORMALS 1
@@ -513,12 +513,12 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
 luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
                                          luxfer_image *painted);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Results of a stylisation
  *
  * The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
  * the run level by level.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
 typedef int32_t luxfer_stylize_image;
@@ -664,13 +664,13 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
                                       luxfer_stylize_pass *pass,
                                       size_t size);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Print sheets
  *
  * For artists who paint on paper: draws a sheet to print, which shows the exemplar in pale colours between alignment
  * marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
  * synchronous: they do their work before they return.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and for

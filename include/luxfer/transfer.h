@@ -14,12 +14,12 @@
 extern "C" {
 #endif
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Pattern
  *
  * Settings for the layout of a transfer's light pattern on the surface: its size, rotation and offset, and the areas
  * without lamps.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** Choice of the length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value. */
 typedef int32_t luxfer_pattern_scale;
@@ -87,13 +87,13 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
 /** The width of the surface: as many lamps lie side by side on it as on the plane in the photo. */
 #define LUXFER_PATTERN_ACROSS 3
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Transfer
  *
  * The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs its
  * stages one after the other. You can read every result as soon as its stage has ended, replace it by a result of
  * your own, and continue from any stage.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A lighting transfer. See luxfer_transfer_create. */
 typedef struct luxfer_transfer luxfer_transfer;
@@ -312,12 +312,12 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     const luxfer_transfer_params *params,
                                     luxfer_job **job);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Transfer results
  *
  * The results of a transfer. A result is available once its stage has ended; the rendering is available in its
  * current state while it runs.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** An image that a stage of the transfer has made: a LUXFER_TRANSFER_ value. */
 typedef int32_t luxfer_transfer_image;
@@ -539,14 +539,14 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
 luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
                                             const char *path);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Warnings
  *
  * Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect
  * with its figure and limit, the place in the photo, and the remedy. Each stage that has warnings has a list of them,
  * a transfer has the lists of all its stages, and a scene has a list. A list is a copy: it does not change when the
  * stage is started again. An empty list does not prove that a result is right.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /** A list of warnings. See luxfer_get_warnings. */
 typedef struct luxfer_warnings luxfer_warnings;
@@ -789,11 +789,11 @@ luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
  */
 const char *luxfer_warning_get_name(luxfer_warning_code code);
 
-/* ====================================================================================================================
+/* ==================================================================================================================
  * Warnings of an object
  *
  * Gets the warnings of stages, transfers and scenes.
- * ==================================================================================================================== */
+ * ================================================================================================================== */
 
 /**
  * Gets the warnings about the result of an object. handle is one of:

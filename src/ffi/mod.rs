@@ -9,7 +9,8 @@
 //!   job that has succeeded.
 //!
 //! The comments of the exported items, and the module comments of their files, become `include/luxfer/*.h`; the test
-//! `abi_header` generates these headers. No macro may make an exported item: cbindgen would not see it.
+//! `abi_header` generates these headers. No macro may make an exported item, because cbindgen would not
+//! see it; only `absent!` (`stylize_absent`) does, in builds without stylisation, from which no header is made.
 
 // Exported types have C names. The comment of an exported function is its safety contract and becomes its comment in
 // the header.

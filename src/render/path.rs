@@ -20,7 +20,7 @@ use glam::{Vec2, Vec3};
 const ROULETTE_START: u32 = 2;
 /// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
 /// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
-/// [judged on rooms]
+/// [origin not recorded]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability, so that a path between white walls ends eventually. The variance is infinite if the
 /// albedo of the walls exceeds the square root of this probability, here 0.999; white standards of reflectance reach

@@ -277,7 +277,7 @@ class AddOn(unittest.TestCase):
         self.assertFalse(bpy.app.timers.is_registered(live.step))
         luxfer_lighting.register()
 
-    def test_what_is_missing_is_told(self):
+    def test_missing_input_is_reported(self):
         for message, prepare in (
             ("surface", lambda: None),
             ("photo", lambda: setattr(self.scene.luxfer, "target", bpy.data.objects["Ceiling"])),
@@ -347,7 +347,7 @@ class AddOn(unittest.TestCase):
             self.assertFalse(os.path.exists(folder))
             self.assertEqual(work.message, "Cancelled")
 
-    def test_why_cycles_could_not_is_told(self):
+    def test_the_reason_for_a_failure_of_cycles_is_shown(self):
         self.scene.camera = None
         rendering = passes.Rendering(self.scene, bpy.context.view_layer, 1)
         with self.assertRaisesRegex(RuntimeError, "Cycles could not render the guides: .*[Cc]amera"):

@@ -160,7 +160,7 @@ class Loader:
     def load(self, seed: int) -> None:
         rng = random.Random(seed)
         if rng.random() < 0.3:
-            self.say(seed, rng)
+            self.parse_text(seed, rng)
             return
         if rng.random() < 0.2:
             self.shine(seed, rng)
@@ -214,7 +214,7 @@ class Loader:
                 self.library.luxfer_release(job)
         self.library.luxfer_render_clear_parts(handle)
 
-    def say(self, seed: int, rng: random.Random) -> None:
+    def parse_text(self, seed: int, rng: random.Random) -> None:
         which = rng.randrange(2)
         text = "".join(rng.choice(SYMBOLS[which]) + " " * (which and rng.random() < 0.5) for _ in range(rng.randint(0, 30)))
         start, handle = time.monotonic(), self.stages[which].handle

@@ -77,7 +77,7 @@ inline void compare(const std::vector<Picture> &library, const std::vector<Pictu
     const auto [low, high] = statistics::binomial_interval(PIXELS, 0.01, 0.001);
     const double sidak = 1 - std::pow(1 - 0.01, 1.0 / PIXELS);
     std::size_t rejected = 0, rejected_uncorrected = 0;
-    double relative_error = 0, least_p = 1;
+    double relative_error = 0, min_p = 1;
     for (std::size_t i = 0; i < PIXELS; ++i) {
         statistics::Sample a, b;
         for (std::uint32_t r = 0; r < REPLICATES; ++r) {
@@ -87,7 +87,7 @@ inline void compare(const std::vector<Picture> &library, const std::vector<Pictu
         const double p = statistics::welch_p(a, b);
         rejected += p < sidak;
         rejected_uncorrected += p < 0.01;
-        least_p = std::min(least_p, p);
+        min_p = std::min(min_p, p);
         relative_error += std::sqrt(a.variance_of_mean() + b.variance_of_mean()) / std::max(b.mean, 1e-9) / PIXELS;
     }
     statistics::Sample image_a, image_b;
@@ -103,7 +103,7 @@ inline void compare(const std::vector<Picture> &library, const std::vector<Pictu
     const double image_p = statistics::welch_p(image_a, image_b);
     std::printf("%c: %zu of %zu pixels rejected at the corrected 1 %% (least p %.1e), %zu at the uncorrected 1 %% "
                 "(allowed %zu to %zu); standard error of a pixel's difference %.1f %%\n",
-                "RGB"[channel], rejected, PIXELS, least_p, rejected_uncorrected, low, high, 100 * relative_error);
+                "RGB"[channel], rejected, PIXELS, min_p, rejected_uncorrected, low, high, 100 * relative_error);
     std::printf("   image means %.4f and %.4f cd/m2, ratio %.5f +- %.5f, p %.3f\n", image_a.mean, image_b.mean,
                 image_a.mean / image_b.mean,
                 std::sqrt(image_a.variance_of_mean() + image_b.variance_of_mean()) / image_b.mean, image_p);

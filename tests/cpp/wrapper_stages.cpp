@@ -50,10 +50,10 @@ void lighting_transfer(const Context &context) {
     luxfer::RectifyParams shifted;
     shifted.principal[0] = 160;
     shifted.principal[1] = 90;
-    const auto told = luxfer::Rectify::create(context);
-    told.set_photo(photo);
-    told.start(shifted).wait();
-    CHECK(told.report().principal[0] == 160 && told.report().principal[1] == 90);
+    const auto given = luxfer::Rectify::create(context);
+    given.set_photo(photo);
+    given.start(shifted).wait();
+    CHECK(given.report().principal[0] == 160 && given.report().principal[1] == 90);
     CHECK(rectify.report().principal[0] == 150 && rectify.report().principal[1] == 100);
 
     const auto features = copied(luxfer::Features::create(context));

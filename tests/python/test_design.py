@@ -171,7 +171,7 @@ class Grids(Case):
 
 
 class Direct(Case):
-    """A black box under one luminaire without size, whose illuminance is intensity times cosine over squared distance."""
+    """A black box under one point luminaire, whose illuminance is intensity times cosine over squared distance."""
 
     def setUp(self):
         super().setUp()
@@ -423,7 +423,7 @@ class Solver(Case):
 
     def test_the_least_violation_of_a_contradiction(self):
         soft = convex.Limits(np.zeros((2, 1)), np.array([[1.0], [-1.0]]), np.array([-1.0, 2.0]))  # x ≤ 1 and x ≥ 2
-        worst_one, found = convex.least_violation(soft, convex.box(np.array([-10.0]), np.array([10.0])), np.zeros(1))
+        worst_one, found = convex.min_violation(soft, convex.box(np.array([-10.0]), np.array([10.0])), np.zeros(1))
         self.assertAlmostEqual(worst_one, 0.5, places=6)
         self.assertAlmostEqual(found.x[0], 1.5, places=6)
 

@@ -76,12 +76,12 @@ class Documentation(Case):
                     if not (kind := getattr(luxfer.types, name, None)):
                         continue
                     names = {member.name.lower().replace("_", "-") for member in kind}
-                    told = {word for text in re.findall(r'"([^"\n]+)"', doc.partition(">>>")[0]) for word in text.split("|")}
-                    told = {word for word in told if re.fullmatch("[a-z-]+", word)}
-                    self.assertLessEqual(told, names, f"{path.stem}.{node.name}")
+                    named = {word for text in re.findall(r'"([^"\n]+)"', doc.partition(">>>")[0]) for word in text.split("|")}
+                    named = {word for word in named if re.fullmatch("[a-z-]+", word)}
+                    self.assertLessEqual(named, names, f"{path.stem}.{node.name}")
                     if node.name == "image":
-                        self.assertEqual(told, names, f"{path.stem}.{node.name}")
-                    tested += bool(told)
+                        self.assertEqual(named, names, f"{path.stem}.{node.name}")
+                    tested += bool(named)
         self.assertGreater(tested, 20)
 
     def test_everything_is_described_and_annotated(self):

@@ -43,7 +43,7 @@ class Errors(Case):
         with self.assertRaisesRegex(ValueError, "'depht' is no Aov|'depth|depht' is no Aov"):
             render.set_aovs("depth|depht")
 
-    def test_wrong_kinds_and_numbers_are_told_by_name(self):
+    def test_messages_name_wrong_kinds_and_numbers(self):
         render = luxfer.Render(context(), lit_room())
         for params, kind, message in (
             ({"width": -1}, ValueError, "width = -1"),

@@ -54,17 +54,17 @@ class Transfer(Case):
         pixels = photo.numpy()
         height, width = pixels.shape[:2]
         rows = np.ascontiguousarray(pixels[: height * 3 // 4])
-        told = luxfer.Rectify(context(), rows).run(principal=(width / 2, height / 2)).report
-        self.assertEqual(told.principal, (width / 2, height / 2))
-        untold = luxfer.Rectify(context(), rows).run().report
-        self.assertEqual(untold.principal, (width / 2, rows.shape[0] / 2))
+        given = luxfer.Rectify(context(), rows).run(principal=(width / 2, height / 2)).report
+        self.assertEqual(given.principal, (width / 2, height / 2))
+        guessed = luxfer.Rectify(context(), rows).run().report
+        self.assertEqual(guessed.principal, (width / 2, rows.shape[0] / 2))
 
         def turned(report):
             axes = [np.reshape(r.axes, (3, 3)) for r in (whole, report)]
             return np.degrees(np.arccos(np.clip(np.abs(np.sum(axes[0] * axes[1], axis=0)), 0, 1))).max()
 
-        self.assertLess(turned(told), 1)
-        self.assertGreater(turned(untold), 2 * turned(told))
+        self.assertLess(turned(given), 1)
+        self.assertGreater(turned(guessed), 2 * turned(given))
 
     def test_the_stages_one_by_one_make_what_the_transfer_makes(self):
         photo, strokes = demo()

@@ -210,7 +210,7 @@ class Limits(Case):
 
     def test_a_page_that_lets_too_much_wait_is_cut_off(self):
         async def work():
-            waiting = outbox.Outbox(most=2000)
+            waiting = outbox.Outbox(max_size=2000)
             for _ in range(3):
                 waiting.put({"type": "texture"}, bytes(900))
             return await waiting.get(), waiting.size
@@ -272,14 +272,14 @@ class Talk(Case):
         for last in ({"bytes": b"abc"}, {"text": "{"}, {"text": "[" * 200_000}):
             self.assertEqual(self.talk({"type": "websocket.receive", **last}), [])
 
-    def test_an_error_without_words_is_told_by_its_name(self):
-        told = []
+    def test_an_error_without_a_message_is_reported_by_its_name(self):
+        messages = []
         session = self.studio.session("session01")
-        session.listeners.append(lambda header, payload: told.append(header))
+        session.listeners.append(lambda header, payload: messages.append(header))
         for failure in (MemoryError(), AssertionError(), FileNotFoundError("gone")):
             session._failed(failure)
-        self.assertEqual([t["message"] for t in told], ["MemoryError", "AssertionError", "gone"])
-        self.assertEqual([t["missing"] for t in told], [False, False, True])
+        self.assertEqual([t["message"] for t in messages], ["MemoryError", "AssertionError", "gone"])
+        self.assertEqual([t["missing"] for t in messages], [False, False, True])
 
     def test_a_room_that_is_missing_is_said(self):
         session = self.studio.session("session01")

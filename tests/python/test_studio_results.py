@@ -167,28 +167,28 @@ class Planes(Case):
         self.assertAlmostEqual(plane.origin[1], 2.9, places=4)
 
     def measured(self, surface):
-        """What the page is told of the illuminance."""
-        told = []
+        """The message about the illuminance that the page receives."""
+        messages = []
         room = self.room()
         thread = SimpleNamespace(finish=lambda job: job.wait())
-        light = Light(demo()[0], room, thread, lambda kind, **header: told.append(header))
+        light = Light(demo()[0], room, thread, lambda kind, **header: messages.append(header))
         room.add_light(kind="point", position=(0, 5, 0), intensity=(100, 100, 100))
         light.lit = room
         light.measure(surface)
-        return told[-1], light.exposure
+        return messages[-1], light.exposure
 
-    def test_the_page_is_told_the_height_above_the_floor(self):
-        told, _ = self.measured("Ceiling")
-        self.assertAlmostEqual(told["height"], 0.75)
-        self.assertAlmostEqual(told["floor"], 3.0, places=4)
-        self.assertEqual([round(inset, 4) for inset in told["insets"]], [0.5, 0.5])
+    def test_the_page_receives_the_height_above_the_floor(self):
+        message, _ = self.measured("Ceiling")
+        self.assertAlmostEqual(message["height"], 0.75)
+        self.assertAlmostEqual(message["floor"], 3.0, places=4)
+        self.assertEqual([round(inset, 4) for inset in message["insets"]], [0.5, 0.5])
         # 100 cd at 1.25 m above the plane: 64 lx below it, and less elsewhere.
-        self.assertLess(abs(told["maximum"] - 64), 3)
+        self.assertLess(abs(message["maximum"] - 64), 3)
 
     def test_without_a_plane_pictures_have_a_brightness(self):
-        told, exposure = self.measured("Terrain")
-        self.assertIn("no plane of desks", told["problem"])
-        self.assertNotIn("mean", told)
+        message, exposure = self.measured("Terrain")
+        self.assertIn("no plane of desks", message["problem"])
+        self.assertNotIn("mean", message)
         self.assertTrue(np.isfinite(exposure) and exposure > 0)
 
 

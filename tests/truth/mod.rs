@@ -136,7 +136,7 @@ pub fn given_set(name: &str) -> Option<GivenSet> {
 }
 
 impl GivenSet {
-    /// Evaluates the set by the published protocol (Kluger et al. 2020): the method is told the number of directions;
+    /// Evaluates the set by the published protocol (Kluger et al. 2020): the method receives the number of directions;
     /// estimates are assigned to true directions one to one with the minimum total angle; a missing estimate counts as
     /// 90 degrees. Returns the angles of all images in degrees, sorted.
     pub fn angles(&self, params: &Params) -> Vec<f64> {

@@ -8,7 +8,7 @@ import luxfer
 from . import lighting, live, painting, work
 
 
-#: Icons with the colours of the strokes: bone colour sets, which every version of Blender has.
+#: Icons in the colours of the strokes: icons of bone colour sets, which every version of Blender has.
 ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "COLORSET_09_VEC", "NOT_LIGHT": "COLORSET_04_VEC"}
 
 
@@ -34,10 +34,10 @@ def show_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         row.progress(factor=running.progress, text=f"{running.title} {running.progress:.0%}")
         row.operator("luxfer.cancel", text="", icon="X")
     elif work.message:
-        say(layout, context, work.message, alert=work.message != "Cancelled")
+        draw_text(layout, context, work.message, alert=work.message != "Cancelled")
 
 
-def say(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, alert: bool = False) -> None:
+def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, alert: bool = False) -> None:
     """Shows a text, broken into lines that fit the width of the sidebar."""
     column = layout.column(align=True)
     column.alert = alert
@@ -63,9 +63,9 @@ def show_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, warnin
     for warning in warnings:
         box = layout.box()
         box.label(text=STAGES[warning.stage.name], icon="ERROR")
-        say(box, context, f"{warning.message[:1].upper()}{warning.message[1:]}.")
+        draw_text(box, context, f"{warning.message[:1].upper()}{warning.message[1:]}.")
         at = "" if warning.place is None else f", at {warning.place[0]:.0f}, {warning.place[1]:.0f} from the photo's top left"
-        say(box, context, f"{warning.advice[:1].upper()}{warning.advice[1:]}{at}.")
+        draw_text(box, context, f"{warning.advice[:1].upper()}{warning.advice[1:]}{at}.")
 
 
 class Sidebar:
@@ -88,7 +88,7 @@ class LightingPanel(Sidebar):
         row.operator("luxfer.preview_masks", text="Masks", icon="MOD_MASK")
         row.prop(context.window_manager, "luxfer_live", toggle=True, icon="HIDE_OFF")
         if live.preview is not None and live.preview.hint:
-            say(box, context, live.preview.hint)
+            draw_text(box, context, live.preview.hint)
         layout.prop(settings, "target", text="On")
         column = layout.column(align=True)
         column.prop(settings, "scale")
@@ -106,7 +106,7 @@ class LightingPanel(Sidebar):
         layout.operator("luxfer.transfer", icon="LIGHT")
         if lighting.result is not None:
             layout.operator("luxfer.apply", icon="MATERIAL")
-            say(layout, context, f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
+            draw_text(layout, context, f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
         show_warnings(layout, context, lighting.warnings)
         show_progress(layout, context)
 
@@ -129,7 +129,7 @@ class PaintingPanel(Sidebar):
         column.row(align=True).prop(settings, "guides_by", expand=True)
         column.prop(settings, "guide_samples")
         layout.operator("luxfer.stylise", icon="BRUSH_DATA")
-        say(layout, context, f"The picture is the image {painting.PICTURE}")
+        draw_text(layout, context, f"The picture is the image {painting.PICTURE}")
         show_progress(layout, context)
 
 

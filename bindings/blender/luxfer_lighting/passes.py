@@ -67,7 +67,7 @@ class Rendering:
         return self._process.poll() is not None
 
     def poll(self) -> tuple[float, bool]:
-        """The finished share, and whether the rendering has ended, with or without success."""
+        """Returns the finished share, and whether the rendering has ended, successfully or not."""
         return self._fraction, self.finished
 
     def cancel(self) -> None:

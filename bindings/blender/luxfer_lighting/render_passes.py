@@ -1,6 +1,7 @@
 """A program for a second Blender: renders a .blend by Cycles, and stores its passes as the guides of a stylisation.
 
-    blender --background --python render_passes.py -- SETTINGS     (or a Python that has bpy: render_passes.py -- SETTINGS)
+    blender --background --python render_passes.py -- SETTINGS
+    python render_passes.py -- SETTINGS                             with a Python that has bpy
 
 SETTINGS is JSON: "blend", "scene", "layer" (a view layer), "samples", "out" (an .npz file). Before each rendering, the
 program prints a line "part FIRST LAST": the range of the whole work's progress that the rendering covers. Cycles
@@ -10,7 +11,7 @@ prints its own progress. The passes as light path expressions, in the notation o
     direct      LDE        diffuse direct
     specular    LSE        glossy direct
     indirect    L.*DDE     diffuse indirect: L.+DE. It includes caustics.
-    two bounces LD{1,2}E   diffuse direct and indirect of a second rendering that ends after two bounces and has no caustics
+    two bounces LD{1,2}E   diffuse direct and indirect of a second rendering, of two bounces and without caustics
 
 Translucent surfaces and subsurface scattering are diffuse in Cycles, and its punctual lamps are visible in glossy
 reflections. The light is smoothed along surfaces as luxfer smooths its guides (src/guides/smooth.rs).
@@ -142,7 +143,7 @@ def averages(
     return out
 
 
-def told(text: Any, *_: Any) -> None:
+def print_progress(text: Any, *_: Any) -> None:
     """Handler that prints the progress of Cycles, for versions of Blender that do not print it."""
     if isinstance(text, str):
         print(text, flush=True)
@@ -185,7 +186,7 @@ def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.nd
 def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.ndarray]:
     """Renders the guides: arrays (height, width, 3) in Blender's units of radiance."""
     set_up(scene, layer, samples)
-    bpy.app.handlers.render_stats.append(told)
+    bpy.app.handlers.render_stats.append(print_progress)
     found = render(scene, 0.0, 0.6)
     light = {
         "full": found["Combined"][:3],

@@ -106,8 +106,9 @@ def step() -> float | None:
     return POLL_SECONDS if goes_on else None
 
 
-def finish() -> None:
-    """Waits for the work, in scripts and without a user interface. Raises its error if it fails."""
+def wait_until_done() -> None:
+    """Waits until the work has ended; for scripts and for Blender without a user interface. Raises the error of a
+    failed work."""
     while _current is not None:
         try:
             _current.job.wait()
@@ -156,7 +157,7 @@ class Background:
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             start(self.title, lambda: self.make(context))
-            finish()
+            wait_until_done()
         except Exception as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

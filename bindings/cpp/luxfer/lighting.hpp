@@ -178,8 +178,8 @@ struct PlacedPendants {
     std::uint32_t first_mesh = 0, material = 0;
 };
 
-/// Adds a mesh with the body of a lamp at each place, which is the middle of its upper end. `luminance` in cd/m² belongs
-/// to a surface of value 1 in the photo; a `diameter` of 0 is the diameter found.
+/// Adds a mesh with the body of a lamp at each place, which is the middle of its upper end. `luminance`, in cd/m², is
+/// the luminance of a surface of value 1 in the photo; a `diameter` of 0 is the diameter found.
 inline Result<PlacedPendants> add_pendants(const Scene &scene, const luxfer_pendant &pendant,
                                            Span<const std::array<double, 3>> places, float luminance,
                                            float diameter = 0) {

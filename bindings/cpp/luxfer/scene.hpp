@@ -58,8 +58,8 @@ public:
     /// Creates an empty scene.
     static Result<Scene> create(const Context &context) { return make_in<Scene>(context, luxfer_scene_create); }
 
-    /// Loads a .glb file, or a .gltf file with the files it names. The settings are the unit of its lengths, and whether
-    /// it may name files outside its folder.
+    /// Loads a .glb file, or a .gltf file with the files it names. The settings are the unit of its lengths, and
+    /// whether it may name files outside its folder.
     static Result<Scene> load(const Context &context, Text path, const luxfer_scene_load_params &params = SceneLoadParams()) {
         return make_in<Scene>(context, luxfer_scene_load, path.get(), &params);
     }
@@ -208,8 +208,8 @@ public:
     }
     Result<std::string> mesh_name(std::uint32_t index) const { return text(luxfer_scene_get_mesh_name, index); }
 
-    /// Copies an attribute of the vertices into a packed array: two numbers per vertex for texture coordinates, four for
-    /// colours, else three.
+    /// Copies an attribute of the vertices into a packed array: two numbers per vertex for texture coordinates, four
+    /// for colours, else three.
     Result<> read_vertices(std::uint32_t index, luxfer_vertex_attribute attribute, Span<float> values) const {
         const bool is_uv = attribute == LUXFER_VERTEX_UV_0 || attribute == LUXFER_VERTEX_UV_1;
         const std::size_t numbers = is_uv ? 2 : attribute == LUXFER_VERTEX_COLOUR ? 4 : 3;

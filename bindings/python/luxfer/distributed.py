@@ -9,7 +9,8 @@ once on each worker. `params` are the settings of the work, as keyword arguments
 
     client = distributed.Client("scheduler:8786")
     with luxfer.Context() as context:
-        render = luxfer.distributed.render(client, view, context, columns=8, rows=4, width=1920, height=1080, samples=256)
+        size = {"width": 1920, "height": 1080}
+        render = luxfer.distributed.render(client, view, context, columns=8, rows=4, samples=256, **size)
         render.write_exr("view.exr")
 """
 

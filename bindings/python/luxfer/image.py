@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 class Image(Handle):
     """An image of 32-bit floats: scene-linear Rec.709 colours, or data. It never changes.
 
-    `pixels` is an array of the shape (height, width) or (height, width, channels), of uint8, uint16, float16 or float32,
-    copied directly from its memory; integers represent [0, 1]. `colour_space` is the encoding of the values: "linear"
-    or "srgb".
+    `pixels` is an array of the shape (height, width) or (height, width, channels), of uint8, uint16, float16 or
+    float32, copied directly from its memory; integers represent [0, 1]. `colour_space` is the encoding of the values:
+    "linear" or "srgb".
 
     >>> image = Image(context, np.full((4, 6, 3), 128, np.uint8), "srgb")
     >>> image.size

@@ -53,7 +53,7 @@ class Job(Handle, Generic[T]):
         NotReady, and the job continues. An exception during the wait, from progress or by Ctrl-C, cancels the job,
         waits until it has ended, and is raised again."""
         end = None if timeout is None else time.monotonic() + timeout
-        told = -1.0
+        last_reported = -1.0
         try:
             while True:
                 left = SLICE_MS if end is None else max(0, min(SLICE_MS, round(1000 * (end - time.monotonic()))))
@@ -66,8 +66,8 @@ class Job(Handle, Generic[T]):
                 if end is not None and time.monotonic() >= end:
                     break
                 fraction = min(fraction, 1 - 2.0**-52)  # only success is exactly 1
-                if progress is not None and fraction > told:
-                    told = fraction
+                if progress is not None and fraction > last_reported:
+                    last_reported = fraction
                     if progress(fraction) is False:
                         self.cancel()
         except BaseException:

@@ -134,7 +134,7 @@ class Render(StageBase):
         self._call("write_exr", _params.text(os.fspath(path), "path"))
 
     def requirements_text(self) -> str:
-        """Describes what the rendering skips, one sentence per line, with the number of lamps that cannot be reached."""
+        """Describes what the rendering skips, one sentence per line, with the number of unreachable lamps."""
         return self._get_text("get_requirements_text")
 
     @property

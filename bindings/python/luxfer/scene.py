@@ -88,7 +88,8 @@ class Scene(Handle):
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """The origin of the scene's positions in the coordinates of its file, in metres; 0 unless the scene is far away."""
+        """The origin of the scene's positions in the coordinates of its file, in metres; 0 unless the scene is far
+        away."""
         x, y, z = (ctypes.c_double() for _ in range(3))
         self._call("get_origin", x, y, z)
         return x.value, y.value, z.value

@@ -118,8 +118,8 @@ class Transfer(StageBase):
     def start(
         self, first: Stage | str = Stage.VIEW, last: Stage | str = Stage.RENDER, **params: Unpack[TransferParams]
     ) -> Job[Transfer]:
-        """Starts the stages from first to last, both included: "view", "features", "plane", "lights", "unwarp", "emission",
-        "relight", "render"."""
+        """Starts the stages from first to last, both included: "view", "features", "plane", "lights", "unwarp",
+        "emission", "relight", "render"."""
         keep: list[Any] = []
         settings = _params.fill(_abi.luxfer_transfer_params, params, keep)
         return self._job("start", _params.member(Stage, first), _params.member(Stage, last), settings)

@@ -1,4 +1,4 @@
-"""What the program says: results on stdout, progress, warnings and errors on stderr."""
+"""Output of the command line: results on stdout; progress, warnings and errors on stderr."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: Width of the progress bar in characters.
 BAR = 30
 
-#: What an option of the command line can do about a warning, in place of the library's general advice.
+#: For some warnings, the option that helps; it is shown in place of the library's general advice.
 ADVICE = {
     "PROPOSED": "try --preview-masks masks.png to see the masks, and --strokes FILE to correct them",
     "IMPLAUSIBLE_SIZE": "try --units with the unit of the file",
@@ -37,7 +37,7 @@ ADVICE = {
 
 
 class Console:
-    """The two streams of a run, and the files that it has written."""
+    """Writes to the two streams of a run, and remembers the files that the run has written."""
 
     def __init__(self) -> None:
         self.name = "luxfer"
@@ -49,7 +49,7 @@ class Console:
         self._is_open = False
 
     def configure(self, args: argparse.Namespace) -> None:
-        """Takes over the options that every subcommand has."""
+        """Reads the options that every subcommand has."""
         self.is_json = getattr(args, "json", False)
         self.is_strict = getattr(args, "strict", False)
         if getattr(args, "progress", None) is not None:
@@ -58,17 +58,19 @@ class Console:
     # -- progress
 
     def step(self, title: str) -> Callable[[float], None] | None:
-        """What to tell the progress of a job, which shows it with the time left; None if nobody is to see it."""
+        """Returns a progress function for a job, which shows the progress with the time left; None if progress is not
+        shown."""
         if not self.shows_progress:
             return None
-        began, told = time.monotonic(), [-math.inf, -1.0]
+        began, last_shown = time.monotonic(), [-math.inf, -1.0]
 
         def show(share: float) -> None:
             now = time.monotonic()
             is_last = share >= 1
-            if share == told[1] or (not is_last and now - told[0] < (0.1 if sys.stderr.isatty() else 1.0)):
+            interval = 0.1 if sys.stderr.isatty() else 1.0
+            if share == last_shown[1] or (not is_last and now - last_shown[0] < interval):
                 return
-            told[:] = now, share
+            last_shown[:] = now, share
             passed = now - began
             left = f"{clock(passed * (1 - share) / share)} left" if share > 0.02 and passed > 0.5 else ""
             self._progress_line(title, share, f"in {clock(passed)}" if is_last else left, is_last)
@@ -93,14 +95,14 @@ class Console:
     # -- results
 
     def wrote(self, path: str | os.PathLike[str]) -> None:
-        """Remembers a file that is finished."""
+        """Remembers a file that has been written completely."""
         self.files.append(os.fspath(path))
 
     def kept(self) -> str:
-        """The finished files, for the message of a cancelled run."""
+        """Lists the complete files, for the message of a cancelled run."""
         return f"; kept {', '.join(self.files)}" if self.files else "; no file was written"
 
-    def finish(self, result: dict[str, Any], lines: Iterable[str], warnings: Iterable[dict[str, Any]] = ()) -> Exit:
+    def print_result(self, result: dict[str, Any], lines: Iterable[str], warnings: Iterable[dict[str, Any]] = ()) -> Exit:
         """Prints a result, as JSON or as lines, then the warnings on stderr; returns the exit code."""
         doubts = list(warnings)
         self.close_line()
@@ -117,7 +119,7 @@ class Console:
         return Exit.DOUBTFUL if doubts and self.is_strict else Exit.FINE
 
     def fail(self, code: Exit, message: str) -> int:
-        """Says in one line why the run has ended."""
+        """Prints in one line why the run has failed; returns the exit code."""
         self.close_line()
         line = " ".join(message.split())
         print(f"{self.name}: {line}", file=sys.stderr)
@@ -127,7 +129,7 @@ class Console:
 
 
 def clock(seconds: float) -> str:
-    """A duration: 4 s, 1:05, 2:00:00."""
+    """Formats a duration: 4 s, 1:05, 2:00:00."""
     whole = max(0, round(seconds))
     if whole < 60:
         return f"{whole} s"
@@ -136,17 +138,17 @@ def clock(seconds: float) -> str:
 
 
 def percent(share: float) -> str:
-    """A share in per cent with two digits; `unknown` for NaN."""
+    """Formats a share in per cent with two digits; `unknown` for NaN."""
     return f"{100 * share:.2g} %" if math.isfinite(share) else "unknown"
 
 
 def described_stages(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
-    """The warnings of a transfer's stages, without those of its scene, which the scene itself lists."""
+    """Converts the warnings of a transfer for JSON, without those of its scene, which `files.scene_warnings` lists."""
     return described(w for w in warnings if w.stage.name != "SCENE")
 
 
 def described(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
-    """Warnings of the library as JSON has them."""
+    """Converts warnings of the library to the form in which JSON shows them."""
     return [
         {
             "stage": w.stage.name.lower(),
@@ -162,24 +164,24 @@ def described(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
 
 
 def doubt(stage: str, code: str, message: str, advice: str) -> dict[str, Any]:
-    """A warning of the command line itself."""
+    """Creates a warning of the command line itself."""
     return {"stage": stage, "code": code, "message": message, "advice": advice}
 
 
 def in_words(warning: dict[str, Any]) -> str:
-    """A warning in one line."""
+    """Formats a warning in one line."""
     place = warning.get("place")
     at = f" (pixel {int(place[0])}, {int(place[1])})" if place else ""
     return f"{warning['stage']}: {warning['message']}{at}: {warning['advice']}"
 
 
 def as_json(value: Any) -> str:
-    """JSON, in which what is not a finite number is null."""
+    """Formats a value as JSON; infinite numbers and NaN become null."""
     return json.dumps(plain(value), ensure_ascii=False, indent=2, allow_nan=False)
 
 
 def plain(value: Any) -> Any:
-    """A value of plain types: enumerations by name, arrays as lists."""
+    """Converts a value to types that JSON has: enumerations to their names, arrays to lists."""
     if isinstance(value, IntEnum):
         return value.name.lower().replace("_", "-")
     if isinstance(value, dict):

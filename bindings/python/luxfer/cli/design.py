@@ -25,11 +25,11 @@ SUMMARY = "check a lighting design against EN 12464-1, and write its report"
 
 #: Distance of luminaires below the ceiling in metres. [convention]
 BELOW = 0.01
-#: Units of lengths in a report, as luxfer.design.units has them; stated here, because --help does without numpy.
+#: Units of lengths in a report, as in luxfer.design.units. They are repeated here because --help must not need numpy.
 UNITS = ("m", "mm", "inch")
-#: Kinds of areas that a place may have requirements for, beside its task.
+#: Kinds of areas, besides the task, for which a place may have requirements.
 KINDS = ("surrounding", "background", "walls", "ceiling", "cylindrical")
-#: Files that a report may be.
+#: File types of reports.
 REPORTS = (".html", ".pdf", ".json")
 
 
@@ -72,7 +72,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Checks or solves it."""
+    """Checks or solves the design."""
     if args.places:
         return _places(console)
     outs = _checked_options(args)
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     _save(project, checked, solution, outs, console)
     warnings = [*files.scene_warnings(scene), *_unchecked(project, checked)]
     lines = [*([solution.explanation()] if solution else []), *map(str, checked.findings), checked.verdict()]
-    code = console.finish(_result(project, checked, solution), lines, warnings)
+    code = console.print_result(_result(project, checked, solution), lines, warnings)
     return code if checked.passes else Exit.UNMET
 
 
@@ -98,11 +98,11 @@ def _places(console: Console) -> Exit:
     from ..design.standard import PLACES
 
     rows = [{"number": p.number, "name": p.name} for p in PLACES]
-    return console.finish({"command": "design", "places": rows}, [f"{p.number:8}{p.name}" for p in PLACES])
+    return console.print_result({"command": "design", "places": rows}, [f"{p.number:8}{p.name}" for p in PLACES])
 
 
 def _checked_options(args: argparse.Namespace) -> list[Path]:
-    """The reports to write. What is missing or cannot be written is said before any work."""
+    """Returns the paths of the reports. Fails before any work if an option is missing or a report cannot be written."""
     from . import files
 
     for name in ("scene", "place", "product", "maintenance"):
@@ -130,7 +130,7 @@ def _product(context: Context, args: argparse.Namespace) -> Product:
 
 
 def _project(scene: Scene, product: Product, args: argparse.Namespace) -> Project:
-    """The design that the options describe."""
+    """Creates the design that the options describe."""
     from ..design import Project, Requirement, Room, Settings, areas, dimmed, layout, observers, place
     from ..design.units import factor
 
@@ -163,7 +163,7 @@ def _results(project: Project, args: argparse.Namespace) -> tuple[Solution | Non
 def _save(
     project: Project, checked: Checked, solution: Solution | None, outs: list[Path], console: Console
 ) -> None:
-    """Writes the reports, with pictures where they have them."""
+    """Writes the reports; the formats that can hold pictures get them."""
     from ..design import save
     from ..design.pictures import views
 
@@ -178,7 +178,7 @@ def _save(
 
 
 def _unchecked(project: Project, checked: Checked) -> list[dict[str, Any]]:
-    """Warnings of what was not checked."""
+    """Returns warnings about requirements that were not checked."""
     kinds = {area.kind for area in project.areas}
     absent = [kind for kind in KINDS if kind not in kinds]
     said = [*checked.notes, *([f"not checked, because no points were found: {', '.join(absent)}"] if absent else [])]
@@ -186,7 +186,7 @@ def _unchecked(project: Project, checked: Checked) -> list[dict[str, Any]]:
 
 
 def _result(project: Project, checked: Checked, solution: Solution | None) -> dict[str, Any]:
-    """What --json prints."""
+    """Returns the result that --json prints."""
     findings = []
     for f in checked.findings:
         own = {field.name: getattr(f, field.name) for field in dataclasses.fields(f) if field.name != "requirement"}

@@ -1,4 +1,4 @@
-"""Exit codes, and the failures that end a subcommand with one plain line."""
+"""Exit codes, and the failures that end a subcommand with a message of one line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Exit(IntEnum):
     """A design is finished, but a requirement fails or stays open; only of `design`."""
 
 
-#: What `--help` says about them.
+#: The text of `--help` about the exit codes.
 TABLE = (
     "exit codes: 0 fine, 1 finished with warnings that doubt the result (only with --strict), 2 wrong command line, "
     "3 an input file cannot be read, 4 cancelled (finished files are kept), 5 failed, 6 a requirement of the design is "
@@ -46,7 +46,7 @@ def usage(message: str) -> Failure:
 
 
 def unreadable(path: str, reason: object) -> Failure:
-    """A failure to read an input file; the file is named once."""
+    """A failure to read an input file; the message names the file once, also if the reason names it."""
     stated = getattr(reason, "strerror", None)
     text = f"{path}: {stated}" if stated else str(reason)
     return Failure(Exit.UNREADABLE, text if path in text else f"{path} cannot be read: {text}")

@@ -1,4 +1,4 @@
-"""Input and output files: what cannot be read ends with exit code 3, and nothing is written over an input."""
+"""Input and output files. A file that cannot be read ends the run with exit code 3; no output may replace an input."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ DEMO_PHOTO: Any = {"width": 600, "height": 400}
 
 
 def context_of(args: argparse.Namespace) -> Context:
-    """The context of a run."""
+    """Creates the context of a run."""
     from ..context import Context
 
     return Context(num_threads=getattr(args, "threads", 0))
 
 
 def is_scene(name: str) -> bool:
-    """Whether a name is that of a scene's file or of a generated scene."""
+    """Whether a name is the path of a scene file or names a generated scene."""
     return name.removeprefix(DEMO) in DEMO_SCENES if name.startswith(DEMO) else name.lower().endswith(USD + GLTF)
 
 
 def load_scene(context: Context, name: str, units: str | None = None, luminaires: str = "faces") -> Scene:
-    """The scene of a file or of a demo: name."""
+    """Loads a scene file, or generates the scene that demo:NAME names."""
     from ..errors import Error
     from ..scene import Scene
 
@@ -68,16 +68,16 @@ def _load_usd(context: Context, name: str, units: str | None) -> Scene:
 
 
 def scene_warnings(scene: Scene) -> list[dict[str, Any]]:
-    """Reasons to doubt what was read of a scene."""
+    """Returns the warnings of a scene that was loaded."""
     return described(scene.warnings)
 
 
-#: The demonstration photo and its strokes once they are made, as arrays, which belong to no context.
+#: The demonstration photo and its strokes once they have been generated. They are arrays, so any context can use them.
 _demo_photo: dict[str, Any] = {}
 
 
 def load_image(context: Context, name: str, colour_space: str = "srgb") -> Image:
-    """The image of a file or of a demo: name."""
+    """Loads an image file, or generates the image that demo:NAME names."""
     from ..demo import DemoPhoto
     from ..errors import Error
     from ..image import Image
@@ -102,7 +102,7 @@ def _demo(name: str, known: tuple[str, ...]) -> str:
 
 
 def load_strokes(context: Context, name: str, photo: Image) -> Strokes:
-    """Strokes for a photo, of a drawing of its size or of a text."""
+    """Loads strokes for a photo, from a drawing of its size or from a text file."""
     from ..errors import Error
     from ..strokes import Strokes
 
@@ -119,7 +119,7 @@ def load_strokes(context: Context, name: str, photo: Image) -> Strokes:
 
 
 def check_surface(scene: Scene, name: str) -> None:
-    """Ends if a scene has no planar surface of a name; the message lists the names that there are."""
+    """Fails if a scene has no planar surface of this name; the message lists the existing names."""
     from ..errors import Error
 
     try:
@@ -129,12 +129,12 @@ def check_surface(scene: Scene, name: str) -> None:
 
 
 def shared_input(*names: str | None) -> list[Path]:
-    """The input files among names."""
+    """Returns the paths of the input files among `names`: options that were not given and demo:NAME are none."""
     return [Path(n) for n in names if n and not n.startswith(DEMO)]
 
 
 def check_file(option: str, name: str, inputs: list[Path], kinds: tuple[str, ...]) -> Path:
-    """An output file: of a known kind, not an input, in a folder that exists."""
+    """Checks an output file: its type must be known, its folder must exist, and it must not be an input."""
     path = Path(name)
     if path.suffix.lower() not in kinds:
         raise usage(f"{option}: {name} ends in none of {', '.join(kinds)}")
@@ -151,7 +151,7 @@ def check_file(option: str, name: str, inputs: list[Path], kinds: tuple[str, ...
 
 
 def check_folder(option: str, name: str, inputs: list[Path], files: tuple[str, ...]) -> Path:
-    """An output folder, which save() makes if it is missing; none of its files may be an input."""
+    """Checks an output folder, which need not exist yet: none of its files may be an input."""
     folder = Path(name)
     if folder.exists() and not folder.is_dir():
         raise usage(f"{option}: {name} is a file, not a folder")
@@ -167,7 +167,7 @@ def check_folder(option: str, name: str, inputs: list[Path], files: tuple[str, .
 
 
 def write_text(path: Path, text: str) -> None:
-    """Writes a text file, whole or not at all."""
+    """Writes a text file; if this fails, an earlier file stays as it was."""
     part = path.with_name(f".{path.name}.part")
     try:
         part.write_text(text, encoding="utf-8")
@@ -179,7 +179,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def likeliest_surface(scene: Scene, name: str | None) -> tuple[str, list[dict[str, Any]]]:
-    """The surface that is named, or the likeliest ceiling, with a warning where that is doubtful."""
+    """Returns the named surface, or else the likeliest ceiling, with a warning if the choice is doubtful."""
     if name is not None:
         check_surface(scene, name)
         return name, []

@@ -29,23 +29,23 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Looks at it."""
+    """Prints what the file contains."""
     from . import files
 
     context = files.context_of(args)
     if files.is_scene(args.file):
         scene = files.load_scene(context, args.file, args.units)
         result = of_scene(scene)
-        return console.finish({"command": "inspect", **result}, scene_words(result), files.scene_warnings(scene))
+        return console.print_result({"command": "inspect", **result}, scene_words(result), files.scene_warnings(scene))
     if args.file.lower().endswith((".ies", ".ldt")):
         result = of_luminaire(context, args.file)
-        return console.finish({"command": "inspect", **result}, luminaire_words(result))
+        return console.print_result({"command": "inspect", **result}, luminaire_words(result))
     result = of_image(context, args.file)
-    return console.finish({"command": "inspect", **result}, image_words(result))
+    return console.print_result({"command": "inspect", **result}, image_words(result))
 
 
 def of_scene(scene: Scene) -> dict[str, Any]:
-    """Contents of a scene."""
+    """Returns the contents of a scene."""
     import numpy as np
 
     counts = scene.counts
@@ -73,7 +73,7 @@ def of_scene(scene: Scene) -> dict[str, Any]:
 
 
 def scene_words(found: dict[str, Any]) -> list[str]:
-    """A scene in lines."""
+    """Describes a scene in lines."""
     lines = [
         f"scene: {found['triangles']} triangles in {found['meshes']} meshes, {found['materials']} materials, "
         f"{found['textures']} textures"
@@ -102,12 +102,12 @@ def scene_words(found: dict[str, Any]) -> list[str]:
 
 
 def point(values: Any) -> str:
-    """A point as --camera takes it."""
+    """Formats a point as --camera expects it."""
     return ",".join(f"{round(float(v), 3) + 0.0:g}" for v in values)
 
 
 def of_image(context: Context, name: str) -> dict[str, Any]:
-    """Contents of a picture."""
+    """Returns the contents of a picture."""
     import numpy as np
 
     from . import files
@@ -131,7 +131,7 @@ def of_image(context: Context, name: str) -> dict[str, Any]:
 
 
 def image_words(found: dict[str, Any]) -> list[str]:
-    """A picture in lines."""
+    """Describes a picture in lines."""
     data = found["metadata"]
     colours = {
         "none": "generated",
@@ -162,7 +162,7 @@ def image_words(found: dict[str, Any]) -> list[str]:
 
 
 def of_luminaire(context: Context, name: str) -> dict[str, Any]:
-    """Contents of a luminaire file."""
+    """Returns the contents of a luminaire file."""
     from .. import Distribution
     from ..errors import Error
     from .exits import unreadable
@@ -188,7 +188,7 @@ def of_luminaire(context: Context, name: str) -> dict[str, Any]:
 
 
 def luminaire_words(found: dict[str, Any]) -> list[str]:
-    """A luminaire in lines."""
+    """Describes a luminaire in lines."""
     power = f", {found['watts']:g} W, {found['lm_per_watt']:.0f} lm/W" if found["lm_per_watt"] else ""
     size = " x ".join(f"{abs(side):.3g}" for side in found["size"])
     return [

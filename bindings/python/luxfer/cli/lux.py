@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 SUMMARY = "illuminance in lux on a surface or a plane"
 
-#: Paths for each point of the first calculation, and the most that there may be.
-FIRST, MOST = 256, 65536
-#: Side of a square of the picture in pixels, at least, and the size that the picture should have.
+#: Paths per point in the first calculation (FIRST), and their maximum (MAX_PATHS).
+FIRST, MAX_PATHS = 256, 65536
+#: Minimum side, in pixels, of the square that shows a point (SQUARE), and the side that the picture should have.
 SQUARE, PICTURE = 4, 640
 
 
@@ -65,7 +65,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Calculates."""
+    """Calculates and prints the illuminance."""
     from . import files
 
     began = time.monotonic()
@@ -105,11 +105,11 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         f"mean {report.mean:.4g} lux ± {2 * report.mean_error:.2g}, minimum {report.minimum:.4g}, "
         f"maximum {report.maximum:.4g}, U0 {uniformity:.2f}",
     ]
-    return console.finish(result, lines, files.scene_warnings(scene) + warnings + doubts(found, args.error))
+    return console.print_result(result, lines, files.scene_warnings(scene) + warnings + doubts(found, args.error))
 
 
 def plane_of(scene: Scene, args: argparse.Namespace) -> tuple[Plane, list[dict[str, Any]]]:
-    """The plane of the options, with a warning where it was guessed."""
+    """Returns the plane that the options describe, with a warning if parts of it were guessed."""
     from . import files, plane
 
     if args.surface:
@@ -126,7 +126,7 @@ def plane_of(scene: Scene, args: argparse.Namespace) -> tuple[Plane, list[dict[s
 
 
 def measure(scene: Scene, plane: Plane, spacing: float, error: float, console: Console, seed: int = 1) -> Illuminance:
-    """The illuminance with as many paths as the error of the mean needs: a first calculation says how many."""
+    """Calculates the illuminance. A first calculation predicts how many paths the wanted error of the mean needs."""
     from .. import Illuminance
 
     columns, rows = plane.points(spacing)
@@ -134,15 +134,16 @@ def measure(scene: Scene, plane: Plane, spacing: float, error: float, console: C
     for title in ("measuring", "measuring exactly", "measuring exactly"):
         found.run_grid(plane.grid(), console.step(title), columns=columns, rows=rows, samples=samples, seed=seed)
         report = found.report
-        if report.mean <= 0 or report.mean_error <= error * report.mean or samples >= MOST:
+        if report.mean <= 0 or report.mean_error <= error * report.mean or samples >= MAX_PATHS:
             break
-        # The error falls with the root of the number of paths; a fifth more makes up for its own error.
-        samples = min(MOST, int(1.2 * samples * (report.mean_error / (error * report.mean)) ** 2) + 16)
+        # The error is inversely proportional to the square root of the number of paths. Trace 20 % more paths, because
+        # the error of the first calculation is itself uncertain.
+        samples = min(MAX_PATHS, int(1.2 * samples * (report.mean_error / (error * report.mean)) ** 2) + 16)
     return found
 
 
 def doubts(found: Illuminance, error: float) -> list[dict[str, Any]]:
-    """Reasons to doubt the figures."""
+    """Returns reasons to doubt the figures."""
     report = found.report
     if report.mean <= 0:
         return [doubt("lux", "dark", "no light reaches the plane", "try another --height, or a scene with lamps")]
@@ -153,7 +154,7 @@ def doubts(found: Illuminance, error: float) -> list[dict[str, Any]]:
 
 
 def draw(found: Illuminance, path: Path) -> None:
-    """The values in false colours, each point a square, with a scale."""
+    """Draws the values in false colours with a scale; each point is a square."""
     import numpy as np
 
     from .. import false_colour
@@ -165,7 +166,7 @@ def draw(found: Illuminance, path: Path) -> None:
 
 
 def rows(found: Illuminance, plane: Plane) -> str:
-    """The points as CSV."""
+    """Formats the points as CSV."""
     import numpy as np
 
     lux, error = (found.image(name).numpy()[:, :, 0] for name in ("lux", "error"))

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
     Pixels = NDArray[np.float32]
 
-#: Colours in sRGB codes: those of strokes, and the mark of the place.
+#: Colours as 8-bit sRGB values: the plane, the lamps, and the mark of the place.
 GREEN, YELLOW, MARK = (70, 200, 90), (255, 225, 40), (255, 0, 200)
-#: Share of the tint over the photo.
+#: Opacity of the tint that shows a mask over the photo.
 TINT = {"plane": 0.35, "lights": 0.75}
 #: Cells along the longer side of the photo among which the place is chosen.
 CELLS = 48
-#: Doubt of a cell below which no stroke is proposed.
-LEAST_DOUBT = 0.02
+#: Mean doubt of a neighbourhood up to which no stroke is proposed.
+MIN_DOUBT = 0.02
 
 
 @dataclass(frozen=True)
@@ -42,14 +42,14 @@ class Masks:
 
     @classmethod
     def of(cls, transfer: Transfer, photo: Image, strokes: Strokes | None) -> Masks:
-        """Reads the masks and looks for the place of the next stroke."""
+        """Reads the masks and chooses the place of the next stroke."""
         report = transfer.report
         plane, lights = (transfer.image(f"{name}-mask").numpy()[:, :, 0] for name in ("plane", "lights"))
         place, place_for = next_stroke(transfer, strokes, plane)
         return cls(photo, plane, lights, report.plane_error, report.lights_error, place, place_for, strokes is None)
 
     def draw(self) -> Image:
-        """The photo in grey, the plane in green, lamps in yellow, and a ring round the place."""
+        """Draws the photo in grey, the plane in green, lamps in yellow, and a ring around the place."""
         import numpy as np
 
         from .. import Image
@@ -81,7 +81,7 @@ class Masks:
         shown[distance <= 0.16 * radius] = MARK
 
     def facts(self) -> dict[str, Any]:
-        """The masks as JSON has them."""
+        """Returns the masks in the form in which JSON shows them."""
         return {
             "proposed": self.is_proposed,
             "plane_share": float((self.plane > 0.5).mean()),
@@ -94,7 +94,7 @@ class Masks:
         }
 
     def words(self) -> list[str]:
-        """The masks in lines."""
+        """Describes the masks in lines."""
         facts = self.facts()
         lines = [
             f"green: the plane, {percent(facts['plane_share'])} of the photo; wrong in {percent(self.plane_error)}",
@@ -107,8 +107,9 @@ class Masks:
 
 
 def next_stroke(transfer: Transfer, strokes: Strokes | None, plane: Pixels) -> tuple[tuple[int, int] | None, str]:
-    """The pixel of the most doubtful neighbourhood, and the mask that the stroke is for. With strokes, the doubt of a
-    pixel is how unlike every stroke it is; without strokes, how near its confidence is to one half."""
+    """Returns the most doubtful pixel of the most doubtful neighbourhood (None if nothing is doubtful enough), and the
+    mask for which a stroke is needed there. With strokes, the doubt of a pixel is how much it differs from all strokes;
+    without strokes, how close its confidence is to one half."""
     import numpy as np
 
     if strokes is None:
@@ -122,16 +123,16 @@ def next_stroke(transfer: Transfer, strokes: Strokes | None, plane: Pixels) -> t
     found = {name: strangest(doubt) for name, doubt in doubts.items()}
     name = max(found, key=lambda key: found[key][0])
     doubt, place = found[name]
-    return (place, name) if doubt > LEAST_DOUBT else (None, name)
+    return (place, name) if doubt > MIN_DOUBT else (None, name)
 
 
 def unseen(transfer: Transfer, strokes: Strokes, plane: Pixels) -> dict[str, Pixels]:
-    """How unlike every stroke each pixel is that belongs to a mask, or may belong to it."""
+    """For each mask, how much each pixel differs from all strokes; 0 for pixels that cannot belong to the mask."""
     from .. import Segment
     from ..errors import Error
 
     features, out = transfer.image("features"), {}
-    # As the transfer segments: lamps by colour alone, within the plane.
+    # Use the settings of the transfer: it segments lamps by colour alone, within the plane.
     parts: Any = (("plane", {}), ("lights", {"channels": 7}))
     for name, settings in parts:
         segment = Segment(transfer.context, features)
@@ -141,14 +142,15 @@ def unseen(transfer: Transfer, strokes: Strokes, plane: Pixels) -> dict[str, Pix
         try:
             segment.run(**settings)
             out[name] = segment.image("unseen").numpy()[:, :, 0]
-        except Error:  # no strokes of one class: this mask is a proposal
+        except Error:  # a class has no strokes, so the library proposed this mask
             out[name] = 0 * plane
     out["plane"] = out["plane"] * (plane > 0.5)
     return out
 
 
 def strangest(doubt: Pixels) -> tuple[float, tuple[int, int]]:
-    """The mean doubt of the most doubtful neighbourhood of 3 x 3 cells, and its most doubtful pixel."""
+    """Returns the mean doubt of the most doubtful neighbourhood of 3 x 3 cells, and the most doubtful pixel of its
+    central cell."""
     import numpy as np
 
     height, width = doubt.shape

@@ -6,7 +6,7 @@ import argparse
 
 from . import values
 
-#: Noise of the picture and longest time in seconds of each --quality.
+#: For each --quality, the noise of the picture and the maximum time in seconds; 0 stands for no limit.
 QUALITIES = {"draft": (0.10, 30.0), "good": (0.04, 180.0), "best": (0.01, 0.0)}
 
 #: Noise above which a PNG is filtered unless --no-filter is given.
@@ -17,7 +17,7 @@ IMAGE = "a picture: JPEG, PNG, WebP, TIFF, BMP, GIF, Radiance HDR or OpenEXR"
 
 
 def add_common(parser: argparse.ArgumentParser) -> None:
-    """--json, --strict and --progress."""
+    """Adds --json, --strict and --progress."""
     group = parser.add_argument_group("output")
     group.add_argument("--json", action="store_true", help="print one JSON object on stdout, and nothing else there")
     group.add_argument("--strict", action="store_true", help="exit code 1 if a warning doubts the result")
@@ -36,7 +36,7 @@ def add_common(parser: argparse.ArgumentParser) -> None:
 
 
 def add_units(parser: argparse.ArgumentParser) -> None:
-    """--units of a scene's file."""
+    """Adds --units, the unit of a scene's file."""
     parser.add_argument(
         "--units",
         choices=list(values.UNITS),
@@ -45,7 +45,7 @@ def add_units(parser: argparse.ArgumentParser) -> None:
 
 
 def add_luminaires(parser: argparse.ArgumentParser) -> None:
-    """--luminaires of a scene's file."""
+    """Adds --luminaires, the shape of the luminaires of a scene's file."""
     parser.add_argument(
         "--luminaires",
         choices=["faces", "point"],
@@ -56,7 +56,7 @@ def add_luminaires(parser: argparse.ArgumentParser) -> None:
 
 
 def add_camera(parser: argparse.ArgumentParser) -> None:
-    """--camera and --size."""
+    """Adds --camera and --size."""
     parser.add_argument(
         "--camera",
         type=values.camera,
@@ -74,7 +74,7 @@ def add_camera(parser: argparse.ArgumentParser) -> None:
 
 
 def add_quality(parser: argparse.ArgumentParser) -> None:
-    """--quality, --error, --time and --no-filter."""
+    """Adds --quality, --error, --time and --no-filter."""
     group = parser.add_argument_group("quality of the picture")
     goal = group.add_mutually_exclusive_group()
     listed = "; ".join(
@@ -105,5 +105,5 @@ def add_quality(parser: argparse.ArgumentParser) -> None:
 
 
 def add_white(parser: argparse._ActionsContainer, text: str) -> None:
-    """--white."""
+    """Adds --white."""
     parser.add_argument("--white", type=values.number(1e-6, 1e9, "a luminance in cd/m²"), metavar="CD", help=text)

@@ -1,4 +1,4 @@
-"""Rendering for a goal: noise, or time, by the library's plan; and the filtered picture with its stated error."""
+"""Renders to a goal of noise or time, with settings that the library plans, and filters the picture."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from ..types import CameraParams, RenderParams, RenderReport
     from .values import Camera
 
-#: Strength of the noise filter: the usual one.
+#: Strength of the noise filter: the default of the library.
 FILTER = 1.0
-#: Noise above which even the filtered picture is in doubt.
+#: Noise above which a warning doubts even the filtered picture.
 ROUGH = 0.1
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Noise to reach, or time to use; with both, whichever comes first. 0 is none."""
+    """The noise to reach and the time to use: the rendering ends when one of them is reached. 0 stands for no goal."""
 
     error: float = 0.0
     seconds: float = 0.0
     is_budget: bool = False
-    """Whether the time is for all of the work, as --time has it."""
+    """Whether the time is for the whole run, as with --time, and not for the rendering alone."""
 
     @classmethod
     def of(cls, args: argparse.Namespace) -> Goal:
-        """The goal of --time, --error or --quality."""
+        """Returns the goal that --time, --error or --quality states."""
         if args.time is not None:
             return cls(seconds=args.time, is_budget=True)
         if args.error is not None:
@@ -45,13 +45,13 @@ class Goal:
         return cls(error=error, seconds=seconds)
 
     def for_plan(self, passed: float) -> dict[str, Any]:
-        """The goal as a plan takes it, after some seconds of the time have passed."""
+        """Returns the goal as settings of a plan, `passed` seconds after the start of the run."""
         if self.is_budget:
             return {"time_budget_ms": max(100, round(1000 * (self.seconds - passed)))}
         return {"target_error": self.error}
 
     def settings(self, planned: RenderParams, args: argparse.Namespace) -> dict[str, Any]:
-        """Settings of the rendering by those of a plan."""
+        """Completes the settings of a plan to those of the rendering."""
         out = dict(planned)
         if not self.is_budget and self.seconds:
             out["time_budget_ms"] = round(1000 * self.seconds)
@@ -59,7 +59,7 @@ class Goal:
 
 
 def camera_of(scene: Scene, wanted: Camera | None) -> CameraParams:
-    """The settings of the camera of --camera, or of the first one."""
+    """Returns the settings of the camera that --camera states, or else of the first one."""
     count = scene.counts.cameras
     if wanted is not None and wanted.index is None:
         return {"position": wanted.position, "target": wanted.target, "fov_y": wanted.fov_y or 1.0}
@@ -72,14 +72,14 @@ def camera_of(scene: Scene, wanted: Camera | None) -> CameraParams:
 
 
 def base_settings(args: argparse.Namespace) -> RenderParams:
-    """Settings that a goal does not change."""
+    """Returns the settings that do not depend on the goal."""
     width, height = args.size
     return {"width": width, "height": height, "seed": args.seed}
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A rendering, and what is shown of it."""
+    """A rendering, and its image that is shown."""
 
     exact: Image
     shown: Image
@@ -95,7 +95,7 @@ class Picture:
         return error if self.is_filtered and math.isfinite(error) else None
 
     def facts(self) -> dict[str, Any]:
-        """The picture as JSON has it."""
+        """Returns the picture's figures in the form in which JSON shows them."""
         return {
             "paths_per_pixel": self.report.samples,
             "error": self.report.error,
@@ -104,7 +104,7 @@ class Picture:
         }
 
     def words(self) -> str:
-        """Its quality in a line."""
+        """Describes the quality in a line."""
         noise = f"{percent(self.report.error)} of noise at {self.report.samples} paths per pixel"
         if not self.is_filtered:
             return noise
@@ -113,7 +113,7 @@ class Picture:
         return f"{noise}; the PNG is filtered, with an error of {percent(self.filter_error)}"
 
     def doubts(self) -> list[dict[str, Any]]:
-        """Reasons to doubt it."""
+        """Returns reasons to doubt the picture."""
         out = []
         if self.is_black:
             out.append(
@@ -137,7 +137,7 @@ class Picture:
         return out
 
     def save(self, path: Path, white: float) -> None:
-        """Saves what is shown as PNG, or the values themselves as EXR."""
+        """Saves the shown image as PNG, or the unfiltered values as EXR."""
         if path.suffix.lower() == ".png":
             self.shown.save(path, exposure=1 / white)
         else:
@@ -147,7 +147,7 @@ class Picture:
 def plan_render(
     render: Render, args: argparse.Namespace, goal: Goal, passed: float, console: Console
 ) -> dict[str, Any]:
-    """The settings of a rendering by a plan."""
+    """Plans a rendering and returns its settings."""
     from ..plan import Plan
 
     plan = Plan(render.context)
@@ -156,7 +156,7 @@ def plan_render(
 
 
 def run(render: Render, settings: dict[str, Any], goal: Goal, console: Console, title: str = "rendering") -> Picture:
-    """Renders and chooses what is shown."""
+    """Renders, and chooses between the filtered and the unfiltered image."""
     render.run(console.step(title), **settings)
     report, exact = render.report, render.image("beauty")
     # Without light each path returns 0, and the relative error is not a number.
@@ -167,7 +167,7 @@ def run(render: Render, settings: dict[str, Any], goal: Goal, console: Console, 
 
 
 def automatic_white(picture: Picture) -> float:
-    """A luminance to show as white: what 99 % of the pixels do not exceed, but at most eight times the middle."""
+    """Chooses the luminance to show as white: the 99th percentile of the pixels, but at most eight times the median."""
     import numpy as np
 
     from .values import LUMINANCE
@@ -181,5 +181,5 @@ def automatic_white(picture: Picture) -> float:
 
 
 def expected(seconds: float, error: float) -> str:
-    """The prediction of a plan in words."""
+    """Describes the prediction of a plan."""
     return f"{clock(seconds)} until {percent(error)} of noise"

@@ -42,7 +42,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Predicts."""
+    """Prints the predictions."""
     if args.photo is None and (args.strokes or args.surface):
         raise usage(f"--{'strokes' if args.strokes else 'surface'} goes with --photo")
     goals: list[dict[str, Any]] = [{"target_error": error} for error in ERRORS]
@@ -58,11 +58,11 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         f"{percent(r['error']):>8} of noise in {clock(r['seconds']):>8}, {r['paths_per_pixel']} paths per pixel"
         for r in rows
     ]
-    return console.finish(result, lines, warnings)
+    return console.print_result(result, lines, warnings)
 
 
 def row(plan: Plan) -> dict[str, Any]:
-    """A plan as JSON has it."""
+    """Returns a plan in the form in which JSON shows it."""
     report = plan.report
     return {
         "seconds": report.seconds,
@@ -76,7 +76,7 @@ def row(plan: Plan) -> dict[str, Any]:
 def of_render(
     args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]
 ) -> tuple[list[Plan], list[dict[str, Any]]]:
-    """Plans of a rendering."""
+    """Plans a rendering, once for each goal."""
     from .. import Plan, Render
     from . import files, picture
 
@@ -92,7 +92,7 @@ def of_render(
 def of_transfer(
     args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]
 ) -> tuple[list[Plan], list[dict[str, Any]]]:
-    """Plans of a transfer, whose stages up to the texture are run."""
+    """Plans relighting and rendering of a transfer, after its stages up to the texture have run."""
     from .. import Plan
     from . import files, picture, transfer
     from .console import described_stages

@@ -1,4 +1,4 @@
-"""Where lux is calculated: on a surface, or on a level plane above the floor of a room."""
+"""The plane on which lux is calculated: a surface, or a level plane above the floor of a room."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 #: Height of a desk above the floor in metres. [convention]
 DESK = 0.75
-#: Border along the walls that the standard leaves out, in metres. [convention]
+#: Width in metres of the border along the walls that EN 12464-1 leaves out. [convention]
 BORDER = 0.5
 #: Distance in metres of the points from a surface, so that rays start before it. [rounding]
 LIFT = 1e-3
-#: Rays along each side by which the floor is found.
+#: Number of rays along each side of the ceiling that find the floor.
 RAYS = 16
-#: Cosine of the largest slope of a level surface: 5 degrees.
+#: Surfaces count as level up to a slope of 5 degrees; this is its cosine.
 LEVEL = 0.996
 
 
@@ -39,17 +39,17 @@ class Plane:
         return _norm(self.across), _norm(self.down)
 
     def grid(self) -> dict[str, Any]:
-        """The grid of an illuminance."""
+        """Returns the plane as the grid of an illuminance calculation."""
         return {"origin": self.origin, "across": self.across, "down": self.down, "normal": self.normal}
 
     def points(self, spacing: float) -> tuple[int, int]:
-        """Columns and rows for a spacing of about so many metres."""
+        """Returns the numbers of columns and rows of a grid whose points are about `spacing` metres apart."""
         across, down = (max(1, min(4096, round(side / spacing))) for side in self.sides)
         return across, down
 
 
 def on_surface(scene: Scene, name: str) -> Plane:
-    """The front of a planar surface."""
+    """Returns the plane of a surface's front."""
     found = scene.find_surface(name)
     u, v = found.size
     origin = tuple(o + LIFT * n for o, n in zip(found.origin, found.normal))
@@ -58,7 +58,7 @@ def on_surface(scene: Scene, name: str) -> Plane:
 
 
 def level(height: float, rectangle: tuple[float, ...]) -> Plane:
-    """A level rectangle X0, Z0, X1, Z1 at a height in the coordinates of the scene."""
+    """Returns the level rectangle X0, Z0, X1, Z1 at a height, in the coordinates of the scene."""
     x0, z0, x1, z1 = rectangle
     return Plane(
         (x0, height, z0), (x1 - x0, 0, 0), (0, 0, z1 - z0), (0, 1, 0), f"the level plane at y = {height:.2f} m"
@@ -66,7 +66,7 @@ def level(height: float, rectangle: tuple[float, ...]) -> Plane:
 
 
 def above_floor(scene: Scene, ceiling: str, height: float = DESK, border: float = BORDER) -> Plane:
-    """The plane at a height above the floor, under a ceiling and without a border along the walls."""
+    """Returns the plane at a height above the floor, under a ceiling, without a border along the walls."""
     found = scene.find_surface(ceiling)
     if abs(found.normal[1]) < LEVEL:
         raise usage(f'--surface: "{ceiling}" is not level, so there is no plane of desks under it; give --rect')
@@ -84,7 +84,7 @@ def above_floor(scene: Scene, ceiling: str, height: float = DESK, border: float 
 
 
 def floor_below(scene: Scene, surface: Surface) -> float:
-    """The height of the floor: the lowest tenth of what rays hit that leave a ceiling downwards."""
+    """Finds the height of the floor by rays that go down from a ceiling: the lowest tenth of the hits lies below it."""
     import numpy as np
 
     steps = (np.arange(RAYS) + 0.5) / RAYS

@@ -1,4 +1,4 @@
-"""Parses the command line, runs a subcommand, and turns its end into an exit code."""
+"""Parses the command line, runs a subcommand, and returns its exit code."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ DESCRIPTION = """Lighting from one photo onto a 3D scene, rendering, lux, and pi
 
 
 class Paragraphs(argparse.HelpFormatter):
-    """Fills each paragraph of a description, but leaves commands, which are set in."""
+    """Wraps each paragraph of a description, but keeps the lines of commands, which are indented."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         fill = super()._fill_text
@@ -36,7 +36,7 @@ class Paragraphs(argparse.HelpFormatter):
 
 
 class Parser(argparse.ArgumentParser):
-    """Errors are one line on stderr; options cannot be abbreviated."""
+    """A parser that prints errors in one line and does not accept abbreviated options."""
 
     def __init__(self, **settings: Any) -> None:
         settings.setdefault("formatter_class", Paragraphs)
@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class Version(argparse.Action):
-    """Prints the version, which is the library's, only when it is asked for."""
+    """The option --version. It loads the library, whose version it prints, only when it is used."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         import luxfer
@@ -58,7 +58,7 @@ class Version(argparse.Action):
 
 
 def parser() -> Parser:
-    """The parser of all subcommands."""
+    """Creates the parser of all subcommands."""
     top = Parser(prog="luxfer", description=DESCRIPTION, epilog=TABLE)
     top.add_argument("--version", action=Version, nargs=0, help="print the version and end")
     commands = top.add_subparsers(dest="command", metavar="SUBCOMMAND", required=True, parser_class=Parser)
@@ -71,7 +71,8 @@ def parser() -> Parser:
 
 
 def joined(argv: Sequence[str]) -> list[str]:
-    """Values that begin with a minus sign, such as `--camera -1,2,3/0,0,0`, are not taken for options."""
+    """Joins options with values that begin with a minus sign, such as `--camera -1,2,3/0,0,0`, so that argparse does
+    not take the values for options."""
     out: list[str] = []
     for word in argv:
         if out and re.match(r"-[\d.]", word) and re.fullmatch(r"--[a-z][a-z-]*", out[-1]):
@@ -82,7 +83,7 @@ def joined(argv: Sequence[str]) -> list[str]:
 
 
 def parse(argv: Sequence[str]) -> argparse.Namespace:
-    """The options of a command line; an unknown one is an error that names the nearest."""
+    """Parses a command line. The error for an unknown option names the most similar one."""
     args, unknown = parser().parse_known_args(joined(argv))
     if unknown:
         word = unknown[0].partition("=")[0]
@@ -123,7 +124,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _reason(error: Exception) -> tuple[Exit, str]:
-    """The exit code and the message of an error of the library or of Python."""
+    """Returns the exit code and the message of an error of the library or of Python."""
     if isinstance(error, ImportError):
         if error.name == "numpy":
             return Exit.FAILED, "numpy is not installed: pip install numpy, or apt install python3-numpy"
@@ -143,7 +144,7 @@ def _reason(error: Exception) -> tuple[Exit, str]:
 
 
 def _stop_on_terminate() -> Any:
-    """SIGTERM ends the work as Ctrl-C does; returns the handler to restore."""
+    """Makes SIGTERM end the work as Ctrl-C does. Returns the previous handler, for restoring it."""
 
     def stop(_number: int, _frame: FrameType | None) -> None:
         raise KeyboardInterrupt

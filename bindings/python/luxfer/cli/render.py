@@ -60,7 +60,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def layers(text: str) -> list[str]:
-    """Names of layers and NAME=EXPRESSION."""
+    """Parses names of layers and NAME=EXPRESSION."""
     found = [part.strip() for part in text.split(",")]
     for part in found:
         if part not in LAYERS and not ("=" in part and all(part.partition("=")[::2])):
@@ -69,7 +69,7 @@ def layers(text: str) -> list[str]:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Renders."""
+    """Renders and prints the result."""
     from . import files
 
     if not args.out:
@@ -116,4 +116,4 @@ def render_scene(args: argparse.Namespace, console: Console, scene: Scene, outpu
         **found.facts(),
     }
     lines = [found.words(), f"white is {white:g} cd/m²"]
-    return console.finish(result, lines, files.scene_warnings(scene) + found.doubts())
+    return console.print_result(result, lines, files.scene_warnings(scene) + found.doubts())

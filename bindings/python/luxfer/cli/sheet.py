@@ -16,9 +16,10 @@ from .exits import Exit, usage
 
 SUMMARY = "print a sheet to paint on, read a photo of it"
 
-#: Width and height of papers on their side, in millimetres.
+#: Width and height of papers in landscape format, in millimetres.
 PAPERS = {"a5": (210.0, 148.0), "a4": (297.0, 210.0), "a3": (420.0, 297.0), "letter": (279.4, 215.9)}
-#: Distance of the marks from their places, in pixels of the photo, above which the paper is not flat.
+#: A warning says that the paper is not flat if its marks lie farther than this from their expected positions, in pixels
+#: of the photo.
 UNEVEN = 2.0
 
 
@@ -53,7 +54,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def paper(text: str) -> tuple[float, float]:
-    """A paper by its name, or WxH in millimetres."""
+    """Parses the name of a paper size, or WxH in millimetres."""
     if text.lower() in PAPERS:
         return PAPERS[text.lower()]
     match = re.fullmatch(r"([\d.]+)x([\d.]+)", text)
@@ -64,7 +65,7 @@ def paper(text: str) -> tuple[float, float]:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Prints or reads."""
+    """Draws or reads a sheet."""
     from . import files
 
     if not args.out:
@@ -74,7 +75,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
 
 
 def settings(args: argparse.Namespace) -> dict[str, Any]:
-    """What print and read must have in common."""
+    """Returns the settings that must be equal for printing and reading."""
     return {"paper_width": args.paper[0], "paper_height": args.paper[1], "dpi": args.dpi}
 
 
@@ -115,11 +116,11 @@ def draw(args: argparse.Namespace, console: Console) -> Exit:
         f"on {args.paper[0]:g} x {args.paper[1]:g} mm",
         f"read it with --size {width}x{height}",
     ]
-    return console.finish(result, lines)
+    return console.print_result(result, lines)
 
 
 def read(args: argparse.Namespace, console: Console) -> Exit:
-    """Aligns a photo."""
+    """Aligns the photo of a sheet."""
     from .. import align_sheet
     from . import files
 
@@ -141,4 +142,4 @@ def read(args: argparse.Namespace, console: Console) -> Exit:
             f"the marks are {report.residual:.1f} pixels off their places: the paper is not flat, or the lens distorts"
         )
         doubts.append(doubt("sheet", "uneven", message, "try a scanner, or flatten the paper"))
-    return console.finish(result, [f"{report.marks} of 10 marks; aligned within {report.error:.2f} pixels"], doubts)
+    return console.print_result(result, [f"{report.marks} of 10 marks; aligned within {report.error:.2f} pixels"], doubts)

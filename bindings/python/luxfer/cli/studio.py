@@ -11,17 +11,17 @@ SUMMARY = "start the studio, where masks and lamps can be seen and changed"
 
 
 def add(parser: argparse.ArgumentParser) -> None:
-    """All words are handed on."""
+    """Adds one option that takes all arguments."""
     parser.add_argument("arguments", nargs="*", help="see `luxfer studio --help`")
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Starts it."""
+    """Starts the studio."""
     return Exit(start(args.arguments))
 
 
 def start(argv: list[str]) -> int:
-    """Hands the words on to `luxfer.studio`; returns its exit code."""
+    """Passes the arguments to `luxfer.studio` and returns its exit code."""
     from ..studio import main
 
     return main(argv)

@@ -24,9 +24,10 @@ SUMMARY = "paint a scene in the style of an artwork"
 ARTWORKS = ("pen", "stipple", "paint")
 EXTRAS = ("normals", "edges", "materials", "caustics")
 PRESETS = ("full", "fast", "preview")
-#: Longest side of an artwork: the exemplar is rendered at its size.
+#: Maximum side of an artwork in pixels: the exemplar is rendered at the size of the artwork.
 LONGEST = 2048
-#: Guide error above which the exemplar hardly has what the target shows. [judged on 2 scenes]
+#: Guide error above which a warning says that the exemplar hardly contains the light of the target.
+#: [judged on 2 scenes]
 POOR = 0.25
 
 
@@ -78,7 +79,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def extras(text: str) -> list[str]:
-    """Names of guides."""
+    """Parses names of guides."""
     if text == "none":
         return []
     names = text.split(",")
@@ -89,7 +90,7 @@ def extras(text: str) -> list[str]:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Paints."""
+    """Stylises the scene and prints the result."""
     from .. import Stylize
     from . import files
 
@@ -127,11 +128,11 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         doubts.append(
             doubt("stylise", "guides", message, "try an exemplar scene in light and materials like the target's")
         )
-    return console.finish(result, lines, doubts)
+    return console.print_result(result, lines, doubts)
 
 
 def exemplar(context: Context, args: argparse.Namespace, console: Console) -> tuple[Image, Guides]:
-    """The artwork, and the guides of the scene that it shows, at its size."""
+    """Returns the artwork, and the guides of the exemplar scene, rendered at the size of the artwork."""
     from . import files
 
     title = "rendering the exemplar"
@@ -161,7 +162,7 @@ def guides(
     camera: Any,
     title: str,
 ) -> Guides:
-    """The guides of a scene."""
+    """Renders the guides of a scene."""
     from .. import Guides
     from . import files, picture
 
@@ -178,7 +179,7 @@ def guides(
 
 
 def settings(stylize: Stylize, args: argparse.Namespace, console: Console) -> dict[str, Any]:
-    """The settings of a preset, or of a plan for --time or --error."""
+    """Returns the settings of a preset, or of a plan for --time or --error."""
     from .. import Plan
 
     if args.time is None and args.error is None:

@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
-    """Lists them."""
+    """Lists the surfaces."""
     from . import files
 
     scene = files.load_scene(files.context_of(args), args.scene, args.units)
@@ -39,4 +39,4 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     lines = [f"{c.score:4.2f}  {c.kind.name.lower():8}  {c.name}: {c.reason}" for c in shown]
     if len(candidates) > len(shown):
         lines.append(f"and {len(candidates) - len(shown)} more (--count)")
-    return console.finish(result, lines or ["no surface has an area"], files.scene_warnings(scene))
+    return console.print_result(result, lines or ["no surface has an area"], files.scene_warnings(scene))

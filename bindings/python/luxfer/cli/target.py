@@ -24,26 +24,27 @@ COLUMNS = (
     "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind"
 )
 
-#: Seed of the paths that measure what --lux has reached, independent of those that set it. [convention]
+#: Seed of the paths that measure the illuminance after --lux; they are independent of those that set the factor.
+#: [convention]
 RECHECK_SEED = 2
 
 
 def luminance(colour: Any) -> float:
-    """Luminance of a linear colour."""
+    """Returns the luminance of a linear colour."""
     return float(sum(w * c for w, c in zip(LUMINANCE, colour)))
 
 
 @dataclass
 class Lit:
-    """The lit scene, and what has been done to it."""
+    """The lit scene, with the changes of --colour and --lux."""
 
     scene: Scene
     transfer: Transfer
     white: float
-    """The luminance to show as white."""
+    """The luminance that pictures show as white."""
     lamps: list[Fixture]
     lux: float | None = None
-    """The mean illuminance that the lamps reached, measured in their new light."""
+    """The mean illuminance after --lux, measured with the new light."""
     lux_error: float = 0.0
     """Its standard error."""
     lux_target: float | None = None
@@ -53,17 +54,17 @@ class Lit:
 
     @classmethod
     def of(cls, transfer: Transfer, white: float) -> Lit:
-        """The result of the stage RELIGHT."""
+        """Returns the scene that the stage RELIGHT has lit."""
         return cls(transfer.scene("lit"), transfer, white, transfer.fixtures)
 
     @property
     def material(self) -> int:
-        """The emitting material, which the transfer adds last."""
+        """Index of the emissive material, which the transfer adds as the last one."""
         return self.scene.counts.materials - 1
 
     @property
     def flux(self) -> float:
-        """Luminous flux of all lamps in lumens."""
+        """Returns the luminous flux of all lamps in lumens."""
         return sum(lamp.flux for lamp in self.lamps)
 
     def multiply(self, factors: Any) -> None:
@@ -82,11 +83,11 @@ class Lit:
         self.lamps, self.is_changed = lamps, True
 
     def mean_colour(self) -> tuple[float, ...]:
-        """The light of all lamps together, per channel."""
+        """Returns the sum of the light of all lamps, per channel."""
         return tuple(sum(lamp.radiance[i] * lamp.area for lamp in self.lamps) for i in range(3))
 
     def recolour(self, wanted: float | tuple[float, ...]) -> None:
-        """Gives the lamps together a colour, by kelvin or linear RGB, at equal flux."""
+        """Changes the mean colour of the lamps to a colour temperature or a linear RGB colour, at equal flux."""
         from ..photometry import colour_of_temperature
 
         colour = colour_of_temperature(self.scene.context, wanted) if isinstance(wanted, float) else wanted
@@ -97,7 +98,7 @@ class Lit:
         self.multiply([max(0.0, c) * scale / n if n > 0 else 0.0 for c, n in zip(colour, now)])
 
     def dim_to(self, lux: float, surface: str, console: Console) -> None:
-        """Gives a plane of desks a mean illuminance; the picture is exposed for it."""
+        """Dims the lamps to a mean illuminance of the plane of desks, and adapts the exposure of the picture."""
         from .lux import measure
         from .plane import above_floor
 
@@ -119,15 +120,15 @@ class Lit:
         self.lux_target, self.lux_words = lux, plane.words
 
     def _ceiling(self, surface: str) -> str:
-        """The name of what emits, which was split off the surface."""
+        """Returns the name of the emissive surface, which the transfer has split off the ceiling."""
         return self.scene.mesh_name(self.scene.counts.meshes - 1) or surface
 
     def _has_other_light(self) -> bool:
-        """Whether anything else gives light; known once the lamps are off."""
+        """Whether the scene has other light than the lamps; valid while the lamps are off."""
         return int(self.scene.requirements().lights) != 0
 
     def save_lamps(self, path: Path) -> None:
-        """luminaires.csv."""
+        """Writes luminaires.csv."""
         if not self.is_changed:
             self.transfer.save_fixtures(path)
             return
@@ -150,7 +151,7 @@ class Lit:
         files.write_text(path, "\n".join(lines) + "\n")
 
     def facts(self) -> dict[str, Any]:
-        """The lamps as JSON has them."""
+        """Returns the lamps in the form in which JSON shows them."""
         return {"lamps": len(self.lamps), "flux_lm": self.flux, "cct_k": self.cct, **self._lux_facts()}
 
     def _lux_facts(self) -> dict[str, Any]:
@@ -160,14 +161,14 @@ class Lit:
 
     @property
     def cct(self) -> float | None:
-        """Correlated colour temperature of the lamps together."""
+        """Returns the correlated colour temperature of the mean colour of the lamps."""
         from ..photometry import colour_temperature
 
         colour = self.mean_colour()
         return colour_temperature(self.scene.context, colour)[0] if luminance(colour) > 0 else None
 
     def words(self) -> list[str]:
-        """The lamps in lines."""
+        """Describes the lamps in lines."""
         temperature = f", {self.cct:.0f} K" if self.cct else ""
         lines = [f"{len(self.lamps)} lamps, {self.flux:.0f} lm together{temperature}"]
         if self.lux is not None:

@@ -29,7 +29,7 @@ FILES = ("masks.png", "emission.exr", "lit.glb", "luminaires.csv", "render.exr",
 
 #: Longest side of the texture in texels for each --quality.
 TEXELS = {"draft": 1024, "good": 2048, "best": 4096}
-#: Luminance of the photo's white in cd/m², if --white does not state it: that of the library.
+#: Default luminance of the photo's white in cd/m²: the default of the library.
 WHITE = 100.0
 
 
@@ -55,7 +55,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def add_light(parser: argparse.ArgumentParser) -> None:
-    """Options of the new light."""
+    """Adds the options of the new light."""
     group = parser.add_argument_group("light")
     group.add_argument(
         "--lux",
@@ -105,7 +105,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         masks_found.draw().save(preview)
         console.wrote(preview)
         result = {"command": "transfer", "surface": start.surface, **masks_found.facts()}
-        return console.finish(result, masks_found.words(), start.warnings + described_stages(transfer.warnings))
+        return console.print_result(result, masks_found.words(), start.warnings + described_stages(transfer.warnings))
     assert out is not None
     out.mkdir(parents=True, exist_ok=True)
     masks_found.draw().save(out / "masks.png")
@@ -114,7 +114,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
 
 
 class Start:
-    """What a transfer starts from."""
+    """The input of a transfer."""
 
     def __init__(self, context: Context, args: argparse.Namespace) -> None:
         from . import files
@@ -133,7 +133,7 @@ class Start:
 
 
 def prepare(context: Context, args: argparse.Namespace) -> tuple[Transfer, Start]:
-    """A transfer with its inputs, none of whose stages has run."""
+    """Creates a transfer with its inputs; no stage has run yet."""
     from .. import Transfer
     from . import picture
 
@@ -149,7 +149,7 @@ def prepare(context: Context, args: argparse.Namespace) -> tuple[Transfer, Start
 def light(
     args: argparse.Namespace, console: Console, transfer: Transfer, start: Start, out: Path, masks: dict[str, Any]
 ) -> Exit:
-    """The stages from the texture on."""
+    """Runs the stages from the texture on and writes their results."""
     from . import picture, target
 
     transfer.run(first="unwarp", last="emission", progress=console.step("making the texture"), **start.settings)
@@ -182,7 +182,7 @@ def light(
     warnings += found.doubts()
     console.wrote(out / "report.json")
     write_report(out / "report.json", {**result, "files": console.files, "warnings": warnings})
-    return console.finish(result, words(transfer, start, lit) + [found.words()], warnings)
+    return console.print_result(result, words(transfer, start, lit) + [found.words()], warnings)
 
 
 def solve(args: argparse.Namespace, console: Console, transfer: Transfer, start: Start, goal: Any) -> dict[str, Any]:
@@ -205,7 +205,7 @@ def solve(args: argparse.Namespace, console: Console, transfer: Transfer, start:
 
 
 def render(args: argparse.Namespace, console: Console, lit: Any, settings: dict[str, Any], goal: Any) -> Any:
-    """The picture of the lit scene."""
+    """Renders the lit scene."""
     from .. import Render
     from . import picture
 
@@ -216,7 +216,7 @@ def render(args: argparse.Namespace, console: Console, lit: Any, settings: dict[
 
 
 def facts(transfer: Transfer, start: Start, lit: Any, masks: dict[str, Any]) -> dict[str, Any]:
-    """The results as JSON has them."""
+    """Returns the results in the form in which JSON shows them."""
     report = transfer.report
     return {
         "command": "transfer",
@@ -233,7 +233,7 @@ def facts(transfer: Transfer, start: Start, lit: Any, masks: dict[str, Any]) -> 
 
 
 def words(transfer: Transfer, start: Start, lit: Any) -> list[str]:
-    """The results in lines."""
+    """Describes the results in lines."""
     report = transfer.report
     distance = f"the photo's camera {report.plane_distance:.2f} m from the plane"
     if report.plane_distance_error > 0:
@@ -247,7 +247,7 @@ def words(transfer: Transfer, start: Start, lit: Any) -> list[str]:
 
 
 def write_report(path: Path, result: dict[str, Any]) -> None:
-    """report.json, the same object as --json prints."""
+    """Writes report.json, the same object as --json prints."""
     from . import files
 
     files.write_text(path, as_json(result) + "\n")

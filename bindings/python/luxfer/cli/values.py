@@ -1,4 +1,4 @@
-"""Values of options: text to numbers with their ranges. Each error names the value and what is allowed."""
+"""Parses the values of options and checks their ranges. Each error names the value and the allowed range."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from dataclasses import dataclass
 #: Length of each unit of --units in metres.
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254, "ft": 0.3048}
 
-#: Luminance of linear Rec.709 colours.
+#: Weights of the channels in the luminance of linear Rec.709 colours.
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def wrong(text: str, allowed: str) -> argparse.ArgumentTypeError:
-    """The error of a value."""
+    """Creates the error for a wrong value."""
     return argparse.ArgumentTypeError(f"'{text}' is not {allowed}")
 
 
 def real(text: str) -> float | None:
-    """A finite number, or None."""
+    """Parses a finite number; None if the text is something else."""
     try:
         value = float(text)
     except ValueError:
@@ -30,7 +30,7 @@ def real(text: str) -> float | None:
 
 
 def number(low: float, high: float, what: str) -> Callable[[str], float]:
-    """A type for numbers in [low, high]."""
+    """Returns a parser of numbers in [low, high]."""
 
     def parse(text: str) -> float:
         value = real(text)
@@ -42,7 +42,7 @@ def number(low: float, high: float, what: str) -> Callable[[str], float]:
 
 
 def whole(low: int, high: int, what: str) -> Callable[[str], int]:
-    """A type for whole numbers in [low, high]."""
+    """Returns a parser of whole numbers in [low, high]."""
 
     def parse(text: str) -> int:
         if not re.fullmatch(r"[+-]?\d{1,18}", text) or not low <= int(text) <= high:
@@ -53,7 +53,7 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
 
 
 def size(text: str) -> tuple[int, int]:
-    """WIDTHxHEIGHT."""
+    """Parses WIDTHxHEIGHT."""
     match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text)
     if not match or not all(1 <= int(side) <= 65536 for side in match.groups()):
         raise wrong(text, "WIDTHxHEIGHT such as 640x360, each side in [1, 65536]")
@@ -61,7 +61,7 @@ def size(text: str) -> tuple[int, int]:
 
 
 def seconds(text: str) -> float:
-    """A time: 30s, 1.5min, 1h, 1:30."""
+    """Parses a time: 30s, 1.5min, 1h, 1:30."""
     allowed = "a time such as 30s, 2min, 1h or 1:30, from 0.1 s to 24 h"
     if match := re.fullmatch(r"(\d{1,4}):(\d\d)", text):
         value = 60.0 * int(match[1]) + int(match[2])
@@ -76,7 +76,7 @@ def seconds(text: str) -> float:
 
 
 def share(text: str) -> float:
-    """An error relative to the mean: 2% or 0.02."""
+    """Parses an error relative to the mean: 2% or 0.02."""
     value = real(text.removesuffix("%"))
     value = value / 100 if value is not None and text.endswith("%") else value
     if value is None or not 1e-5 <= value <= 1:
@@ -85,7 +85,7 @@ def share(text: str) -> float:
 
 
 def length(text: str) -> float:
-    """A length in metres: 0.75, 75cm, 30inch."""
+    """Parses a length and returns metres: 0.75, 75cm, 30inch."""
     match = re.fullmatch(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(mm|cm|m|inch|ft)?", text)
     value = real(match[1]) if match else None
     if match is None or value is None or not abs(value) <= 1e6:
@@ -94,7 +94,7 @@ def length(text: str) -> float:
 
 
 def above_zero(text: str) -> float:
-    """A length above 0."""
+    """Parses a length above 0."""
     value = length(text)
     if value <= 0:
         raise wrong(text, "a length above 0, such as 0.25 or 25cm")
@@ -102,13 +102,13 @@ def above_zero(text: str) -> float:
 
 
 def numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """Numbers between commas, or None."""
+    """Parses numbers separated by commas; None if they are not `count` numbers."""
     parts = [real(part) for part in text.split(",")]
     return tuple(p for p in parts if p is not None) if len(parts) == count and None not in parts else None
 
 
 def colour(text: str) -> float | tuple[float, ...]:
-    """A colour of light: kelvin as a float, or linear red, green, blue."""
+    """Parses a colour of light: a colour temperature in kelvin (a float), or linear red, green, blue."""
     allowed = "a colour of light: kelvin from 1000K to 20000K, #RRGGBB (sRGB), or linear R,G,B such as 1,0.9,0.7"
     if match := re.fullmatch(r"([\d.]+)\s*[kK]", text):
         kelvin = real(match[1])
@@ -129,7 +129,7 @@ def colour(text: str) -> float | tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Camera:
-    """The camera of --camera: one of the scene, or one by its position."""
+    """The camera that --camera states: one of the scene by its number, or one by its position."""
 
     index: int | None = None
     position: tuple[float, ...] = ()
@@ -138,7 +138,7 @@ class Camera:
 
 
 def camera(text: str) -> Camera:
-    """A number, or X,Y,Z/X,Y,Z with an optional /DEGREES."""
+    """Parses a number, or X,Y,Z/X,Y,Z with an optional /DEGREES."""
     allowed = "a number of a camera of the scene, or POSITION/TARGET[/DEGREES] such as 1,1.6,2/4,1,0/60"
     if re.fullmatch(r"\d{1,9}", text):
         return Camera(index=int(text))
@@ -157,7 +157,7 @@ def camera(text: str) -> Camera:
 
 
 def rectangle(text: str) -> tuple[float, ...]:
-    """X0,Z0,X1,Z1 in metres."""
+    """Parses X0,Z0,X1,Z1 in metres."""
     found = numbers(text, 4)
     if found is None or found[0] >= found[2] or found[1] >= found[3]:
         raise wrong(text, "X0,Z0,X1,Z1 in metres with X0 < X1 and Z0 < Z1")

@@ -119,7 +119,7 @@ def _centre(weight: float, hessian: Array, gradient: Array, limits: Limits, x: A
     return x
 
 
-def least_violation(soft: Limits, hard: Limits, start: Array, weights: Array | None = None) -> tuple[float, Optimum]:
+def min_violation(soft: Limits, hard: Limits, start: Array, weights: Array | None = None) -> tuple[float, Optimum]:
     """The smallest r such that all soft limits hold up to weight * r (weights of 1 if not given), and where; the start
     is strictly inside the hard limits. A weight of 0 makes a limit hard, and the start must then be inside it too."""
     weights = np.ones(len(soft.constant)) if weights is None else weights

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .convex import Limits, least_violation
+from .convex import Limits, min_violation
 
 if TYPE_CHECKING:
     from .constraints import Model
@@ -44,17 +44,17 @@ def relaxations(
     """The dimmers that miss all requirements by the least equal share, and for each requirement what it would have to
     become if only it were relaxed; requirements whose relaxation alone does not help are left out."""
     parts = [of_groups(model.limits(r), groups) for r in requirements]
-    _, closest = least_violation(joined(parts), hard, start)
+    _, closest = min_violation(joined(parts), hard, start)
     out = []
     for index, r in enumerate(requirements):
         rest = [p for i, p in enumerate(parts) if i != index]
         limits, inside = hard, start
         if rest:
-            violation, found = least_violation(joined(rest), hard, start)
+            violation, found = min_violation(joined(rest), hard, start)
             if violation > -NONE * 1e-2:
                 continue  # the others contradict each other already
             limits, inside = joined(rest).joined(hard), found.x[:-1]
-        violation, found = least_violation(parts[index], limits, inside)
+        violation, found = min_violation(parts[index], limits, inside)
         if violation > NONE:
             out.append(Relaxation(r, model.value(r, groups @ found.x[:-1])))
     return groups @ closest.x[:-1], out

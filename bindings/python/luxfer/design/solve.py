@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .check import Checked, Settings, check
 from .constraints import DIMMABLE, Model
-from .convex import Limits, box, least_violation, minimise
+from .convex import Limits, box, min_violation, minimise
 from .explain import Relaxation, joined, of_groups, relaxations
 from .look import Distance, distance, objective
 from .luminaires import Luminaire, dimmed, lit_scene
@@ -241,7 +241,7 @@ def _dimmers(
     limits = hard
     if parts:
         soft = joined(parts)
-        violation, inside = least_violation(soft, hard, start)
+        violation, inside = min_violation(soft, hard, start)
         if violation > -INSIDE:
             return None
         start, limits = inside.x[:-1], soft.joined(hard)

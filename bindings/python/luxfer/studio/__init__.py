@@ -8,18 +8,18 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 |---|---|
 | command | the options of the command line |
 | app | the web application: its routes, its start |
-| security | who may ask: token, Host and Origin; which files may be read |
-| opening | how the browser finds the page without its address on a command line |
-| outbox | what waits to be sent to a page |
+| security | which requests are accepted (token, Host, Origin), and which files may be read |
+| opening | opens the page in the browser without its address on a command line |
+| outbox | messages that wait to be sent to a page |
 | files | photos, scenes and project files, by the hash of their content |
-| session | one user: the project that is wanted, the connection to the page |
-| jobs | threads that do the newest work and give up what is out of date |
+| session | one user: the current project, and the connections to the page |
+| jobs | threads that do the newest work and cancel outdated work |
 | live | masks while strokes are painted, at a small size |
-| light | the steps from the photo to the lit room, of which only those run whose input has changed |
+| light | the steps from the photo to the lit room; a step runs only if its input has changed |
 | room | its corners, its work plane, the brightness of its pictures |
 | pictures | images as bytes for the page |
-| project | what a project consists of; it is checked here |
-| program | a project as a Python program |
+| project | the entries of a project and their checks |
+| program | converts a project to a Python program |
 """
 
 from __future__ import annotations

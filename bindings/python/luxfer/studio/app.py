@@ -1,4 +1,4 @@
-"""The web application: its routes and its start. All of them lie behind security.Guard."""
+"""The web application: its routes and its start. security.Guard checks every request first."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ from .security import Allowed, Guard, new_token
 from .session import Session
 
 STATIC = Path(__file__).resolve().parent / "static"
-#: Users whose page has gone are forgotten, the one that was here longest ago first, beyond this number.
+#: Maximum number of sessions. Beyond it, sessions without an open page are closed, the least recently used first.
 MAX_SESSIONS = 8
-#: Project files beyond this are refused: 16 MiB are over a million points of strokes. [convention]
+#: Maximum size of a project file in bytes: 16 MiB hold over a million points of strokes. [convention]
 MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
 
 
 class Studio:
-    """What all users share."""
+    """The state that all users share."""
 
     def __init__(self, files: Files, first: projects.Project | None, project_file: Path | None):
         self.files, self.first, self.project_file = files, first, project_file
@@ -51,7 +51,7 @@ class Studio:
         self.lock = threading.Lock()
 
     def start(self) -> projects.Project:
-        """What a new page begins with; generates the demonstration photo where none was named."""
+        """Returns the project of a new page; generates the demonstration photo if no photo was named."""
         first = self.first or projects.DEFAULTS
         if first["photo"] is None:
             known = self.files.demo(self.context)
@@ -59,7 +59,7 @@ class Studio:
         return projects.checked(first)
 
     def session(self, name: str) -> Session:
-        """The session of that name, which may be a new one."""
+        """Returns the session of this name, and creates it if there is none."""
         with self.lock:
             if name not in self.sessions:
                 self._make_room()
@@ -85,14 +85,14 @@ class Studio:
     # -- routes
 
     async def get_start(self, request: Request) -> Response:
-        """GET start: the first project, and which sessions have a page open."""
+        """GET start: sends the first project and the names of the sessions that have an open page."""
         project = await run_in_threadpool(self.start)
         live = [name for name, session in list(self.sessions.items()) if session.listeners]
         named = self.first is not None and self.first["photo"] is not None
         return JSONResponse({"project": project, "open": live, "named": named, "version": luxfer.__version__})
 
     async def put_file(self, request: Request) -> Response:
-        """POST files?name=: takes a photo or a room from the page."""
+        """POST files?name=: receives a photo or a room from the page."""
         data = await body(request, MAX_UPLOAD)
         if data is None:
             return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
@@ -112,11 +112,11 @@ class Studio:
         return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
 
     def try_known(self, known: Known, data: bytes) -> None:
-        """Raises what the library says about a file of a folder, which may name files beside it."""
+        """As try_file, for a file on disk, which may name files in its folder."""
         self.try_file(data, known.path.suffix.lower(), known.path.parent)
 
     def try_file(self, data: bytes, suffix: str, folder: Path | None = None) -> None:
-        """Raises what the library says about a file that it cannot read."""
+        """Reads a file by the library, and raises its error if that fails."""
         if suffix in ROOMS:
             scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
@@ -125,7 +125,7 @@ class Studio:
             luxfer.Image.from_bytes(self.context, data)
 
     async def get_files(self, request: Request) -> Response:
-        """GET files: what lies in the folders that the user named; open=PATH opens one of them."""
+        """GET files: lists the files in the folders that the user named; open=PATH opens one of them."""
         if wanted := request.query_params.get("open"):
             try:
                 known = await run_in_threadpool(self.files.open, Path(wanted), self.try_known)
@@ -145,7 +145,7 @@ class Studio:
         return JSONResponse({"files": listed})
 
     async def put_project(self, request: Request) -> Response:
-        """POST projects: the text of a project file; its project, or what is wrong with it."""
+        """POST projects: receives the text of a project file; sends its project, or the error in it."""
         data = await body(request, MAX_PROJECT)
         if data is None:
             return problem(f"the project is larger than {MAX_PROJECT >> 20} MiB", 413)
@@ -157,7 +157,7 @@ class Studio:
             return problem("the project is nested too deeply")
 
     async def get_room(self, request: Request) -> Response:
-        """GET room.glb?session=: the room before it is lit, for the page's own view of it."""
+        """GET room.glb?session=: sends the room before it is lit, for the page's own 3D view."""
         session = self.sessions.get(request.query_params.get("session", ""))
         if session is None or session.wanted is None:
             return problem("there is no such session", 404)
@@ -169,7 +169,7 @@ class Studio:
         return Response(data, media_type="model/gltf-binary")
 
     async def get_out(self, request: Request) -> Response:
-        """GET out/KIND?session=: a result as a file to keep."""
+        """GET out/KIND?session=: sends a result as a file to download."""
         session = self.sessions.get(request.query_params.get("session", ""))
         if session is None:
             return problem("there is no such session", 404)
@@ -183,7 +183,7 @@ class Studio:
         return FileResponse(path, filename=path.name, background=done)
 
     async def talk(self, socket: WebSocket) -> None:
-        """WebSocket ws?session=: edits come in, results go out as a JSON header and bytes."""
+        """WebSocket ws?session=: receives edits, and sends results, each as a JSON header and bytes."""
         name = socket.query_params.get("session", "")
         if not (8 <= len(name) <= 64 and name.isascii() and name.isalnum()):
             await socket.close(1008)
@@ -233,26 +233,26 @@ class Studio:
         )
 
 
-async def body(request: Request, most: int) -> bytes | None:
-    """What a request brings; None, without reading on, if that is more than `most` bytes."""
+async def body(request: Request, max_bytes: int) -> bytes | None:
+    """Reads the body of a request; stops and returns None if it is longer than `max_bytes`."""
     stated = request.headers.get("content-length", "")
-    if stated.isdecimal() and int(stated) > most:
+    if stated.isdecimal() and int(stated) > max_bytes:
         return None
     data = bytearray()
     async for part in request.stream():
         data += part
-        if len(data) > most:
+        if len(data) > max_bytes:
             return None
     return bytes(data)
 
 
 def problem(message: str, status: int = 400) -> Response:
-    """An answer that says what is wrong."""
+    """An answer with an error message."""
     return JSONResponse({"message": message}, status)
 
 
 def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Project | None, Path | None]:
-    """The project that the command line asks for, and the file that it is kept in."""
+    """Returns the project that the command line names, and the file in which it is saved."""
     project: projects.Project | None = None
     kept, photo = asked.project, asked.photo
     if photo is not None and photo.suffix.lower() == ".json":
@@ -275,8 +275,8 @@ def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Pro
 
 
 def bind(port: int) -> socket.socket:
-    """A socket on the loopback address, on a port that stays the same from start to start if it can: the browser keeps
-    strokes by port."""
+    """Opens a socket on the loopback address. It uses the same port at each start if that is free, because the browser
+    stores strokes by port."""
     for candidate in [port, *range(port + 1, port + 20), 0] if port else [0]:
         listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         if sys.platform == "win32":  # there, another program could otherwise bind the same port over it
@@ -309,7 +309,7 @@ def serve(asked: argparse.Namespace) -> int:
     port = listener.getsockname()[1]
     address = f"http://127.0.0.1:{port}/{token}/"
     guarded = Guard(studio.app(), token, port)
-    # Results are bits and pixels, which compression would only delay.
+    # Do not compress results: they are masks and pixels, for which compression only costs time.
     config = uvicorn.Config(
         guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off"
     )

@@ -1,7 +1,7 @@
 """Photos, scenes and project files, by the hash of their content.
 
-A project names its files by hash, so that it means the same files wherever they lie. What a user drops on the page is
-kept in the state folder, so that a server that is started again still has it.
+A project names its files by hash, so it does not depend on where they lie. Files that a user drops on the page are
+stored in the state folder, so that they are still there after a restart of the server.
 """
 
 from __future__ import annotations
@@ -25,12 +25,13 @@ from .security import Allowed
 #: Size of the photo that the library generates if there is none: a few seconds of work.
 DEMO_SIZE = (600, 400)
 DEMO_NAME = "generated office.png"
-#: Uploads beyond this are refused.
+#: Maximum size of an upload in bytes.
 MAX_UPLOAD = 1 << 30
 #: Files of the studio in its state folder are deleted if they have not been used for this time.
 KEEP_SECONDS = 30 * 24 * 3600.0
-#: The studio's own names in the state folder: projects of sessions, pages that open the studio, and files by their
-#: hash with the name after it, or with a dot before it while they are written. Any other name belongs to the user.
+#: Patterns of the studio's own names in the state folder: projects of sessions (SESSION), pages that open the studio
+#: (OPENING), uploaded files (KEPT: hash and name), and files that are being written (PARTIAL).
+#: Files with other names belong to the user.
 SESSION = re.compile(r"session-[A-Za-z0-9]{8,64}\.json")
 OPENING = re.compile(r"open-studio-[0-9a-f]{16}\.html")
 KEPT = re.compile(r"([0-9a-f]{64})-(.+)", re.DOTALL)
@@ -46,7 +47,7 @@ class Known:
     path: Path
 
     def read(self) -> bytes:
-        """Its content, which must still be what the hash says."""
+        """Reads the content. Raises an error if it no longer has this hash."""
         data = self.path.read_bytes()
         if digest(data) != self.sha256:
             raise ValueError(f"{self.name} has been changed since it was opened: open it again")
@@ -54,7 +55,7 @@ class Known:
 
 
 def digest(data: bytes) -> str:
-    """The hash that projects name files by."""
+    """Returns the hash by which projects name files."""
     return hashlib.sha256(data).hexdigest()
 
 
@@ -68,7 +69,7 @@ def is_project(path: Path) -> bool:
 
 
 def state_folder() -> Path:
-    """Where the system wants programs to keep what is not a document."""
+    """Returns the studio's folder at the system's place for the state of programs."""
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "luxfer-studio"
     return Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "luxfer-studio"
@@ -99,13 +100,14 @@ class Files:
                 path.unlink()
 
     def renew(self, sha256: str) -> None:
-        """Notes that a file is in use: it is kept for another month."""
+        """Marks an uploaded file as used, so that it is kept for another month."""
         known = self.known.get(sha256)
         if known is not None and known.path.parent == self.state / "files" and known.path.exists():
             os.utime(known.path)
 
     def open(self, path: Path, check: Callable[[Known, bytes], None] | None = None) -> Known:
-        """A file by its path, if the user has named it or its folder. `check` raises what is wrong with it."""
+        """Opens a file that the user has named, or that lies in a folder that the user has named. `check` raises an
+        error if the content is wrong."""
         real = self.allowed.check(path)
         data = real.read_bytes()
         known = Known(real.name, digest(data), real)
@@ -115,8 +117,8 @@ class Files:
         return known
 
     def open_named(self, project: Project, folder: Path) -> None:
-        """Opens the files of a project that lie beside it, if their hashes are those that it states. A project may
-        come from a stranger: its names do not lead out of its folder."""
+        """Opens those files of a project that lie in its folder and have the hashes that the project states. A project
+        may come from a stranger, so its file names must not lead out of the folder."""
         folder = folder.resolve()
         for file in filter(None, (project["photo"], project["room"])):
             path = (folder / file["name"]).resolve()
@@ -125,7 +127,7 @@ class Files:
                 self.open(path)
 
     def upload(self, name: str, data: bytes) -> Known:
-        """A file that the user gave to the page."""
+        """Stores a file that the user has given to the page."""
         safe = (
             "".join(c if c.isalnum() or c in " ._-" else "_" for c in Path(name.replace("\\", "/")).name)[-80:]
             or "file"
@@ -141,7 +143,8 @@ class Files:
         return self.known[sha256]
 
     def find(self, sha256: str, name: str) -> Known:
-        """A file that a project names; FileNotFoundError asks the user for it."""
+        """Returns a file that a project names; raises FileNotFoundError, upon which the page asks the user for the
+        file."""
         if sha256 in self.known:
             self.renew(sha256)
             return self.known[sha256]
@@ -152,7 +155,7 @@ class Files:
         raise FileNotFoundError(f"the project needs the file {name}")
 
     def demo(self, context: luxfer.Context) -> Known:
-        """The generated photo, made once and kept."""
+        """Returns the demonstration photo, which is generated once and then kept."""
         with self._demo_lock:
             width, height = DEMO_SIZE
             path = self.state / f"demo-{luxfer.__version__}-{width}.png"

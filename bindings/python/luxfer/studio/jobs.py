@@ -1,4 +1,4 @@
-"""Threads that do the newest work and give up what is out of date."""
+"""Threads that do the newest work and cancel outdated work."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import luxfer
 
 T = TypeVar("T")
 
-#: How often the progress of a running job is looked at.
+#: Interval in seconds at which a running job is polled.
 POLL_SECONDS = 0.01
 
 
 class OutOfDate(Exception):
-    """Newer work has arrived while this was being done."""
+    """A newer item has arrived while `work` ran."""
 
 
 class Latest(Generic[T]):
-    """A thread that calls `work` with the newest item; an item that is replaced before its turn is never seen.
+    """A thread that calls `work` with the newest item; an item that is replaced while it waits is dropped.
 
-    `work` calls `check` or `finish` now and then, which raise OutOfDate as soon as there is a newer item. What `work`
-    raises otherwise is given to `failed`.
+    `work` must call `check` or `finish` often; they raise OutOfDate as soon as there is a newer item. All other
+    exceptions of `work` are passed to `failed`.
     """
 
     def __init__(self, name: str, work: Callable[[T], None], failed: Callable[[Exception], None]):
@@ -35,7 +35,7 @@ class Latest(Generic[T]):
         self._thread.start()
 
     def put(self, item: T) -> None:
-        """Replaces what waits or runs."""
+        """Passes on a new item. It replaces a waiting item and makes the running work outdated."""
         with self._changed:
             self._item = item
             if self._job is not None:
@@ -43,14 +43,14 @@ class Latest(Generic[T]):
             self._changed.notify_all()
 
     def stop(self) -> None:
-        """Gives up what waits or runs; the next item goes on."""
+        """Discards a waiting item and makes the running work outdated; the next item is worked on as usual."""
         with self._changed:
             self._item, self._stopped = None, True
             if self._job is not None:
                 self._job.cancel()
 
     def close(self) -> None:
-        """Ends the thread, after what runs has given up."""
+        """Makes the running work outdated, waits until it has ended, and ends the thread."""
         with self._changed:
             self._closed = True
             if self._job is not None:
@@ -59,7 +59,7 @@ class Latest(Generic[T]):
         self._thread.join()
 
     def wait_idle(self, check: Callable[[], None]) -> None:
-        """Waits until nothing waits or runs here; calls `check` meanwhile."""
+        """Waits until no item waits or runs; calls `check` repeatedly meanwhile."""
         while True:
             check()
             with self._changed:
@@ -69,17 +69,17 @@ class Latest(Generic[T]):
 
     @property
     def is_replaced(self) -> bool:
-        """Whether what runs is out of date."""
+        """Whether the running work is outdated."""
         return self._item is not None or self._stopped or self._closed
 
     def check(self) -> None:
-        """Raises OutOfDate if what runs is out of date."""
+        """Raises OutOfDate if the running work is outdated."""
         if self.is_replaced:
             raise OutOfDate
 
     def finish(self, job: luxfer.Job[Any], seen: Callable[[float], None] | None = None) -> Any:
-        """Waits for a job of the library and returns its result; cancels it if it gets out of date. `seen` gets the
-        finished share."""
+        """Waits for a job of the library and returns its result. Cancels the job and raises OutOfDate if the work
+        becomes outdated. `seen` receives the finished share."""
         with self._changed:
             self._job = job
             if self.is_replaced:

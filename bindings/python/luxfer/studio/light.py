@@ -22,15 +22,15 @@ from .live import strokes_of
 from .project import Project
 from .room import bounds, exposure_for, pattern_of, work_plane
 
-#: Settings of every relighting: no clock decides, so that a project gives the same light each time.
+#: Settings of every relighting. They do not depend on time, so that a project always gives the same light.
 RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
 MAX_TEXELS = 1024
-#: The first picture: its pixels, and the time that it may take.
+#: Number of pixels of the first picture, and its time in milliseconds.
 FIRST_PIXELS, FIRST_MS = 36_000, 350
-#: Seconds between two reports of progress.
+#: Minimum time between two reports of progress, in seconds.
 REFRESH_SECONDS = 0.5
-#: More paths per pixel than any picture gets.
-MOST_SAMPLES = 1 << 16
+#: More paths per pixel than any picture gets: the time ends the rendering.
+MAX_SAMPLES = 1 << 16
 #: Points of the calculation grid on its longer side, and paths for each.
 LUX_POINTS, LUX_SAMPLES = 24, 64
 #: The step whose result each step needs.
@@ -47,7 +47,7 @@ AFTER = {
     "plan": "first",
     "picture": "first",
 }
-#: Distance from a lamp's contour at which a point still means it, as a share of the photo's width.
+#: Maximum distance of a point from the lamp that it selects, as a share of the photo's width.
 REACH = 0.015
 
 
@@ -61,17 +61,17 @@ class Light:
         self.transfer = luxfer.Transfer(self.context, photo)
         self.keys: dict[str, str] = {}
         self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
-        self.told = 0.0
+        self.last_reported = 0.0
         self.exposure = 1.0
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
-        #: The project, the very object, to which the result of a step belongs, for the steps that files need.
+        #: For each step that files need, the project object to which its result belongs.
         self.done: dict[str, Project] = {}
 
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
-        """Runs all steps that are out of date, and tells the page of each result."""
+        """Runs all outdated steps and sends each result to the page."""
         surface = project["surface"] or self.surface
         pattern = [surface, project["pattern"], project["zones"]]
         shot = [project["camera"], size]
@@ -94,7 +94,7 @@ class Light:
         self.step("picture", project["plan"], lambda: self.refine(project, size))
 
     def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
-        """Runs a step if it is out of date."""
+        """Runs a step if it is outdated."""
         self.thread.check()
         key = self.keys.get(AFTER[name], "") + json.dumps([name, inputs])
         if self.keys.get(name) == key:
@@ -145,7 +145,7 @@ class Light:
             self.send_warnings()
 
     def send_masks(self, lights: np.ndarray[Any, Any]) -> None:
-        """The masks at the full size, and the lamps in the photo."""
+        """Sends the masks at full size, and the lamps of the photo."""
         plane, lamps = self.transfer.image("plane-mask"), luxfer.Image(self.context, lights)
         report = self.transfer.report
         size, plane_bits = pictures.bits(plane)
@@ -159,7 +159,7 @@ class Light:
         self.send("masks", plane_bits + pictures.bits(lamps)[1], **header)
 
     def send_view(self) -> None:
-        """Vanishing points and, once the plane has been unwarped, its rectangle."""
+        """Sends the vanishing points and, once the plane has been unwarped, its rectangle."""
         view = self.transfer.view
         width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
         self.send(
@@ -235,7 +235,8 @@ class Light:
         )
 
     def camera(self, project: Project) -> dict[str, Any]:
-        """The camera of the project, the first one of the room, or one in its corner."""
+        """Returns the camera of the project, or else the first one of the room, or else one near a corner of the
+        room."""
         if project["camera"]:
             return dict(project["camera"])
         if self.room.counts.cameras:
@@ -248,7 +249,7 @@ class Light:
         self.render = self.quick(self.lit, project, size, "after")
 
     def second_picture(self, project: Project, size: tuple[int, int]) -> None:
-        """The full size, with one path for each pixel and the noise filter."""
+        """Renders and sends a picture of full size, with one path per pixel and the noise filter."""
         render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
         start = time.perf_counter()
@@ -261,7 +262,7 @@ class Light:
         self.quick(self.room if compare == "own" else self.transfer.scene("white"), project, size, "before")
 
     def quick(self, scene: luxfer.Scene, project: Project, size: tuple[int, int], which: str) -> luxfer.Render:
-        """A small picture within a fixed time."""
+        """Renders and sends a small picture within a fixed time."""
         share = min(1.0, math.sqrt(FIRST_PIXELS / (size[0] * size[1])))
         render = luxfer.Render(self.context, scene)
         render.set_camera(**self.camera(project))
@@ -270,13 +271,13 @@ class Light:
         width, height = (max(16, round(side * share)) for side in size)
         budget = FIRST_MS if which == "after" else 4 * FIRST_MS
         self.thread.finish(
-            render.start(width=width, height=height, preview=1.0, samples=MOST_SAMPLES, time_budget_ms=budget)
+            render.start(width=width, height=height, preview=1.0, samples=MAX_SAMPLES, time_budget_ms=budget)
         )
         self.send_picture(render, project, which, False)
         return render
 
     def measure(self, surface: str) -> None:
-        """Lux on the work plane, and a brightness for the pictures."""
+        """Computes and sends the illuminance of the work plane, and chooses the exposure of the pictures."""
         plane, problem = work_plane(self.room, surface)
         metres = plane.sides
         cell = max(metres) / LUX_POINTS
@@ -309,7 +310,7 @@ class Light:
         )
 
     def refine(self, project: Project, size: tuple[int, int]) -> None:
-        """The picture at its full size, better and better, until it has the paths of the plan."""
+        """Renders the picture at full size and sends each intermediate state, until it has the paths of the plan."""
         settings = {**project["plan"]["render"], "width": size[0], "height": size[1], "preview": 1.0}
         render = luxfer.Render(self.context, self.lit)
         render.set_camera(**self.camera(project))
@@ -332,9 +333,9 @@ class Light:
         self.send_picture(render, project, "after", True, time.perf_counter() - start)
 
     def send_progress(self, share: float, seconds: float) -> None:
-        """How far the picture is, a few times a second."""
-        if seconds - self.told >= REFRESH_SECONDS or seconds < self.told:
-            self.told = seconds
+        """Sends the progress of the picture, at most every REFRESH_SECONDS."""
+        if seconds - self.last_reported >= REFRESH_SECONDS or seconds < self.last_reported:
+            self.last_reported = seconds
             self.send("progress", share=share, seconds=seconds)
 
     def send_picture(
@@ -361,12 +362,12 @@ class Light:
         )
 
     def show_again(self, project: Project) -> None:
-        """Sends the pictures that are shown once more, such as with another exposure."""
+        """Sends the current pictures again, for example with another exposure."""
         for which, (render, is_done, seconds) in list(self.shown.items()):
             self.send_picture(render, project, which, is_done, seconds)
 
     def plan(self, project: Project, size: tuple[int, int]) -> None:
-        """The settings for the noise asked for, and what they cost and leave."""
+        """Plans the settings for the wanted noise, and sends the predicted time and error."""
         self.send("working", stage="plan")
         render, plan = luxfer.Render(self.context, self.lit), luxfer.Plan(self.context)
         render.set_camera(**self.camera(project))

@@ -1,7 +1,8 @@
 """Masks while strokes are painted, at a small size, and the pixel where one more stroke would help most.
 
-The features of the small photo are made anew for each stroke, because strokes lay out the room; all of it takes less
-than 50 ms on two idle cores. As soon as the user rests, light.py makes the masks again at the full size.
+The features of the small photo are computed again after each stroke, because strokes change the layout of the room.
+This and the masks take less than 50 ms on two idle cores. When the user pauses, light.py computes the masks at full
+size.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from . import pictures
 from .jobs import Latest
 from .project import Project
 
-#: Size of the small photo: masks of this many pixels appear within 50 ms on two cores.
+#: Number of pixels of the small photo, chosen so that masks appear within 50 ms on two cores.
 PIXELS = 150_000
-#: Side of the window in which doubt is summed, as a share of the photo's width.
+#: Side of the window over which doubt is averaged, as a share of the photo's width.
 WINDOW = 0.06
-#: Mean doubt in the window below which no stroke is asked for.
+#: Mean doubt in the window below which no stroke is proposed.
 MIN_DOUBT = 0.5
-#: How the library calls the masks that strokes are for.
+#: For each kind of stroke, the library's name of its mask, and whether the stroke belongs to the mask.
 PHASES = {
     "plane": ("plane", True),
     "not-plane": ("plane", False),
@@ -33,7 +34,8 @@ PHASES = {
 def strokes_of(
     context: luxfer.Context, project: Project, size: tuple[int, int], share: float = 1.0
 ) -> luxfer.Strokes:
-    """The strokes of a project for a photo of `size` pixels, which is `share` as large as the project's."""
+    """Converts the strokes of a project to strokes on a photo of `size` pixels, scaled by `share` from the
+    project's."""
     out = luxfer.Strokes(context, *size)
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]
@@ -57,7 +59,7 @@ class LiveMasks:
         self.segments: dict[str, luxfer.Segment] = {}
 
     def follow(self, project: Project, thread: Latest[Any]) -> dict[str, luxfer.Image]:
-        """The masks by the strokes of a project; one that cannot be made is missing."""
+        """Computes the masks from the strokes of a project; masks that cannot be computed are missing in the result."""
         if not self.is_viewed:
             thread.finish(self.transfer.start("view", "view"))
             self.is_viewed = True
@@ -81,7 +83,7 @@ class LiveMasks:
         return masks
 
     def doubt(self) -> dict[str, Any] | None:
-        """Where one more stroke helps most, in pixels of the project's photo, and for which mask."""
+        """Returns the position, in pixels of the project's photo, where one more stroke helps most, and its mask."""
         best: dict[str, Any] | None = None
         for phase, segment in self.segments.items():
             unseen = segment.image("unseen").numpy()[..., 0]

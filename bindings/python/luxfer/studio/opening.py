@@ -1,7 +1,7 @@
-"""How the browser finds the page without its address on a command line, which every user of the machine can read.
+"""Opens the page in the browser without its address on a command line, which every user of the machine can read.
 
-The browser is started with the path of a file that only its owner can read. The file leads to an address with a code
-that the server takes once; the answer leads to the address with the token.
+The browser is started with the path of a file that only its owner can read. The file redirects to an address with a
+code that the server accepts once; the answer redirects to the address with the token.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ PAGE = """<!doctype html>
 
 
 def leading_to(address: str) -> str:
-    """A page that leads to an address."""
+    """Returns a page that redirects to an address."""
     return PAGE.format(address=html.escape(address))
 
 
 class Opening:
-    """A file that opens the studio once."""
+    """A file that opens the studio; it works once."""
 
     def __init__(self, folder: Path, address: str):
         """`folder` is where the file is written; `address` is the one with the code."""
         self.path = folder / f"open-studio-{secrets.token_hex(8)}.html"
-        # O_EXCL: a file or a link that somebody else has put there is not written to.
+        # O_EXCL: fail if somebody else has created a file or a link there.
         with os.fdopen(os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as out:
             out.write(leading_to(address))
 

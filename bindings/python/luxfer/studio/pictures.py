@@ -1,4 +1,4 @@
-"""Images as bytes for the page, and the lamps of a mask."""
+"""Converts images to bytes for the page, and finds the lamps of a mask."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 import luxfer
 import numpy as np
 
-#: Masks of more pixels are reduced for the display.
+#: Masks with more pixels than this are reduced for the display.
 DISPLAY_PIXELS = 600_000
 
 
 def reduced(image: luxfer.Image, pixels: int) -> luxfer.Image:
-    """An image of at most that many pixels, filtered."""
+    """Reduces an image, with a filter, to at most `pixels` pixels."""
     width, height, _ = image.size
     share = (pixels / (width * height)) ** 0.5
     if share >= 1:
@@ -23,14 +23,14 @@ def reduced(image: luxfer.Image, pixels: int) -> luxfer.Image:
 
 
 def rgb(values: np.ndarray[Any, Any], exposure: float) -> bytes:
-    """Linear values (height, width, 3) as sRGB bytes."""
+    """Converts linear values (height, width, 3) to sRGB bytes."""
     linear = np.clip(values[..., :3] * np.float32(exposure), 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.power(linear, np.float32(1 / 2.4)) - 0.055)
     return (255 * encoded + 0.5).astype(np.uint8).tobytes()
 
 
 def bits(mask: luxfer.Image) -> tuple[dict[str, Any], bytes]:
-    """A mask with one bit for each pixel, rows padded to bytes, and its size."""
+    """Packs a mask into one bit per pixel, with rows padded to bytes; returns its size and the bytes."""
     values = mask.numpy()[..., 0]
     step = max(1, int(np.ceil((values.size / DISPLAY_PIXELS) ** 0.5)))
     shown = values[step // 2 :: step, step // 2 :: step] > 0.5
@@ -38,7 +38,7 @@ def bits(mask: luxfer.Image) -> tuple[dict[str, Any], bytes]:
 
 
 def digest(*images: luxfer.Image) -> str:
-    """A hash of images, to see whether two results are equal to the bit."""
+    """Returns a hash of images, by which two results can be tested for equality."""
     out = hashlib.sha256()
     for image in images:
         out.update(image.numpy().tobytes())
@@ -46,7 +46,8 @@ def digest(*images: luxfer.Image) -> str:
 
 
 def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
-    """The regions of a mask, connected by edges: the number of each pixel's region, from 1, and how many there are."""
+    """Finds the 4-connected regions of a mask. Returns for each pixel the number of its region, from 1, and the number
+    of regions."""
     padded = np.zeros((mask.shape[0], mask.shape[1] + 2), np.int8)
     padded[:, 1:-1] = mask
     edges = np.diff(padded, axis=1)
@@ -80,7 +81,7 @@ def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
 
 
 def boxes(labels: np.ndarray[Any, Any], count: int) -> list[dict[str, Any]]:
-    """Box, centre and area of each region, in pixels."""
+    """Returns box, centre and area of each region, in pixels."""
     ys, xs = np.nonzero(labels)
     numbers = labels[ys, xs] - 1
     area = np.bincount(numbers, minlength=count)
@@ -92,7 +93,7 @@ def boxes(labels: np.ndarray[Any, Any], count: int) -> list[dict[str, Any]]:
 
 
 def without(mask: np.ndarray[Any, Any], points: list[list[float]], reach: float) -> np.ndarray[Any, Any]:
-    """A mask without the regions at points, or nearest to them within `reach` pixels."""
+    """Removes from a mask the region at each point, or else the nearest region within `reach` pixels of it."""
     labels, count = regions(mask > 0.5)
     if not count or not points:
         return mask

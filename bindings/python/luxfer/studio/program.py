@@ -1,4 +1,4 @@
-"""A project as a Python program that does the same without the studio, with the same result to the bit."""
+"""Converts a project to a Python program that needs no studio and gives bit-identical results."""
 
 from __future__ import annotations
 
@@ -62,7 +62,8 @@ render.image("preview").save("render.png", {exposure})
 
 
 def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
-    """The text of the program. Surface, camera and exposure are those that the project leaves to the library."""
+    """Returns the text of the program. Surface, camera and exposure are the values chosen by the studio, for a project
+    that does not state them."""
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]

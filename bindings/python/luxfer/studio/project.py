@@ -1,4 +1,4 @@
-"""What a project consists of: all that decides its result, as a JSON object that the page sends and files store."""
+"""A project: all inputs that determine the result, as a JSON object that the page sends and files store."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import Any
 FORMAT = 1
 KINDS = ("plane", "not-plane", "light", "not-light")
 SCALES = ("distance", "lamp", "spacing", "across")
-#: The library's own limit of paths per pixel, which a plan may choose.
-MOST_SAMPLES = 1 << 20
+#: The library's maximum of paths per pixel, up to which a plan may go.
+MAX_SAMPLES = 1 << 20
 
 Project = dict[str, Any]
 
-#: What a new project has, without photo and room.
+#: A new project, without photo and room.
 DEFAULTS: Project = {
     "luxfer_studio": FORMAT,
     "photo": None,  # {"name", "sha256"}
@@ -36,16 +36,16 @@ DEFAULTS: Project = {
 
 
 class Invalid(ValueError):
-    """A project that is none; the message says where."""
+    """A value is not a valid project; the message names the wrong entry."""
 
 
 def message(error: Exception) -> str:
-    """What to tell the user about an error; never empty, which the page takes for no error."""
+    """Returns the message of an error; it is never empty, because the page takes an empty message for no error."""
     return str(error) or type(error).__name__
 
 
 def failure(error: Exception) -> dict[str, Any]:
-    """The message to the page about an error. A file that is missing can be given."""
+    """Returns the message to the page about an error. If a file is missing, the page asks for it."""
     missing = isinstance(error, FileNotFoundError)
     return {"type": "failed", "message": message(error), "missing": missing, "error": type(error).__name__}
 
@@ -81,11 +81,11 @@ def truth(value: Any, name: str) -> bool:
 
 
 def many(
-    check: Callable[[Any, str], Any], count: int | None = None, most: int = 100_000
+    check: Callable[[Any, str], Any], count: int | None = None, max_count: int = 100_000
 ) -> Callable[[Any, str], list[Any]]:
     def check_all(values: Any, name: str) -> list[Any]:
-        if not isinstance(values, list) or (count is not None and len(values) != count) or len(values) > most:
-            raise Invalid(f"{name} is a list of {f'up to {most}' if count is None else count} entries")
+        if not isinstance(values, list) or (count is not None and len(values) != count) or len(values) > max_count:
+            raise Invalid(f"{name} is a list of {f'up to {max_count}' if count is None else count} entries")
         return [check(value, f"{name}[{i}]") for i, value in enumerate(values)]
 
     return check_all
@@ -114,7 +114,7 @@ def whole(low: int, high: int) -> Callable[[Any, str], int]:
 
 
 def settings(**fields: Callable[[Any, str], Any]) -> Callable[[Any, str], dict[str, Any]]:
-    """Some settings of the library, and no others: a project may come from a stranger."""
+    """A check for settings of the library. It refuses all other fields, because a project may come from a stranger."""
 
     def check(value: Any, name: str) -> dict[str, Any]:
         if not isinstance(value, dict) or not set(value) <= set(fields):
@@ -129,9 +129,9 @@ FILE = record(name=text, sha256=text)
 FIELDS = {
     "photo": FILE,
     "room": optional(FILE),
-    "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), most=5000),
-    "removed": many(many(PIXEL, 2), most=5000),
-    "zones": many(many(METRE, 4), most=5000),
+    "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), max_count=5000),
+    "removed": many(many(PIXEL, 2), max_count=5000),
+    "zones": many(many(METRE, 4), max_count=5000),
     "surface": optional(text),
     "pattern": record(
         scale=one_of(SCALES),
@@ -145,13 +145,13 @@ FIELDS = {
     "exposure": optional(number(1e-9, 1e9)),
     "noise": number(1e-3, 1),
     "plan": optional(
-        record(render=settings(samples=whole(1, MOST_SAMPLES), target_error=number(0, 1e9), seed=whole(0, 2**64 - 1)))
+        record(render=settings(samples=whole(1, MAX_SAMPLES), target_error=number(0, 1e9), seed=whole(0, 2**64 - 1)))
     ),
 }
 
 
 def checked(value: Any) -> Project:
-    """A project with everything in its place; Invalid if that cannot be."""
+    """Checks a project, and adds missing entries; raises Invalid if an entry is wrong."""
     if not isinstance(value, dict) or value.get("luxfer_studio") != FORMAT:
         raise Invalid("this is not a project of luxfer studio")
     if unknown := set(value) - set(DEFAULTS):
@@ -165,7 +165,7 @@ def checked(value: Any) -> Project:
 
 
 def load(path: Path) -> Project:
-    """The project in a file."""
+    """Loads the project in a file."""
     try:
         return checked(json.loads(path.read_text(encoding="utf-8")))
     except (UnicodeDecodeError, json.JSONDecodeError) as broken:
@@ -173,7 +173,7 @@ def load(path: Path) -> Project:
 
 
 def dumps(project: Project) -> str:
-    """The text of a project file: one line for each entry and each stroke, so that versions can be compared."""
+    """Formats a project as a file with one line per entry and per stroke, so that versions can be compared."""
     lines = []
     for name, value in project.items():
         body = json.dumps(value)
@@ -184,7 +184,7 @@ def dumps(project: Project) -> str:
 
 
 def save(path: Path, project: Project) -> None:
-    """Writes a project file in one step, so that a crash leaves the old one or the new one."""
+    """Writes a project file atomically: after a crash, either the old or the new file is there."""
     partial = path.with_name(f".{path.name}.partial")
     partial.write_text(dumps(project), encoding="utf-8")
     os.replace(partial, path)

@@ -1,4 +1,4 @@
-"""What follows from a room alone: its corners, its work plane, and a brightness for its pictures."""
+"""Properties of a room: its corners, its work plane, and an exposure for its pictures."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ from ..cli.exits import Failure
 from ..cli.plane import Plane, above_floor, level
 from .project import Project
 
-#: What the mean of a picture's surfaces becomes of display white [convention: half a stop over middle grey], and their
-#: reflectance [convention: between the 0.2 to 0.7 of EN 12464-1 for floors and ceilings].
+#: KEY: the value, relative to display white, of a surface with the room's mean illuminance [convention: half a stop
+#: above middle grey]. REFLECTANCE: the assumed reflectance of this surface [convention: between those of floors (0.2)
+#: and ceilings (0.7) in EN 12464-1].
 KEY, REFLECTANCE = 0.25, 0.45
 
 
 def exposure_for(lux: float) -> float:
-    """What to multiply a picture in cd/m² with, so that a room with that mean illuminance has a usual brightness."""
+    """Returns the factor for a picture in cd/m² by which a room of this mean illuminance gets the usual brightness."""
     return KEY * math.pi / (REFLECTANCE * lux) if lux > 1e-6 else 1.0
 
 
 def pattern_of(project: Project) -> dict[str, Any]:
-    """The settings of the library for the pattern of a project."""
+    """Returns the pattern of a project as settings of the library."""
     pattern = project["pattern"]
     return {
         "scale": pattern["scale"],
@@ -35,14 +36,15 @@ def pattern_of(project: Project) -> dict[str, Any]:
 
 
 def bounds(room: luxfer.Scene) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """The lowest and the highest corner of a room."""
+    """Returns the lowest and the highest corner of the bounding box of a room."""
     points = [room.mesh_arrays(i)["positions"] for i in range(room.counts.meshes)]
     return np.min([p.min(0) for p in points if len(p)], 0), np.max([p.max(0) for p in points if len(p)], 0)
 
 
 def work_plane(room: luxfer.Scene, surface: str) -> tuple[Plane, str]:
-    """The plane of desks above the floor below a surface, as `luxfer lux` has it, and an empty text. Where there is no
-    such plane, the reason, and a level plane halfway up, by which the brightness of pictures can be chosen."""
+    """Returns the plane of desks above the floor below a surface, as `luxfer lux` chooses it, and an empty text. If
+    there is no such plane, returns a level plane at half the height of the room, for the choice of the exposure, and
+    the reason."""
     try:
         return above_floor(room, surface), ""
     except Failure:

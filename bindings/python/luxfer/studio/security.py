@@ -1,9 +1,9 @@
-"""Who may ask the server, and which files it may read.
+"""Decides which requests the server accepts, and which files it may read.
 
-The server listens on the loopback address, where every program and every web page of this machine can reach it. So
-each address begins with a random token, and three headers are checked: Host (against names that resolve to this
-machine), Origin and Sec-Fetch-Site (against pages of other servers). A file is read only if the user named it or its
-folder.
+The server listens on the loopback address, where every program and every web page of this machine can reach it.
+Therefore each address begins with a random token, and three headers are checked: Host (against names that resolve to
+this machine), Origin and Sec-Fetch-Site (against pages of other servers). A file is read only if the user named it or
+its folder.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ HEADERS = [
 
 
 def new_token() -> str:
-    """192 random bits."""
+    """Returns a token of 192 random bits."""
     return secrets.token_urlsafe(24)
 
 
 class Guard:
-    """An ASGI application around another: refuses what does not come from the page, and takes the token off paths."""
+    """Wraps an ASGI application: refuses requests that do not come from the page, and removes the token from paths."""
 
     def __init__(self, app: Any, token: str, port: int):
         self.app, self.token = app, token
@@ -47,7 +47,7 @@ class Guard:
         self.code = ""
 
     def new_code(self) -> str:
-        """The path of a page that leads to the address with the token, the first time that it is asked for."""
+        """Returns the path of a page that redirects to the address with the token; it works once."""
         self.code = new_token()
         return f"open/{self.code}"
 
@@ -66,8 +66,8 @@ class Guard:
         await self.app(inner, receive, sender(send) if scope["type"] == "http" else send)
 
     def is_opened(self, scope: Any) -> bool:
-        """Whether a request brings the code, which is then used up. It may come from another site: so the browser
-        calls the file that leads here."""
+        """Whether a request has the code, which then becomes invalid. The request may come from another site, because
+        browsers treat the file that redirects here as one."""
         headers = headers_of(scope)
         if not self.code or scope["type"] != "http" or scope["method"] != "GET":
             return False
@@ -79,7 +79,7 @@ class Guard:
         return True
 
     def refusal(self, scope: Any) -> str:
-        """Why a request is refused; empty if it is not."""
+        """Returns why a request is refused; an empty text if it is accepted."""
         headers = headers_of(scope)
         host, origin = headers.get("host", ""), headers.get("origin")
         if host not in self.hosts:
@@ -97,12 +97,12 @@ class Guard:
 
 
 def headers_of(scope: Any) -> dict[str, str]:
-    """The headers of a request."""
+    """Returns the headers of a request."""
     return {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
 
 
 def sender(send: Any) -> Any:
-    """A send function that adds the headers above to each answer."""
+    """Returns a send function that adds the headers above to each answer."""
 
     async def with_headers(message: Any) -> None:
         if message["type"] == "http.response.start":
@@ -113,7 +113,7 @@ def sender(send: Any) -> Any:
 
 
 async def refuse(scope: Any, receive: Any, send: Any, reason: str) -> None:
-    """Status 403, for a WebSocket before it is accepted."""
+    """Answers with status 403, or closes a WebSocket before it is accepted."""
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008})
@@ -128,7 +128,7 @@ async def show(send: Any, status: int, kind: bytes, text: str) -> None:
 
 
 class Allowed:
-    """The files that may be read: those that the user named, and what lies in folders that the user named."""
+    """The files that may be read: files that the user has named, and files in folders that the user has named."""
 
     def __init__(self, paths: Iterable[Path] = ()):
         self.files: set[Path] = set()
@@ -137,12 +137,12 @@ class Allowed:
             self.add(path)
 
     def add(self, path: Path) -> None:
-        """Allows a file, or a folder with all that lies in it."""
+        """Allows a file, or a folder with all its files."""
         real = path.resolve(strict=True)
         (self.folders if real.is_dir() else self.files).add(real)
 
     def check(self, path: Path) -> Path:
-        """The real path, with symbolic links resolved, if it may be read; PermissionError if not."""
+        """Returns the path with symbolic links resolved if it may be read; raises PermissionError if not."""
         real = path.resolve()
         if real in self.files or any(real.is_relative_to(folder) for folder in self.folders):
             return real

@@ -1,7 +1,7 @@
-"""One user: the project that is wanted, what has been made of it, and the connections to the page.
+"""One user: the current project, its results, and the connections to the page.
 
-The page sends its whole project at every change, so that nothing is lost if either side ends. Two threads work on it:
-one makes the masks while strokes are painted, the other one lights the room.
+The page sends its whole project at every change, so that nothing is lost if the page or the server ends. Two threads
+work on it: one computes the masks while strokes are painted, the other lights the room.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .live import LiveMasks
 from .project import Project
 from .room import bounds
 
-#: The photo as the page shows it has at most this many pixels.
+#: Maximum number of pixels of the photo that the page shows.
 SHOWN_PIXELS = 2_000_000
-#: Largest side of a picture.
+#: Maximum side of a picture in pixels.
 MAX_SIDE = 1600
 
-#: The results as files: how their names end.
+#: The endings of the files of results.
 ENDINGS = {"glb": "glb", "exr": "exr", "png": "png", "csv": "csv", "project": "luxfer.json", "program": "py"}
-#: The steps of Light after which they are there: a picture at its full size, and for the program brightness and plan.
+#: The step of Light after which each file can be written: pictures need full size, the program needs exposure and plan.
 NEEDS = {"glb": "relight", "csv": "relight", "exr": "second", "png": "second", "program": "plan"}
 
 Send = Callable[[dict[str, Any], bytes], None]
@@ -39,7 +39,7 @@ Send = Callable[[dict[str, Any], bytes], None]
 
 @dataclass
 class Wanted:
-    """One state of the page."""
+    """A state of the page that the user wants to see computed."""
 
     project: Project
     version: int
@@ -67,7 +67,7 @@ class Session:
         self.work: Latest[Wanted] = Latest("studio-work", self._work, self._failed)
 
     def close(self) -> None:
-        """Ends the threads and lets go of the library's objects."""
+        """Ends the threads and releases the library's objects."""
         self.live.close()
         self.work.close()
         self.light = self.small = self._photo = self._room = None
@@ -75,12 +75,12 @@ class Session:
     # -- the page
 
     def send(self, kind: str, payload: bytes = b"", **header: Any) -> None:
-        """Tells every page of this user."""
+        """Sends a message to every page of this user."""
         for listener in list(self.listeners):
             listener({"type": kind, **header}, payload)
 
     def take(self, message: Any) -> None:
-        """A message of the page; Invalid, among others, if it is none."""
+        """Handles a message of the page; raises an error, such as Invalid, if the message is wrong."""
         if not isinstance(message, dict):
             raise projects.Invalid("a message is an object")
         if message.get("type") == "expose":
@@ -89,11 +89,12 @@ class Session:
             self.edit(message)
 
     def hello(self) -> None:
-        """A page has connected: it gets everything again with its next edit. Work that runs goes on as it was."""
+        """Handles the connection of a page: its next edit makes the server send everything again. Running work
+        continues."""
         self._opened = None
 
     def edit(self, message: dict[str, Any]) -> None:
-        """A new state of the page."""
+        """Handles a new state of the page."""
         self.used = time.monotonic()
         project = projects.checked(message.get("project"))
         width, height = (max(64, min(MAX_SIDE, int(side))) for side in message.get("size", (640, 400)))
@@ -121,14 +122,14 @@ class Session:
             self.work.put(wanted)
 
     def expose(self, exposure: Any) -> None:
-        """Another brightness of the pictures that are shown; disturbs no work."""
+        """Changes the exposure of the shown pictures; running work continues."""
         if self.wanted is not None and self.light is not None:
             self.wanted.project["exposure"] = projects.FIELDS["exposure"](exposure, "exposure")
             self._save(self.wanted)
             self.light.show_again(self.wanted.project)
 
     def _save(self, wanted: Wanted) -> None:
-        """Writes the project into its file, unless a newer one is there."""
+        """Saves the project in its file, unless there is a newer project."""
         with self._saving:
             if self.wanted is wanted:
                 projects.save(self.saved, wanted.project)
@@ -138,7 +139,7 @@ class Session:
     # -- work
 
     def photo(self, project: Project) -> luxfer.Image:
-        """The photo of a project."""
+        """Returns the photo of a project."""
         with self._lock:
             sha256 = project["photo"]["sha256"]
             if self._photo is None or self._photo[0] != sha256:
@@ -147,7 +148,7 @@ class Session:
             return self._photo[1]
 
     def room(self, project: Project) -> luxfer.Scene:
-        """The room of a project."""
+        """Returns the room of a project."""
         with self._lock:
             sha256 = project["room"]["sha256"] if project["room"] else "demo"
             if self._room is None or self._room[0] != sha256:
@@ -161,7 +162,7 @@ class Session:
         return luxfer.Scene.from_bytes(self.context, known.read(), known.path.parent)
 
     def _open(self, project: Project) -> Light:
-        """Loads photo and room, and shows them, if they are not those that the page has."""
+        """Loads and sends photo and room if the page does not have them."""
         photo, room = self.photo(project), self.room(project)
         key = project["photo"]["sha256"], project["room"]["sha256"] if project["room"] else "demo"
         with self._lock:
@@ -188,7 +189,7 @@ class Session:
         return light
 
     def _paint(self, wanted: Wanted) -> None:
-        """The masks at a small size."""
+        """Computes and sends the masks at a small size."""
         self._open(wanted.project)
         sha256 = wanted.project["photo"]["sha256"]
         if self.small is None or self.small[0] != sha256:
@@ -219,7 +220,7 @@ class Session:
         self.send("idle", version=wanted.version)
 
     def _failed(self, failure: Exception) -> None:
-        """Tells the user; a file that is missing can be given."""
+        """Sends the error to the page, which asks for a missing file."""
         header = projects.failure(failure)
         self.send(header.pop("type"), **header)
 
@@ -227,15 +228,15 @@ class Session:
 
     @staticmethod
     def text(kind: str, wanted: Wanted, light: Light) -> str:
-        """The project file, or the program that does the same."""
+        """Returns the project file, or the Python program."""
         if kind == "project":
             return projects.dumps(wanted.project)
         surface = wanted.project["surface"] or light.surface
         return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project), light.exposure)
 
     def out(self, kind: str, folder: Path) -> Path:
-        """A file of the results, written into a folder; NotReady if they are not there yet, or those of a project that
-        has been changed since."""
+        """Writes a file of results into a folder and returns its path; raises NotReady if the results are missing or
+        belong to an older state of the project."""
         wanted, light = self.wanted, self.light
         if wanted is None or light is None:
             raise luxfer.errors.NotReady("there is no result yet")
@@ -260,8 +261,8 @@ class Session:
 
 
 def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
-    """Whether the results that a file consists of are those of the project that is wanted; NotReady if not. A project
-    file has no results."""
+    """Raises NotReady if the results for a file are missing or belong to an older state of the project. A project file
+    needs no results."""
     if kind not in ENDINGS:
         raise LookupError(f"there is no result {kind}")
     if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:

@@ -1,0 +1,103 @@
+"""Writes the tables of docs/notes/plain-words.md: what became of the C functions of an earlier commit.
+
+    python3 docs/notes/c_names.py COMMIT
+
+Fails if a function of that commit has neither kept its name nor a line in RENAMED or GONE.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+NOTE = ROOT / "docs/notes/plain-words.md"
+BEGIN, END = "<!-- functions: written by c_names.py -->\n", "<!-- end of functions -->"
+KINDS = "context image job scene distribution rectify features segment emission render illuminance relight lamps importance"
+KINDS += " transfer plan guides stylize demo_photo candidates warnings"
+STAGES = "transfer rectify features segment emission relight scene"
+
+#: Functions that have another name.
+RENAMED = {
+    "version": "get_version",
+    "version_string": "get_version_string",
+    "status_name": "status_get_name",
+    "warning_name": "warning_get_name",
+    "context_last_error": "context_get_last_error",
+    "image_size": "image_get_size",
+    "image_glare": "image_get_glare",
+    "scene_requirements": "scene_get_requirements",
+    "scene_requirements_text": "scene_get_requirements_text",
+    "candidates_count": "candidates_get_count",
+    "warnings_count": "warnings_get_count",
+    "preset_count": "preset_get_count",
+    "preset_name": "preset_get_name",
+    "guides_motion": "guides_get_motion",
+    "colour_temperature": "colour_to_temperature",
+    "colour_of_temperature": "temperature_to_colour",
+    "demo_scene": "demo_create_scene",
+    "demo_artwork": "demo_create_artwork",
+    "relight_set_sense": "relight_set_constraint",
+    "lamps_set_sense": "lamps_set_constraint",
+    "segment_set_within": "segment_set_region",
+}
+#: Functions that other functions have replaced: the functions of each group, and what replaces them.
+GONE = [
+    ([f"{kind}_retain" for kind in KINDS.split()], "`luxfer_retain` takes a handle of any kind"),
+    ([f"{kind}_release" for kind in KINDS.split()], "`luxfer_release` takes a handle of any kind"),
+    ([f"{stage}_get_warnings" for stage in STAGES.split()], "`luxfer_get_warnings` takes a transfer, a stage or a scene"),
+    (["warnings_get_message", "warnings_get_advice"], "fields of `luxfer_warning`"),
+    (["candidates_get_name", "candidates_get_reason"], "fields of `luxfer_candidate`"),
+    (
+        [f"{s}_{f}" for s in ("features", "segment", "transfer") for f in ("add_stroke", "add_strokes_image", "add_strokes_text", "clear_strokes")],
+        "an object of its own, `luxfer_strokes`, which `set_strokes` copies",
+    ),
+    (["scene_load_with", "scene_load_memory_with"], "`luxfer_scene_load` and `luxfer_scene_load_memory` take settings"),
+    (["scene_set_environment_image"], "`luxfer_scene_set_environment` takes an image"),
+    (["scene_read_mesh", "scene_read_mesh_uvs", "scene_read_mesh_colours"], "`luxfer_scene_read_vertices`, `luxfer_scene_read_triangles`"),
+    (["render_set_camera_index"], "`luxfer_scene_get_camera`, then `luxfer_render_set_camera`"),
+    (["job_poll", "job_status"], "`luxfer_job_get_progress`"),
+    (["power_density"], "a formula of one line: flux / efficacy / area"),
+]
+
+
+def functions(header: str) -> list[str]:
+    """The functions that a header declares, without the prefix."""
+    code = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
+    return list(dict.fromkeys(re.findall(r"^(?:static inline )?[a-z_][\w ]*?\*? ?\*?luxfer_(\w+)\(", code, re.M)))
+
+
+def main(commit: str) -> int:
+    show = ["git", "-C", str(ROOT), "show", f"{commit}:include/luxfer.h"]
+    before = functions(subprocess.run(show, check=True, capture_output=True, text=True).stdout)
+    now = {f: path.stem for path in sorted((ROOT / "include/luxfer").glob("*.h")) for f in functions(path.read_text())}
+    reasons = {f: reason for group, reason in GONE for f in group}
+    kept = Counter(now[f] for f in before if f in now)
+    renamed = [f for f in before if f not in now and RENAMED.get(f) in now]
+    gone = [f for f in before if f not in now and f not in renamed]
+    if unknown := [f for f in gone if f not in reasons]:
+        print("no reason is known for:", *unknown, file=sys.stderr)
+        return 1
+    out = [f"{len(before)} functions: {sum(kept.values())} kept, {len(renamed)} renamed, {len(gone)} gone; {len(now)} now."]
+    out += ["", "| header of today | kept |", "|---|---|"]
+    out += [f"| `{header}.h` | {count} |" for header, count in sorted(kept.items())]
+    out += ["", "| before | now |", "|---|---|"]
+    out += [f"| `luxfer_{f}` | `luxfer_{RENAMED[f]}` |" for f in renamed]
+    out += ["", "| gone | number | in their place |", "|---|---|---|"]
+    for group, reason in GONE:
+        found = [f for f in group if f in gone]
+        names = ", ".join(f"`luxfer_{f}`" for f in found)
+        if len(found) > 12:
+            names = f"`luxfer_KIND_{found[0].rsplit('_', 1)[1]}` of each kind of handle"
+        if found:
+            out.append(f"| {names} | {len(found)} | {reason} |")
+    head, _, rest = NOTE.read_text().partition(BEGIN)
+    NOTE.write_text("\n".join([head + BEGIN, *out, "", END + rest.partition(END)[2]]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
