@@ -180,30 +180,19 @@ pub fn for_rows<T: Send>(
     job: Job,
     work: impl Fn(usize, &mut [T]) + Sync,
 ) -> Result<()> {
-    for_rows_dyn(data, row_len, job, &work)
-}
-
-fn for_rows_dyn<T: Send>(
-    data: &mut [T],
-    row_len: usize,
-    job: Job,
-    work: &(dyn Fn(usize, &mut [T]) + Sync),
-) -> Result<()> {
     if row_len == 0 || data.is_empty() {
         return job.check();
     }
     let rows = data.len() / row_len;
     let done = AtomicUsize::new(0);
-    data.par_chunks_exact_mut(row_len).enumerate().try_for_each(|(y, row)| {
-        job.check()?;
-        work(y, row);
+    for_runs(&mut data[..rows * row_len], row_len, job, |first, row| {
+        work(first / row_len, row);
         job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows as f64);
-        Ok(())
     })
 }
 
 /// Calls `work(first, items)` for every run of `length` items, in parallel; `first` is the index of the run's first
-/// item, and the last run may be shorter. Checks for cancellation before each run.
+/// item, and the last run may be shorter. Checks for cancellation before each run, but reports no progress.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     for_runs_dyn(data, length, job, &work)
 }
