@@ -180,30 +180,19 @@ pub fn for_rows<T: Send>(
     job: Job,
     work: impl Fn(usize, &mut [T]) + Sync,
 ) -> Result<()> {
-    for_rows_dyn(data, row_len, job, &work)
-}
-
-fn for_rows_dyn<T: Send>(
-    data: &mut [T],
-    row_len: usize,
-    job: Job,
-    work: &(dyn Fn(usize, &mut [T]) + Sync),
-) -> Result<()> {
     if row_len == 0 || data.is_empty() {
         return job.check();
     }
     let rows = data.len() / row_len;
     let done = AtomicUsize::new(0);
-    data.par_chunks_exact_mut(row_len).enumerate().try_for_each(|(y, row)| {
-        job.check()?;
-        work(y, row);
+    for_runs(&mut data[..rows * row_len], row_len, job, |first, row| {
+        work(first / row_len, row);
         job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows as f64);
-        Ok(())
     })
 }
 
 /// Calls `work(first, items)` for every run of `length` items, in parallel; `first` is the index of the run's first
-/// item, and the last run may be shorter. Checks for cancellation before each run.
+/// item, and the last run may be shorter. Checks for cancellation before each run, but reports no progress.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     for_runs_dyn(data, length, job, &work)
 }
@@ -217,6 +206,28 @@ fn for_runs_dyn<T: Send>(
     data.par_chunks_mut(length.max(1)).enumerate().try_for_each(|(run, items)| {
         job.check()?;
         work(run * length, items);
+        Ok(())
+    })
+}
+
+/// Like [`for_rows`], with scratch memory: calls `work(scratch, row, pixels)`. Rows that one thread computes one after
+/// the other share the memory that `new_scratch` allocates, so `work` must reset it.
+pub fn for_rows_with<T: Send, S>(
+    data: &mut [T],
+    row_len: usize,
+    job: Job,
+    new_scratch: impl Fn() -> Result<S> + Sync,
+    work: impl Fn(&mut S, usize, &mut [T]) + Sync,
+) -> Result<()> {
+    if row_len == 0 || data.is_empty() {
+        return job.check();
+    }
+    let rows = data.len() / row_len;
+    let done = AtomicUsize::new(0);
+    data.par_chunks_exact_mut(row_len).enumerate().try_for_each_init(&new_scratch, |scratch, (y, row)| {
+        job.check()?;
+        work(scratch.as_mut().map_err(|error| error.clone())?, y, row);
+        job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows as f64);
         Ok(())
     })
 }
@@ -388,6 +399,31 @@ mod tests {
         for (image, start) in [(a, 0), (b, 1), (c, 2)] {
             assert!(image.iter().enumerate().all(|(i, &v)| v == start + 10 * (i / 4)));
         }
+    }
+
+    #[test]
+    fn rows_share_scratch_memory_and_fail_without_it() {
+        let (monitor, pool) = (Monitor::default(), Pool::new(2).unwrap());
+        let mut data = vec![0; 4000];
+        let mut run = |new_scratch: &(dyn Fn() -> Result<Vec<usize>> + Sync)| {
+            pool.run(|| {
+                for_rows_with(&mut data, 4, monitor.job(), new_scratch, |scratch, y, row| {
+                    scratch.push(y);
+                    row.fill(scratch.len());
+                })
+            })
+        };
+        let count = AtomicUsize::new(0);
+        run(&|| {
+            count.fetch_add(1, Ordering::Relaxed);
+            Ok(Vec::new())
+        })
+        .unwrap();
+        let none = run(&|| Err(Error::new(ErrorKind::OutOfMemory, "no memory"))).unwrap_err();
+        assert_eq!(none.kind, ErrorKind::OutOfMemory);
+        // The rows of each scratch memory number its uses, so as many rows hold 1 as there are scratch memories.
+        let (count, first) = (count.into_inner(), data.chunks(4).filter(|row| **row == [1; 4]).count());
+        assert!(count == first && count < 500 && !data.contains(&0), "{count} {first}");
     }
 
     #[test]

@@ -421,6 +421,38 @@ fn stages_say_what_they_lack() {
     }
 }
 
+#[test]
+fn settings_of_path_tracing_are_checked_at_the_start() {
+    let context = context(1);
+    let mut job = null_mut();
+    let mut params = unsafe { std::mem::zeroed::<luxfer_relight_params>() };
+    let mut of_map = unsafe { std::mem::zeroed::<luxfer_importance_params>() };
+    let relight = made(|out| unsafe { luxfer_relight_create(context, out) });
+    let importance = made(|out| unsafe { luxfer_importance_create(context, out) });
+    unsafe {
+        let size = size_of_val(&params);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RELIGHT_PARAMS, (&raw mut params).cast(), size), LUXFER_OK);
+        let size = size_of_val(&of_map);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_IMPORTANCE_PARAMS, (&raw mut of_map).cast(), size), LUXFER_OK);
+    }
+    let mut refuses = |paths: u32, target_error: f32, expected: &str| {
+        let params = luxfer_relight_params { paths, target_error, ..params };
+        let of_map = luxfer_importance_params { paths, target_error, ..of_map };
+        assert_eq!(unsafe { luxfer_relight_start(relight, &params, &mut job) }, LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains(expected), "{}", message(context));
+        assert_eq!(unsafe { luxfer_importance_start(importance, &of_map, &mut job) }, LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains(expected), "{}", message(context));
+    };
+    refuses(5, 0.01, "paths is 5; it must lie in [1024, 1073741824]");
+    refuses(2048, 1.5, "target_error is 1.5; it must lie in [0, 1]");
+    refuses(2048, f32::NAN, "target_error is NaN");
+    unsafe {
+        assert_eq!(luxfer_release(relight.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(importance.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
 /// Wrong parameters of strokes, a drawing of another size than the photo, and malformed text are errors.
 #[test]
 fn wrong_strokes_are_refused() {

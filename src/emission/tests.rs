@@ -298,6 +298,12 @@ fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
     for lamp in &result.luminaires {
         assert_eq!(lamp.outline.len(), 4, "{:?}", lamp.outline);
     }
+    // All lamps are drawn from their design, so the renderer needs no map of the lit blocks; without a photo it does.
+    let has_map = |input: &Input| {
+        let plan = Composition::new(input, &[], &params, Monitor::default().job()).unwrap();
+        plan.layers[0].lit_blocks.is_some()
+    };
+    assert!(!has_map(&input) && has_map(&exemplar.input()));
 }
 
 #[test]

@@ -140,9 +140,9 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
 
 /// Starts a job that traces the map. The new map replaces the earlier map and the placement that was found with it.
 /// params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
-/// range; LUXFER_DEGENERATE if the target has no area.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_INVALID_ARGUMENT if a setting
+/// is out of range. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or the surfaces have no
+/// texture coordinates; LUXFER_DEGENERATE if the target has no area.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start(
     importance: *mut luxfer_importance,
@@ -164,6 +164,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
             ..relight::Params::default()
         };
         let params = ImportanceParams { width: p.width as usize, height: p.height as usize, tracing };
+        params.check()?;
         let emitter = need(&stage.inputs().emitter, "luxfer_importance_set_scene")?.clone();
         let scene = emitter.scene.snapshot();
         let triangles = emitter.triangles(&scene)?;

@@ -101,8 +101,8 @@ pub struct luxfer_pendants_params {
     /// a rectification.
     pub focal: f64,
     /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-    /// for the rectification's own standard deviation, which is known only for a focal length that was assumed or read
-    /// from metadata; for other focal lengths it counts as 0.
+    /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only
+    /// if the rectification was given the focal length.
     pub focal_error: f64,
     /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
     /// 0. Not used with a rectification, which has its own value.
@@ -179,8 +179,9 @@ impl luxfer_pendants_params {
             let output = handle::borrow_in(context, view, "view")?.output()?;
             (output.view.perspective, output.view.vertical_shifts().to_vec(), output.view.focal_error())
         };
-        let focal_error = if self.focal_error == 0.0 { focal_error } else { self.focal_error };
-        check_range("focal_error", focal_error, 0.0, 0.5 * camera.focal)?;
+        let max_error = 0.5 * camera.focal;
+        let given = check_range("focal_error", self.focal_error, 0.0, max_error)?;
+        let focal_error = if given == 0.0 { focal_error.min(max_error) } else { given };
         let down = camera.axes.col(1);
         let turned = shifts.into_iter().map(|shift| {
             let turn = DQuat::from_scaled_axis(down.cross(shift));

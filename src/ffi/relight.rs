@@ -323,10 +323,10 @@ impl Emitter {
 
 /// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
 /// caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
-/// LUXFER_UNREACHABLE if no channel has a solution: no emitted light of the channel reaches the target, or the other
-/// lights alone exceed it; LUXFER_DEGENERATE if the target has no area; LUXFER_INVALID_ARGUMENT if the scene is not
-/// valid or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running; LUXFER_INVALID_ARGUMENT
+/// if a setting is out of range. The job may end with LUXFER_UNREACHABLE if no channel has a solution: no emitted light
+/// of the channel reaches the target, or the other lights alone exceed it; LUXFER_DEGENERATE if the target has no area;
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,
@@ -336,6 +336,7 @@ pub unsafe extern "C" fn luxfer_relight_start(
     enter(relight, |stage| {
         let inputs = stage.inputs();
         let params = relight::Params { constraint: inputs.constraint, ..params::read(params)?.params()? };
+        params.check()?;
         let emitter = need(&inputs.emitter, "luxfer_relight_set_scene")?.clone();
         let target = *need(&inputs.target, "luxfer_relight_set_target")?;
         let scene = emitter.scene.snapshot();

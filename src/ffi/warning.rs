@@ -47,8 +47,8 @@ pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
 /// confidence of the fit, in [0, 1], which is below the limit; 0 if no room could be fitted.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
 /// Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly resemble
-/// the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
-/// doubtful pixels together. The warning points to the pixel where one more stroke helps most.
+/// the painted or proposed lamps. The severity is the area of these doubtful pixels, divided by the area of the mask
+/// and the doubtful pixels together. The warning points to the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
 /// Positive and negative strokes cover the same pixels, where the later strokes count. The severity is the number of
 /// these pixels, divided by the number of painted pixels that the segmentation learns from.

@@ -313,6 +313,37 @@ fn damaged_files_are_errors() {
 }
 
 #[test]
+fn remainders_of_integers_have_the_sign_that_fmod_selects() {
+    let (a, b) = ([-4, 7, 5, 4, -7, 8, i64::MAX - 1], [2, -3, 8, -2, 3, 5, i64::MAX]);
+    let integers = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
+    let remainders = |settings: &[super::writer::Setting]| {
+        let writer = Writer::new(17, &[1]).constant("a", &integers(&a)).constant("b", &integers(&b));
+        let file = writer.node("Mod", &["a", "b"], "y", settings).file();
+        run(&file, &Tensor::floats(vec![1], vec![0.0])).unwrap().as_integers().unwrap().to_vec()
+    };
+    assert_eq!(remainders(&[]), [0, -2, 5, 0, 2, 3, i64::MAX - 1]);
+    assert_eq!(remainders(&[I("fmod", 0)]), remainders(&[]));
+    assert_eq!(remainders(&[I("fmod", 1)]), [0, 1, 5, 0, -1, 3, i64::MAX - 1]);
+    // Remainders of floats have the sign of the dividend.
+    let x = Tensor::floats(vec![2], vec![-4.3, 7.5]);
+    let y = Tensor::floats(vec![2], vec![2.0, -3.0]);
+    close(&node("Mod", &x, &[("b", &y)], &[I("fmod", 1)]), &[2], |i| [-0.3, 1.5][i]);
+}
+
+#[test]
+fn sum_min_and_max_take_any_number_of_inputs() {
+    let (x, y, z) = (noise(1, &[2, 3]), noise(2, &[3]), noise(3, &[2, 1]));
+    for kind in ["Sum", "Min", "Max"] {
+        assert_eq!(node(kind, &x, &[], &[]).as_floats().unwrap(), x.as_floats().unwrap());
+    }
+    let [a, b, c] = [&x, &y, &z].map(|t| t.as_floats().unwrap());
+    close(&node("Sum", &x, &[("b", &y), ("c", &z)], &[]), &[2, 3], |i| f64::from(a[i] + b[i % 3] + c[i / 3]));
+    // Other operators need two inputs.
+    let file = Writer::new(17, &[2, 3]).node("Add", &["x"], "y", &[]).file();
+    assert_eq!(run(&file, &x).unwrap_err().kind, ErrorKind::Format);
+}
+
+#[test]
 fn files_that_ask_for_more_than_there_is_are_refused() {
     let x = Tensor::floats(vec![1, 4], vec![0.5; 4]);
     let huge = Tensor::integers(vec![2], vec![1 << 20, 1 << 20]);

@@ -1,6 +1,6 @@
 //! Estimates the camera from vanishing points: focal length and orthonormal room axes, given the principal point.
 
-use super::focal::{FocalPrior, USUAL_SPREAD};
+use super::focal::FocalPrior;
 use super::params::Params;
 use super::sphere::{Refined, round_covariance};
 use super::squareness::{self, Squareness};
@@ -17,6 +17,8 @@ pub const FREE_ERROR: f64 = 0.5;
 /// The estimated camera, with the vanishing point of each room axis.
 pub struct EstimatedCamera {
     pub perspective: Perspective,
+    /// Standard deviation of the logarithm of the focal length; 0 if the caller gave the focal length.
+    pub focal_spread: f64,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
     /// The prior of the focal length.
@@ -31,7 +33,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let principal = params.principal(width, height);
     let expected = FocalPrior::new(params, width);
     let orthogonal = &found.points[..found.points.len().min(3)];
-    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
+    let Focal { focal, spread: focal_spread, source } = focal_length(orthogonal, principal, params.focal, expected);
 
     // Drop each direction that is far from orthogonal to a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
@@ -64,7 +66,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     named[HORIZONTAL_A] = rest.pop();
 
     let axes = orthonormal(named.map(|n| n.map(|k| (ray(&orthogonal[k]), orthogonal[k].error))));
-    let perspective = Perspective { focal, focal_source, principal, axes };
+    let perspective = Perspective { focal, focal_source: source, principal, axes };
     let vanishing_points = std::array::from_fn(|axis| match named[axis] {
         Some(k) => orthogonal[k].clone(),
         None => {
@@ -85,27 +87,29 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let free = [0, 1, 2].map(|axis| named[axis].map(|k| as_axis(&found.free[k], axis)));
     let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), expected);
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
-    EstimatedCamera { perspective, vanishing_points, squareness, expected, axis_of }
+    EstimatedCamera { perspective, focal_spread, vanishing_points, squareness, expected, axis_of }
 }
 
-/// Returns the focal length in pixels and its source: the given focal length, or else an estimate from the vanishing
-/// points and the prior.
-fn focal_length(
-    points: &[VanishingPoint],
-    principal: DVec2,
-    given: Option<f64>,
-    expected: FocalPrior,
-) -> (f64, FocalSource) {
+/// A focal length in pixels, the standard deviation of its logarithm, and its source.
+struct Focal {
+    focal: f64,
+    spread: f64,
+    source: FocalSource,
+}
+
+/// Returns the given focal length, or else an estimate from the vanishing points and the prior.
+fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, expected: FocalPrior) -> Focal {
     match (given, focal_from_points(points, principal, expected.focal)) {
-        (Some(f), _) => (f, FocalSource::Given),
+        (Some(focal), _) => Focal { focal, spread: 0.0, source: FocalSource::Given },
         (None, Some((log_focal, spread))) => {
             // Combine the estimate with the prior, both weighted by inverse variance. The prior thus decides only
             // where the points constrain the focal length weakly.
             let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
             let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
-            (focal, if a > b { FocalSource::VanishingPoints } else { expected.source })
+            let source = if a > b { FocalSource::VanishingPoints } else { expected.source };
+            Focal { focal, spread: (a + b).sqrt().recip(), source }
         }
-        (None, None) => (expected.focal, expected.source),
+        (None, None) => Focal { focal: expected.focal, spread: expected.spread, source: expected.source },
     }
 }
 
@@ -113,20 +117,11 @@ fn focal_length(
 pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: FocalPrior) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
-    let (focal, _) = focal_length(&known, camera.principal, given, expected);
+    let Focal { focal, .. } = focal_length(&known, camera.principal, given, expected);
     let axes = orthonormal(
         points.each_ref().map(|p| (p.support > 0).then(|| (direction(p.point, camera.principal, focal), p.error))),
     );
     Perspective { focal, axes, ..*camera }
-}
-
-/// Returns the relative standard deviation of an estimated focal length. It combines the information of the vanishing
-/// points with the prior for photos without metadata ([`USUAL_SPREAD`]).
-pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
-    let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
-    let from_lines =
-        focal_from_points(&known, camera.principal, camera.focal).map_or(f64::INFINITY, |(_, spread)| spread);
-    (from_lines.powi(-2) + USUAL_SPREAD.powi(-2)).sqrt().recip()
 }
 
 /// Returns the unit direction in camera space whose vanishing point is the given homogeneous pixel.

@@ -69,7 +69,7 @@ pub use vanishing::VanishingPoint;
 
 use crate::error::{Error, Result};
 use crate::geometry::perspective::VERTICAL;
-use crate::geometry::{FocalSource, Homography, Perspective, Segment};
+use crate::geometry::{Homography, Perspective, Segment};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
@@ -86,6 +86,8 @@ pub struct View {
     /// The vanishing point of each room axis, that is, of each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
+    /// Standard deviation of the logarithm of the focal length; 0 if the caller gave the focal length.
+    pub focal_spread: f64,
     /// For each axis, how far the angle between the two other axes deviates from a right angle, estimated from the
     /// lines of these two axes alone. `None` if one of the two has no lines.
     pub squareness: [Option<Squareness>; 3],
@@ -110,14 +112,9 @@ impl View {
         })
     }
 
-    /// Returns the standard deviation of the focal length, in pixels, if it was assumed or read from metadata.
-    /// Otherwise returns 0: a focal length from the caller counts as exact, and the error of a focal length from
-    /// vanishing points or lamps is neglected.
+    /// Returns the standard deviation of the focal length in pixels; 0 if the caller gave the focal length.
     pub fn focal_error(&self) -> f64 {
-        match self.perspective.focal_source {
-            FocalSource::Assumed | FocalSource::Metadata => self.expected_focal.spread * self.perspective.focal,
-            FocalSource::Given | FocalSource::VanishingPoints | FocalSource::Lamps => 0.0,
-        }
+        self.focal_spread * self.perspective.focal
     }
 }
 
@@ -196,6 +193,7 @@ pub fn view_from_segments(
         segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
         vanishing_points: oriented.vanishing_points,
         perspective: oriented.perspective,
+        focal_spread: oriented.focal_spread,
         squareness: oriented.squareness,
         distortion: None,
         expected_focal: oriented.expected,

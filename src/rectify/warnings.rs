@@ -1,6 +1,5 @@
 //! Warnings about a camera and about an unwarped plane that may be wrong.
 
-use super::camera::focal_spread;
 use super::focal::USUAL_SPREAD;
 use super::{Unwarped, View};
 use crate::geometry::FocalSource;
@@ -48,7 +47,7 @@ impl View {
     fn focal_assumed(&self) -> Option<Warning> {
         let camera = &self.perspective;
         (camera.focal_source == FocalSource::Assumed).then(|| {
-            let spread = focal_spread(camera, &self.vanishing_points);
+            let spread = self.focal_spread;
             let message = format!(
                 "the lines do not determine the focal length; {:.0} pixels are assumed, within {}",
                 camera.focal,

@@ -42,6 +42,15 @@ impl Default for ImportanceParams {
     }
 }
 
+impl ImportanceParams {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("width", self.width, 1, MAX_CELLS)?;
+        check_range("height", self.height, 1, MAX_CELLS)?;
+        self.tracing.check()
+    }
+}
+
 /// The importance map, estimated in independent batches.
 #[derive(Clone, Debug)]
 pub struct Importance {
@@ -93,10 +102,8 @@ impl Importance {
     /// Parameters out of range; a material or a target that does not exist; surfaces without texture coordinates;
     /// cancelled.
     pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &ImportanceParams, job: Job) -> Result<Self> {
-        check_range("width", params.width, 1, MAX_CELLS)?;
-        check_range("height", params.height, 1, MAX_CELLS)?;
+        params.check()?;
         let tracing = &params.tracing;
-        tracing.check()?;
         let even = evenly_lit(scene, emitter, params)?;
         let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
         let points = Sampler::new(scene, goal.geometry, goal.quantity)?;

@@ -3,8 +3,9 @@
 //!
 //! As in CIE 117, the luminance of a luminaire towards the eye is its intensity divided by the projected area of its
 //! luminous opening, and its solid angle is this projected area divided by the squared distance. Hidden parts of an
-//! opening do not count; rays from the eye to a grid of points on the opening find the visible parts. The background
-//! luminance is `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
+//! opening do not count; rays from the eye to a grid of points on the opening find the visible parts. An opening that
+//! is seen edge-on has no projected area and causes no glare. The background luminance is
+//! `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
 //! Not modelled: emissive surfaces, the environment and lights without area as glare sources. The rating leaves them
 //! out, but reports their direct illuminance at the eye.
@@ -221,8 +222,9 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     let (mut sources, mut rated) = (Vec::new(), Vec::new());
     rated.resize(world.scene().lights.len(), false);
     for lamp in lamps {
-        let Some(seen) = lamp.seen_from(world, position) else { continue };
+        // A luminaire that causes no glare, because it is seen edge-on, is rated too: its light is not unrated light.
         rated[lamp.light] = true;
+        let Some(seen) = lamp.seen_from(world, position) else { continue };
         // A luminaire behind the observer causes no glare.
         if seen.candela <= 0.0 || seen.towards.dot(ahead) <= 0.0 {
             continue;

@@ -163,6 +163,7 @@ fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: 
         samples: samples.counts,
         contradictory: samples.contradictory,
         off_image: samples.off_image,
+        is_of_lamps: false,
         is_proposed: false,
         beyond: Vec::new(),
     }

@@ -42,6 +42,8 @@ pub struct Segmentation {
     pub contradictory: usize,
     /// Stroke pixels outside the image; they were ignored.
     pub off_image: usize,
+    /// Whether the segmentation looked for lamps, with or without strokes. False for a mask that the caller supplied.
+    pub is_of_lamps: bool,
     /// Whether the mask is a proposal because strokes were missing: for a plane, the strokes of at least one class;
     /// for lamps, the positive strokes.
     pub is_proposed: bool,
@@ -82,6 +84,7 @@ impl Segmentation {
             samples: [0, 0],
             contradictory: 0,
             off_image: 0,
+            is_of_lamps: false,
             is_proposed: false,
             beyond: Vec::new(),
         })

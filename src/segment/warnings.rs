@@ -48,20 +48,15 @@ impl Segmentation {
     }
 
     /// Whether the mask was computed from samples of the strokes. False for a mask that the caller supplied, and for
-    /// the proposal of a whole face of the room.
+    /// proposals without any stroke: a whole face of the room, or lamps.
     fn is_learnt(&self) -> bool {
         self.samples != [0, 0]
     }
 
-    /// Whether the mask consists of lamps that were found with the help of strokes. For such a mask, `unseen` marks
-    /// doubtful regions, which lie outside the mask.
-    fn is_of_lamps(&self) -> bool {
-        self.is_learnt() && self.model.is_none()
-    }
-
-    /// How doubtful a pixel is: its value in `unseen` if it belongs to the mask or may belong to a lamp, else 0.
+    /// How doubtful a pixel is: its value in `unseen` if it belongs to the mask or may belong to a lamp, else 0. For
+    /// lamps, `unseen` marks doubtful regions, which lie outside the mask.
     fn doubt(&self, pixel: usize) -> f32 {
-        if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
+        if self.is_of_lamps || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
     }
 
     fn is_empty(&self) -> Option<Warning> {
@@ -86,11 +81,17 @@ impl Segmentation {
         let doubtful = pixels().filter(|&p| self.doubt(p) > UNSEEN).count();
         let all = pixels().filter(|&p| self.mask.data[p] > 0.5 || self.doubt(p) > UNSEEN).count();
         let share = doubtful as f64 / all.max(1) as f64;
-        let message = || match self.is_of_lamps() {
-            true => {
-                format!("{} of what may be lamps is left out: it resembles the painted lamps in part", percent(share))
+        let message = || {
+            let share = percent(share);
+            match (self.is_of_lamps, self.is_proposed) {
+                (true, false) => {
+                    format!("{share} of what may be lamps is left out: it resembles the painted lamps in part")
+                }
+                (true, true) => {
+                    format!("{share} of what may be lamps is left out: it resembles the proposed lamps in part")
+                }
+                (false, _) => format!("{share} of the mask is unlike every stroke"),
             }
-            false => format!("{} of the mask is unlike every stroke", percent(share)),
         };
         let advice = "paint one more stroke at this place, of the class that it belongs to";
         Warning::above(Code::Unseen, share, MAX_UNSEEN, message, advice).map(|warning| warning.at(self.next_stroke()))

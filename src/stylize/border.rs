@@ -103,8 +103,16 @@ pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<
     Ok(())
 }
 
-/// Fades out the step at the border of the painted part. `mode` is the vote that has painted `picture` from `field`.
-pub(super) fn fade(picture: &mut Image, field: &Field, problem: &Problem, mode: VoteMode, job: Job) -> Result<()> {
+/// Fades out the step at the border of the painted part, in the pixels for which `wanted` holds. `mode` is the vote
+/// that has painted these pixels of `picture` from `field`.
+pub(super) fn fade(
+    picture: &mut Image,
+    field: &Field,
+    problem: &Problem,
+    mode: VoteMode,
+    job: Job,
+    wanted: impl Fn(usize) -> bool,
+) -> Result<()> {
     let Some(mask) = &problem.target_mask else { return Ok(()) };
     // Vote on the painted pixels, and subtract the result from the artist's paint.
     let mut step = picture.try_clone()?;
@@ -115,7 +123,7 @@ pub(super) fn fade(picture: &mut Image, field: &Field, problem: &Problem, mode: 
     }
     let channels = picture.channels;
     let pixels = picture.data.chunks_exact_mut(channels).zip(step.data.chunks_exact(channels)).zip(mask);
-    for ((pixel, step), _) in pixels.filter(|(_, unpainted)| **unpainted) {
+    for (_, ((pixel, step), _)) in pixels.enumerate().filter(|(i, (_, unpainted))| **unpainted && wanted(*i)) {
         pixel.iter_mut().zip(step).for_each(|(v, step)| *v = (*v + step).clamp(0.0, 1.0));
     }
     Ok(())

@@ -10,6 +10,7 @@
 //!
 //! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
 
+use super::guides::SIMILAR;
 use super::level::Problem;
 use crate::error::Result;
 use crate::exec;
@@ -19,11 +20,9 @@ use crate::job::Job;
 /// Number of blocks along the longer side of the exemplar, and the minimum side of a block in pixels.
 const BLOCKS: usize = 48;
 const MIN_SIDE: usize = 6;
-/// The guides of two blocks are equal or similar if they differ by at most this much, as a weighted root mean square of
-/// channels in `[0, 1]`. Blocks within which the guides deviate from their mean by more than `EQUAL` are left out.
-/// [bench stylit:doubts]
+/// The guides of two blocks are equal if they differ by at most this much, as a weighted root mean square of channels
+/// in `[0, 1]`. Blocks within which the guides deviate from their mean by more are left out. [bench stylit:doubts]
 const EQUAL: f32 = 0.03;
-const SIMILAR: f32 = 0.1;
 /// A block counts as elsewhere if it is more than this number of columns or rows of blocks away. A defect of a block
 /// may extend over nearer blocks.
 const NEAR: usize = 3;

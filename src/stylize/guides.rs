@@ -35,6 +35,10 @@ pub struct Guide<'a> {
 /// channels of an image.
 pub const MAX_CHANNELS: usize = 60;
 
+/// Guides are similar if they differ by at most this much, as a weighted root mean square of channels in `[0, 1]`.
+/// [bench stylit:autocomplete]
+pub(super) const SIMILAR: f32 = 0.1;
+
 /// All guides, with their channels interleaved in one image per side.
 pub(super) struct Channels {
     pub source: Image,
@@ -42,7 +46,8 @@ pub(super) struct Channels {
     /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1, or to 0 if
     /// every guide has weight 0.
     pub weights: Vec<f64>,
-    /// Whether each channel belongs to a guide that shows light, not normals, edges or materials.
+    /// Whether each channel belongs to a guide that shows light, not normals, edges or materials. Empty for the
+    /// components of a preview, which mix channels of both kinds.
     pub is_light: Vec<bool>,
     /// Per pixel: whether one of its samples is NaN or infinite.
     pub broken_source: Vec<bool>,

@@ -4,16 +4,13 @@
 //! The paint of such a place is a guess. The guide error of a run is high there, but it is also high where a match was
 //! chosen for its colours. Therefore places with a high guide error are compared with a sample of the whole exemplar.
 
-use super::level::Problem;
+use super::guides::{Channels, SIMILAR};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_with_capacity};
 use crate::job::Job;
 use std::collections::BTreeSet;
 
-/// Two places have similar guides if the guides differ by at most this much, as a weighted root mean square of
-/// channels in `[0, 1]`. [bench stylit:autocomplete]
-const MAX_DIFFERENCE: f32 = 0.1;
 /// Maximum number of samples along the longer side of an image; only these pixels are compared.
 const SAMPLES: usize = 128;
 /// Number of steps to which a channel is rounded, so that equal guides are compared only once. [rounding]
@@ -33,21 +30,50 @@ pub struct Lack {
     pub place: Option<[usize; 2]>,
 }
 
-/// Compares the target with the exemplar. `guide_error` is the guide error of the finished run.
-pub(super) fn lack(problem: &Problem, guide_error: &Image, job: Job) -> Result<Lack> {
-    let target = &problem.guides.target;
-    let Some(codes) = codes(problem)? else { return Ok(Lack::default()) };
-    let stride = stride(target);
-    let (columns, rows) = (target.width.div_ceil(stride), target.height.div_ceil(stride));
-    let is_wanted = |x: usize, y: usize| problem.target_mask.as_ref().is_none_or(|mask| mask[y * target.width + x]);
+/// The guides of light at the samples of exemplar and target. They are kept from before a preview mixes the channels
+/// of light with those of data.
+pub(super) struct LightSamples {
+    codes: Codes,
+    /// One pixel per sample of the target, with all channels of the guides.
+    target: Image,
+    /// Distance between the samples of the target in pixels.
+    stride: usize,
+}
+
+impl LightSamples {
+    /// Takes the samples; `None` if all guides are data.
+    pub fn of(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Self>> {
+        let Some(codes) = codes(guides, source_mask)? else { return Ok(None) };
+        let target = &guides.target;
+        let stride = stride(target);
+        let (columns, rows) = (target.width.div_ceil(stride), target.height.div_ceil(stride));
+        let mut samples = Image::new(columns, rows, target.channels)?;
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            samples.pixel_mut(column, row).copy_from_slice(target.pixel(column * stride, row * stride));
+        }
+        Ok(Some(Self { codes, target: samples, stride }))
+    }
+}
+
+/// Compares the target with the exemplar. `target_mask` marks the pixels to paint; all if it is `None`. `guide_error`
+/// is the guide error of the finished run.
+pub(super) fn lack(
+    light: Option<&LightSamples>,
+    target_mask: Option<&[bool]>,
+    guide_error: &Image,
+    job: Job,
+) -> Result<Lack> {
+    let Some(light) = light else { return Ok(Lack::default()) };
+    let (columns, rows, stride) = (light.target.width, light.target.height, light.stride);
+    let is_wanted = |x: usize, y: usize| target_mask.is_none_or(|mask| mask[y * guide_error.width + x]);
     // For each sample: whether it is to be painted, and whether the exemplar lacks its light.
     let samples = exec::map(rows, job, |row| {
         let y = row * stride;
         let sample = |column: usize| {
             let x = column * stride;
             let wanted = is_wanted(x, y);
-            let lacks = wanted && guide_error.pixel(x, y)[0] > MAX_DIFFERENCE;
-            (wanted, lacks && !codes.has_similar(target.pixel(x, y)))
+            let lacks = wanted && guide_error.pixel(x, y)[0] > SIMILAR;
+            (wanted, lacks && !light.codes.has_similar(light.target.pixel(column, row)))
         };
         (0..columns).map(sample).collect::<Vec<_>>()
     })?;
@@ -59,7 +85,8 @@ pub(super) fn lack(problem: &Problem, guide_error: &Image, job: Job) -> Result<L
         rows.flat_map(|row| row[x..].iter().take(BLOCK)).filter(|s| s.1).count()
     };
     let centre = |[x, y]: [usize; 2]| {
-        [((x + BLOCK / 2) * stride).min(target.width - 1), ((y + BLOCK / 2) * stride).min(target.height - 1)]
+        let ends = [guide_error.width - 1, guide_error.height - 1];
+        [((x + BLOCK / 2) * stride).min(ends[0]), ((y + BLOCK / 2) * stride).min(ends[1])]
     };
     let place = blocks.rev().max_by_key(lacking).filter(|_| share > 0.0).map(centre);
     Ok(Lack { share, place })
@@ -77,8 +104,7 @@ struct Codes {
 }
 
 /// Collects the distinct values of the exemplar's guides of light; `None` if all guides are data.
-fn codes(problem: &Problem) -> Result<Option<Codes>> {
-    let guides = &problem.guides;
+fn codes(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Codes>> {
     let source = &guides.source;
     let of_light = || guides.weights.iter().zip(&guides.is_light).map(|(w, &is_light)| if is_light { *w } else { 0.0 });
     let total: f64 = of_light().sum();
@@ -89,7 +115,7 @@ fn codes(problem: &Problem) -> Result<Option<Codes>> {
     let mut different = BTreeSet::new();
     for y in (0..source.height).step_by(stride) {
         for x in (0..source.width).step_by(stride) {
-            if problem.source_mask.as_ref().is_none_or(|mask| mask[y * source.width + x]) {
+            if source_mask.is_none_or(|mask| mask[y * source.width + x]) {
                 let channels = source.pixel(x, y).iter().zip(&guides.is_light);
                 let code = channels.map(|(v, &is_light)| if is_light { (v * STEPS + 0.5) as u8 } else { 0 });
                 different.insert(code.collect::<Vec<u8>>());
@@ -107,7 +133,7 @@ impl Codes {
         let difference = |code: &[f32]| -> f64 {
             code.iter().zip(guides).zip(&self.weights).map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum()
         };
-        let limit = f64::from(MAX_DIFFERENCE).powi(2);
+        let limit = f64::from(SIMILAR).powi(2);
         self.values.chunks_exact(guides.len()).any(|code| difference(code) <= limit)
     }
 }

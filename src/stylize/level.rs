@@ -2,6 +2,7 @@
 //! ([`Level`]).
 
 use super::guides::{Channels, no_guides};
+use super::lack::LightSamples;
 use super::memory::Memory;
 use super::params::{Input, Mode, Params, check_side};
 use super::pca;
@@ -28,6 +29,8 @@ pub(super) struct Problem {
     pub broken: (usize, usize),
     /// The target's guides for the next frame of a sequence; `None` on coarse levels.
     pub memory: Option<Memory>,
+    /// Samples of the guides of light; `None` on coarse levels, and if all guides are data.
+    pub light: Option<LightSamples>,
 }
 
 impl Problem {
@@ -79,10 +82,11 @@ impl Problem {
             _ => (shortest - 1) | 1,
         };
         let memory = Some(Memory::of(&guides, patch, job)?);
+        let light = LightSamples::of(&guides, source_mask.as_deref())?;
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
-        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts, memory })
+        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts, memory, light })
     }
 
     /// Returns the shortest side of exemplar and target, in pixels.
@@ -119,12 +123,13 @@ impl Problem {
                 source: halve(source, job)?,
                 target: halve(target, job)?,
                 weights: self.guides.weights.clone(),
-                is_light: Vec::new(),
+                is_light: self.guides.is_light.clone(),
                 broken_source: Vec::new(),
                 broken_target: Vec::new(),
             },
             broken: self.broken,
             memory: None,
+            light: None,
         })
     }
 }

@@ -182,7 +182,7 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
             _ => paint(picture, field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?,
         }
         if is_last && border.is_some() {
-            border::fade(picture, field, level.problem, vote_mode, part(1.0, 1.0))?;
+            border::fade(picture, field, level.problem, vote_mode, part(1.0, 1.0), |_| true)?;
         }
     }
     Ok(report)
@@ -239,7 +239,7 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     decode_into(&mut image, &picture, decode_input, job.part(1.0, 1.0), |_| true)?;
     let guide_error = guide_error(&field, problem, job)?;
     let report = Report {
-        lack: lack(problem, &guide_error, job)?,
+        lack: lack(problem.light.as_ref(), problem.target_mask.as_deref(), &guide_error, job)?,
         doubts: examine(problem, job)?,
         levels,
         usage,

@@ -35,6 +35,7 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let target = project(&guides.target, &vectors, &roots, count, job)?;
     (guides.source, guides.target) = (source, target);
     guides.weights = stretch(&mut guides.source, &mut guides.target);
+    guides.is_light = Vec::new();
     Ok(())
 }
 

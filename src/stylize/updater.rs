@@ -3,10 +3,11 @@
 //! matching and painting is proportional to the affected area. The guides and the artwork are quantised anew as a
 //! whole.
 
+use super::border;
 use super::level::{Level, Problem, encode, encoded};
 use super::multires;
 use super::output::{Output, Publish};
-use super::params::{Input, Params};
+use super::params::{Input, Mode, Params};
 use super::picture::{DecodeInput, decode_into, paint};
 use super::report::sources;
 use crate::error::{Error, Result};
@@ -157,6 +158,11 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
         let vote_mode = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
         paint(picture, field, problem, vote_mode, part(0.8, 1.0), |i| old[i])?;
+        // Fade out the step at the border of the painted part, if the first run has done so.
+        let may_fade = problem.known.is_some() && !matches!(params.mode, Mode::Greedy | Mode::LitSphere);
+        if round + 1 == ROUNDS && may_fade {
+            border::fade(picture, field, problem, vote_mode, part(1.0, 1.0), |i| old[i])?;
+        }
     }
     Ok(())
 }

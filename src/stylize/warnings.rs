@@ -34,10 +34,12 @@ pub const MAX_BLEMISH: f64 = 13.0;
 
 impl Report {
     /// Returns the reasons to doubt the exemplar and the light of the target. In a half-painted picture, the exemplar
-    /// is the painted part.
+    /// is the painted part. Places are in pixels of the full size, in previews too.
     pub fn warnings(&self, is_half_painted: bool) -> Vec<Warning> {
         let light = light_not_painted(&self.lack, is_half_painted);
-        light.into_iter().chain(ambiguous_paint(&self.doubts)).chain(blemish(&self.doubts)).collect()
+        let all = light.into_iter().chain(ambiguous_paint(&self.doubts)).chain(blemish(&self.doubts));
+        let pixel = f64::from(1 << self.halvings);
+        all.map(|warning| Warning { place: warning.place.map(|place| place * pixel), ..warning }).collect()
     }
 }
 

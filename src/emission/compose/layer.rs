@@ -61,8 +61,8 @@ pub struct Layer {
     /// Copies of the photo at 1/2, 1/4, 1/8, … of its size. Texels that cover many photo pixels are read from them;
     /// there are only as many copies as these texels need.
     pub smaller_photos: Vec<Image>,
-    /// The blocks of the exemplar that have light.
-    pub lit_blocks: LitBlocks,
+    /// The blocks of the exemplar that have light; `None` if the renderer does not need them.
+    pub lit_blocks: Option<LitBlocks>,
     /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
@@ -127,9 +127,8 @@ impl Layer {
         };
         let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
         let (law, scale) = (placement.law, params.scale);
-        let lit_blocks = LitBlocks::new(&exemplar, input.light, |i| is_copied_by_pixel(has_pieces, &exemplar, i))?;
         let smaller_photos = smaller_photos(input, &exemplar, scale, job)?;
-        Ok(Self {
+        let mut layer = Self {
             exemplar,
             law,
             regularity,
@@ -142,10 +141,14 @@ impl Layer {
             designs,
             sites,
             smaller_photos,
-            lit_blocks,
+            lit_blocks: None,
             even: None,
             scale,
-        })
+        };
+        if layer.any_copied_by_pixel() || layer.any_without_design() {
+            layer.lit_blocks = Some(LitBlocks::new(&layer.exemplar, input.light, |i| layer.is_copied_by_pixel(i))?);
+        }
+        Ok(layer)
     }
 
     /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the exemplar,
@@ -172,12 +175,17 @@ impl Layer {
 
     /// Whether a component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn is_copied_by_pixel(&self, component: usize) -> bool {
-        is_copied_by_pixel(self.has_pieces, &self.exemplar, component)
+        !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
     /// Whether any component is copied patch by patch (each pixel with the shift of its patch) rather than as a whole.
     pub fn any_copied_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
+    }
+
+    /// Whether any lamp that is copied as a whole keeps its outline from the photo, because it has no design.
+    fn any_without_design(&self) -> bool {
+        self.instances.iter().any(|instance| self.designs.of(instance.component).is_none())
     }
 
     /// Whether some lights are copied patch by patch, and the texture is not just a copied part of the exemplar.
@@ -211,10 +219,6 @@ fn smaller_photos(input: &Input, exemplar: &Exemplar, scale: f64, job: Job) -> R
     let shown = points.filter(|&(x, y)| exemplar.shown[y * width + x]);
     let centres = shown.map(|(x, y)| DVec2::new(x as f64, y as f64) + 0.5);
     resample::smaller(photo, &to_photo, centres, scale, job)
-}
-
-fn is_copied_by_pixel(has_pieces: bool, exemplar: &Exemplar, component: usize) -> bool {
-    !has_pieces || exemplar.roles[component] == Role::Through
 }
 
 /// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the

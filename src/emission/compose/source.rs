@@ -68,9 +68,11 @@ impl TexelSource<'_> {
         patch_map.shift(u, v).map(|s| s.exact)
     }
 
-    /// Whether a light of the set may lie in the part of the exemplar that a texel shows.
+    /// Whether a light of the set may lie in the part of the exemplar that a texel shows. Always true if the layer has
+    /// no map of the lit blocks.
     pub fn may_show(&self, set: LightSet, x: usize, y: usize, shift: DVec2) -> bool {
-        self.layer.lit_blocks.may_reach(set, self.corner(x, y, shift), self.layer.scale)
+        let blocks = self.layer.lit_blocks.as_ref();
+        blocks.is_none_or(|blocks| blocks.may_reach(set, self.corner(x, y, shift), self.layer.scale))
     }
 
     /// The corner of the part of the exemplar that a texel shows, in unwarped pixels.

@@ -165,7 +165,10 @@ pub enum Binary {
     Min,
     Max,
     PRelu,
-    Mod,
+    /// The remainder of a division. It has the sign of the dividend if `fmod` is true, else that of the divisor.
+    Mod {
+        fmod: bool,
+    },
     Equal,
     Less,
     LessOrEqual,
@@ -176,7 +179,7 @@ pub enum Binary {
 }
 
 impl Binary {
-    pub fn read(kind: &str) -> Option<Self> {
+    pub fn read(kind: &str, at: &Settings) -> Option<Self> {
         Some(match kind {
             "Add" | "Sum" => Self::Add,
             "Sub" => Self::Sub,
@@ -186,7 +189,7 @@ impl Binary {
             "Min" => Self::Min,
             "Max" => Self::Max,
             "PRelu" => Self::PRelu,
-            "Mod" => Self::Mod,
+            "Mod" => Self::Mod { fmod: at.integer("fmod", 0) == 1 },
             "Equal" => Self::Equal,
             "Less" => Self::Less,
             "LessOrEqual" => Self::LessOrEqual,
@@ -205,9 +208,12 @@ impl Binary {
             Self::Mul => a.wrapping_mul(b),
             Self::Div if b == 0 => 0,
             Self::Div => a.wrapping_div(b),
-            Self::Mod if b == 0 => 0,
-            // The result has the sign of the divisor, as in numpy.
-            Self::Mod => a.wrapping_rem(b).wrapping_add(b).wrapping_rem(b),
+            Self::Mod { .. } if b == 0 => 0,
+            Self::Mod { fmod } => {
+                let remainder = a.wrapping_rem(b);
+                let has_sign_of_divisor = remainder == 0 || (remainder < 0) == (b < 0);
+                if fmod || has_sign_of_divisor { remainder } else { remainder + b }
+            }
             Self::Pow => a.wrapping_pow(u32::try_from(b).unwrap_or(0)),
             Self::Min => a.min(b),
             Self::Max => a.max(b),
@@ -229,10 +235,10 @@ impl Binary {
     }
 }
 
-/// Applies a binary operator to two or more inputs, from left to right.
-pub fn binary(op: Binary, call: &Call) -> Result<Tensor> {
+/// Applies a binary operator to all inputs, from left to right. There must be at least `min_inputs`.
+pub fn binary(op: Binary, min_inputs: usize, call: &Call) -> Result<Tensor> {
     let mut left = call.input(0)?.clone();
-    for k in 1..call.inputs.len().max(2) {
+    for k in 1..call.inputs.len().max(min_inputs) {
         left = pair(op, &left, call.input(k)?, call)?;
     }
     Ok(left)
@@ -267,7 +273,8 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
                 Binary::Min => floats!(|a: f32, b| a.min(b)),
                 Binary::Max => floats!(|a: f32, b| a.max(b)),
                 Binary::PRelu => floats!(|a, b| if a < 0.0 { a * b } else { a }),
-                Binary::Mod => floats!(|a: f32, b| a % b),
+                // ONNX defines only `fmod` = 1 for floats; its reference implementation ignores the attribute, too.
+                Binary::Mod { .. } => floats!(|a: f32, b| a % b),
                 Binary::Equal => truths!(|a, b| a == b),
                 Binary::Less => truths!(|a, b| a < b),
                 Binary::LessOrEqual => truths!(|a, b| a <= b),

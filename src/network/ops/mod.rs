@@ -25,38 +25,89 @@ pub use resize::cubic_planes as resize_cubic;
 pub enum Op {
     Constant(Tensor),
     Unary(Unary),
-    Binary(Binary),
-    Clip { low: Option<f32>, high: Option<f32> },
+    /// `min_inputs`: 1 for operators that ONNX defines for any number of inputs, else 2.
+    Binary {
+        op: Binary,
+        min_inputs: usize,
+    },
+    Clip {
+        low: Option<f32>,
+        high: Option<f32>,
+    },
     Where,
-    Cast { to_float: bool, is_bool: bool },
+    Cast {
+        to_float: bool,
+        is_bool: bool,
+    },
     Conv(conv::Conv),
     ConvTranspose(conv::Conv),
     MatMul,
     Gemm(matmul::Gemm),
     Pool(pool::Pool),
     GlobalAveragePool,
-    BatchNorm { epsilon: f32 },
-    InstanceNorm { epsilon: f32 },
-    LayerNorm { axis: i64, epsilon: f32 },
-    Softmax { axis: i64, flattens: bool },
+    BatchNorm {
+        epsilon: f32,
+    },
+    InstanceNorm {
+        epsilon: f32,
+    },
+    LayerNorm {
+        axis: i64,
+        epsilon: f32,
+    },
+    Softmax {
+        axis: i64,
+        flattens: bool,
+    },
     Reduce(reduce::Reduce),
     Resize(resize::Resize),
-    Pad { mode: gather::Pad, pads: Option<Vec<i64>>, value: f32 },
-    Reshape { keeps_zero: bool },
-    Flatten { axis: i64 },
-    Squeeze { axes: Option<Vec<i64>> },
-    Unsqueeze { axes: Option<Vec<i64>> },
-    Transpose { order: Vec<i64> },
-    Concat { axis: i64 },
-    Split { axis: i64, sizes: Option<Vec<i64>> },
-    Slice { starts: Option<Vec<i64>>, ends: Option<Vec<i64>>, axes: Option<Vec<i64>> },
-    Gather { axis: i64 },
+    Pad {
+        mode: gather::Pad,
+        pads: Option<Vec<i64>>,
+        value: f32,
+    },
+    Reshape {
+        keeps_zero: bool,
+    },
+    Flatten {
+        axis: i64,
+    },
+    Squeeze {
+        axes: Option<Vec<i64>>,
+    },
+    Unsqueeze {
+        axes: Option<Vec<i64>>,
+    },
+    Transpose {
+        order: Vec<i64>,
+    },
+    Concat {
+        axis: i64,
+    },
+    Split {
+        axis: i64,
+        sizes: Option<Vec<i64>>,
+    },
+    Slice {
+        starts: Option<Vec<i64>>,
+        ends: Option<Vec<i64>>,
+        axes: Option<Vec<i64>>,
+    },
+    Gather {
+        axis: i64,
+    },
     Expand,
     Tile,
-    Shape { start: i64, end: Option<i64> },
+    Shape {
+        start: i64,
+        end: Option<i64>,
+    },
     ConstantOfShape(Tensor),
     Range,
-    DepthToSpace { block: usize, columns_first: bool },
+    DepthToSpace {
+        block: usize,
+        columns_first: bool,
+    },
 }
 
 impl Op {
@@ -67,8 +118,12 @@ impl Op {
         if !matches!(node.domain, "" | "ai.onnx") {
             return Err(unsupported(format_args!("the operator {} of {}", node.kind, node.domain)));
         }
-        if let Some(op) = Unary::read(node.kind, &at).map(Self::Unary).or(Binary::read(node.kind).map(Self::Binary)) {
-            return Ok(op);
+        if let Some(op) = Unary::read(node.kind, &at) {
+            return Ok(Self::Unary(op));
+        }
+        if let Some(op) = Binary::read(node.kind, &at) {
+            let min_inputs = if matches!(node.kind, "Sum" | "Min" | "Max") { 1 } else { 2 };
+            return Ok(Self::Binary { op, min_inputs });
         }
         Ok(match node.kind {
             "Constant" => Self::Constant(constant(&at)?),
@@ -153,7 +208,7 @@ impl Op {
         match self {
             Self::Constant(tensor) => Ok(vec![tensor.clone()]),
             Self::Unary(unary) => one(elementwise::unary(*unary, call)),
-            Self::Binary(binary) => one(elementwise::binary(*binary, call)),
+            Self::Binary { op, min_inputs } => one(elementwise::binary(*op, *min_inputs, call)),
             Self::Clip { low, high } => one(elementwise::clip(*low, *high, call)),
             Self::Where => one(elementwise::select(call)),
             Self::Cast { to_float, is_bool } => one(elementwise::cast(*to_float, *is_bool, call)),

@@ -56,7 +56,9 @@ impl View {
             VanishingPoint { point, support, error: rms_angle(&covariance), covariance }
         });
         let segments = segments.into_iter().zip(members).collect();
-        View { segments, vanishing_points, perspective, squareness: [None; 3], ..self.clone() }
+        // The lamps and the prior determine the focal length at least as well as the prior alone.
+        let focal_spread = found.focal_spread.min(self.expected_focal.spread);
+        View { segments, vanishing_points, perspective, focal_spread, squareness: [None; 3], ..self.clone() }
     }
 }
 

@@ -32,13 +32,15 @@ fn view(normal: DVec3, error: f64) -> View {
         error,
         covariance: round_covariance(perspective.axes.col(axis), error),
     };
+    let expected_focal = FocalPrior::new(&Params::default(), SIZE[0]);
     View {
         segments: Vec::new(),
         vanishing_points: [0, 1, 2].map(point),
         perspective,
+        focal_spread: expected_focal.spread,
         squareness: [None; 3],
         distortion: None,
-        expected_focal: FocalPrior::new(&Params::default(), SIZE[0]),
+        expected_focal,
     }
 }
 
@@ -79,6 +81,8 @@ fn equal_discs_show_the_tilt_of_their_plane_and_the_focal_length() {
     assert!(angle(&found) < 0.02 && angle(&found) < 3.0 * error, "{} rad, stated {error}", angle(&found));
     assert!((found.perspective.focal / FOCAL).ln().abs() < 0.05, "{}", found.perspective.focal);
     assert_eq!(found.perspective.focal_source, FocalSource::Lamps);
+    let stated = found.focal_error();
+    assert!((found.perspective.focal - FOCAL).abs() < 3.0 * stated && stated < 0.25 * FOCAL, "{stated}");
     let axes = found.perspective.axes;
     assert!(
         (axes.determinant() - 1.0).abs() < 1e-9

@@ -4,6 +4,7 @@
 use super::input::Input;
 use super::planes::{NEIGHBOURS, Planes, Shift};
 use crate::error::Result;
+use crate::image::try_vec;
 use crate::job::Job;
 use crate::simd::widest;
 
@@ -35,8 +36,10 @@ impl Guides {
                 }
             }
         })?;
-        let scales = Planes::from_rows([width, height, 1], job.part(0.5, 1.0), |y, row| {
-            scales(&planes, y, row);
+        let new_scratch = || Ok((try_vec(width, [0.0; 3])?, try_vec(width, 0.0)?));
+        let job = job.part(0.5, 1.0);
+        let scales = Planes::from_rows_with([width, height, 1], job, new_scratch, |(nearest, distance), y, row| {
+            scales(&planes, y, nearest, distance, row);
             // Where the variance is unknown, no statistical test can separate the surfaces at an edge. Only the guides
             // can, so a factor of 1 leaves their distances as they are.
             (0..width).filter(|&x| !input.is_known(x, y)).for_each(|x| row[x] = 1.0);
@@ -73,11 +76,11 @@ impl Guides {
 /// Computes the factors of the pixels of a row. At an edge of a surface, the guides of a pixel are means over several
 /// surfaces, and few neighbours have similar guides. The factor reduces the distances such that the third smallest of
 /// the eight is at most 1. Every pixel then has neighbours to be averaged with. (For the same reason, the bandwidth in
-/// Rousselle et al. 2013, section 4.1, follows the gradient of the guides.)
-fn scales(guides: &Planes, y: usize, row: &mut [f32]) {
+/// Rousselle et al. 2013, section 4.1, follows the gradient of the guides.) `nearest` and `distance` are scratch
+/// memory.
+fn scales(guides: &Planes, y: usize, nearest: &mut [[f32; 3]], distance: &mut [f32], row: &mut [f32]) {
     let width = row.len();
-    let mut nearest = vec![[f32::INFINITY; 3]; width];
-    let mut distance = vec![0.0; width];
+    nearest.fill([f32::INFINITY; 3]);
     for offset in NEIGHBOURS {
         let Some(at) = Shift::new([width, guides.height], y, offset) else { continue };
         let distance = &mut distance[..at.span];

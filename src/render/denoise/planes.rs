@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::exec;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use crate::simd::widest;
 
@@ -27,6 +27,18 @@ impl Planes {
     ) -> Result<Self> {
         let mut data = try_vec(width * height * channels, 0.0f32)?;
         exec::for_rows(&mut data, width * channels, job, work)?;
+        Ok(Self { data, width, height, channels })
+    }
+
+    /// Like [`from_rows`](Self::from_rows), with scratch memory: see [`exec::for_rows_with`].
+    pub fn from_rows_with<S>(
+        [width, height, channels]: [usize; 3],
+        job: Job,
+        new_scratch: impl Fn() -> Result<S> + Sync,
+        work: impl Fn(&mut S, usize, &mut [f32]) + Sync,
+    ) -> Result<Self> {
+        let mut data = try_vec(width * height * channels, 0.0f32)?;
+        exec::for_rows_with(&mut data, width * channels, job, new_scratch, work)?;
         Ok(Self { data, width, height, channels })
     }
 
@@ -57,7 +69,7 @@ impl Planes {
         let total = |x: usize| -> f32 {
             (x.saturating_sub(radius)..(x + radius + 1).min(width)).map(|column| weight(column.abs_diff(x))).sum()
         };
-        let scales: Vec<f32> = (0..width).map(|x| 1.0 / total(x)).collect();
+        let scales = try_collect((0..width).map(|x| 1.0 / total(x)))?;
         Self::from_rows([width, height, channels], job, |y, out| {
             for (channel, out) in out.chunks_exact_mut(width).enumerate() {
                 let row = down.row(y, channel);

@@ -14,6 +14,7 @@ use super::guides::Guides;
 use super::light::LIGHT;
 use super::planes::{Planes, Shift};
 use crate::error::Result;
+use crate::image::try_vec;
 use crate::job::Job;
 use crate::simd::widest;
 
@@ -58,41 +59,60 @@ pub struct Pilot<'a> {
     pub tolerance: f32,
 }
 
+/// Memory in which a row is computed.
+struct Scratch {
+    /// For each half, the sums of all pixels (see [`SUMS`]).
+    sums: [Vec<f32>; 2],
+    /// Distances in the guides, and weights, of the pixels' neighbours at one tap.
+    distance: Vec<f32>,
+    weights: Vec<f32>,
+}
+
+impl Scratch {
+    fn new(width: usize) -> Result<Self> {
+        let sums = [try_vec(SUMS * width, 0.0)?, try_vec(SUMS * width, 0.0)?];
+        Ok(Self { sums, distance: try_vec(width, 0.0)?, weights: try_vec(width, 0.0)? })
+    }
+}
+
 impl Pass<'_> {
     /// Filters both halves. The test of a half compares values of its own pilot only, so that the noise of the halves
     /// stays independent, except for their common, smoothed variance.
     pub fn run(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = *self.light;
-        Planes::from_rows([width, height, LIGHT], job, |y, out| {
-            let mut sums = [vec![0.0; SUMS * width], vec![0.0; SUMS * width]];
-            let mut distance = vec![0.0; width];
-            for dy in -RADIUS..=RADIUS {
-                for dx in -RADIUS..=RADIUS {
-                    self.add(y, [dx, dy], &mut distance, &mut sums);
+        Planes::from_rows_with(
+            [width, height, LIGHT],
+            job,
+            || Scratch::new(width),
+            |scratch, y, out| {
+                scratch.sums.iter_mut().for_each(|sums| sums.fill(0.0));
+                for dy in -RADIUS..=RADIUS {
+                    for dx in -RADIUS..=RADIUS {
+                        self.add(y, [dx, dy], scratch);
+                    }
                 }
-            }
-            let (first, second) = out.split_at_mut(3 * width);
-            for (sums, out) in sums.iter().zip([first, second]) {
-                solve(sums, self.pilot.is_some(), out);
-            }
-        })
+                let (first, second) = out.split_at_mut(3 * width);
+                for (sums, out) in scratch.sums.iter().zip([first, second]) {
+                    solve(sums, self.pilot.is_some(), out);
+                }
+            },
+        )
     }
 
     /// Adds one tap to the sums of the pixels of a row.
-    fn add(&self, y: usize, tap: [isize; 2], distance: &mut [f32], sums: &mut [Vec<f32>; 2]) {
+    fn add(&self, y: usize, tap: [isize; 2], scratch: &mut Scratch) {
         let (width, height) = (self.light.width, self.light.height);
         let Some(at) = Shift::new([width, height], y, tap.map(|t| t * self.step as isize)) else { return };
-        let distance = &mut distance[..at.span];
+        let (distance, weights) = (&mut scratch.distance[..at.span], &mut scratch.weights[..at.span]);
         match tap {
             [0, 0] => distance.fill(0.0),
             _ => self.guides.distances(y, &at, distance),
         }
         let place = tap.map(|t| t as f32);
         let gauss = (-0.5 * (place[0] * place[0] + place[1] * place[1]) / (SIGMA * SIGMA)).exp();
-        for (half, sums) in sums.iter_mut().enumerate() {
+        for (half, sums) in scratch.sums.iter_mut().enumerate() {
             let values = self.light.part(at.row, 3 * half, at.there, at.span);
             let confidence = &self.confidence.row(at.row, half)[at.there..at.there + at.span];
-            let mut weights = vec![0.0; at.span];
             match self.pilot {
                 None => weights.copy_from_slice(distance),
                 Some(Pilot { light, variance, tolerance }) => {
@@ -100,10 +120,10 @@ impl Pass<'_> {
                     let there = light.part(at.row, 3 * half, at.there, at.span);
                     let noise_here = variance.part(y, 0, at.from, at.span);
                     let noise_there = variance.part(at.row, 0, at.there, at.span);
-                    test(tolerance, distance, here, there, noise_here, noise_there, &mut weights);
+                    test(tolerance, distance, here, there, noise_here, noise_there, weights);
                 }
             }
-            accumulate(gauss, place, confidence, values, &mut weights, at.from, sums);
+            accumulate(gauss, place, confidence, values, weights, at.from, sums);
         }
     }
 }

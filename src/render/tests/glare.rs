@@ -209,6 +209,10 @@ fn limits_have_clear_answers() {
     shining.materials.push(matt(0.0, 500.0));
     shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
     assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
+    // A panel seen edge-on has no projected area. It counts as rated even if it shines towards the eye.
+    let even = Luminaire { gammas: vec![0.0, 180.0], candela: vec![300.0; 2], ..panel() };
+    let edge_on = rated(room(even, &[Vec3::new(3.0, EYE.position.y, 4.5)]), EYE, 1024);
+    assert!(edge_on.sources.is_empty() && edge_on.unrated_lux == 0.0 && edge_on.background > 0.0, "{edge_on:?}");
     // Observers inside a luminous opening are refused with a message that names the observer. Observers that look
     // straight up, or whose direction is invalid, are refused too.
     let scene = Arc::new(room(panel(), &[at]));

@@ -10,6 +10,7 @@
 //! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
 //! side.
 
+use super::ceiling_name::is_ceiling;
 use crate::error::Result;
 use crate::image::{try_collect, try_push, try_vec, try_with_capacity};
 use crate::scene::Scene;
@@ -21,9 +22,6 @@ const LEVEL: f64 = 0.965_925_826;
 /// If a name contains a word for a ceiling, and at least one triangle is level, the score `s` becomes
 /// `s + NAMED (1 - s)`. [convention]
 const NAMED: f64 = 0.5;
-
-/// Words for a ceiling in lower case, in several languages.
-const NAMES: [&str; 8] = ["ceiling", "decke", "plafond", "soffitto", "techo", "teto", "天井", "потолок"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -172,8 +170,7 @@ impl Sums {
         ];
         // Square the relative height, because a surface at half the height is hardly a ceiling.
         let score = level * cover * above * above;
-        let lower = name.to_lowercase();
-        let is_named = NAMES.iter().any(|word| lower.contains(word));
+        let is_named = is_ceiling(name);
         Candidate {
             kind,
             name: name.into(),

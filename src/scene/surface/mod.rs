@@ -11,6 +11,7 @@
 
 mod bounding_rectangle;
 mod candidates;
+mod ceiling_name;
 mod facing;
 mod name;
 mod patch;

@@ -189,6 +189,7 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
         samples,
         contradictory: paint.contradictory,
         off_image: paint.off_image,
+        is_of_lamps: true,
         is_proposed: false,
         beyond,
     })

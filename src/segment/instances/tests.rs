@@ -242,7 +242,7 @@ fn lamps_much_smaller_on_the_plane_than_the_painted_ones_are_not_like_them() {
 fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
     let ceiling = ceiling();
     let lamps = segment(&[], Some(&ceiling));
-    assert!(lamps.is_proposed);
+    assert!(lamps.is_proposed && lamps.is_of_lamps);
     assert_eq!(found(&lamps.mask), (vec![true; LAMPS.len()], 0));
     // A negative stroke removes one proposed lamp.
     let not = stroke(false, &[[40.0, 22.0], [40.0, 30.0]]);

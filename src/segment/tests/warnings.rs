@@ -145,13 +145,21 @@ fn painted_lamps_no_brighter_than_the_plane_raise_a_warning_with_a_place_on_the_
 fn regions_that_may_be_lamps_raise_a_warning_with_a_place_on_one() {
     let square = |x: usize, y: usize, left: usize| (left..left + 10).contains(&x) && (20..30).contains(&y);
     let mask = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(square(x, y, 20) || square(x, y, 60))]).unwrap();
-    let lamps =
-        |unseen: Image| Segmentation { unseen, samples: [10, 10], ..Segmentation::from_confidence(&mask).unwrap() };
+    let lamps = |unseen: Image| Segmentation {
+        unseen,
+        samples: [10, 10],
+        is_of_lamps: true,
+        ..Segmentation::from_confidence(&mask).unwrap()
+    };
     assert_eq!(codes(lamps(Image::new(WIDTH, HEIGHT, 1).unwrap()).warnings()), []);
     let third = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(square(x, y, 100))]).unwrap();
-    let warnings = lamps(third).warnings();
+    let warnings = lamps(third.clone()).warnings();
     assert_eq!(codes(warnings.clone()), [Code::Unseen]);
     assert!((warnings[0].severity - 1.0 / 3.0).abs() < 1e-9);
     let place = warnings[0].place.unwrap();
     assert!(square(place.x as usize, place.y as usize, 100), "{place}");
+    // Lamps proposed without any stroke raise the same warning, in other words.
+    let proposed = Segmentation { samples: [0, 0], is_proposed: true, ..lamps(third) };
+    assert_eq!(codes(proposed.warnings()), [Code::Proposed, Code::Unseen]);
+    assert!(proposed.warnings()[1].message.contains("proposed lamps"), "{:?}", proposed.warnings());
 }

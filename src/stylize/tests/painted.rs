@@ -1,15 +1,22 @@
 //! Tests of half-painted pictures, whose unpainted part is synthesised from the painted part.
 
 use super::*;
+use crate::warning::Code;
 
 /// Synthesises the right half of a picture from its left half, which is painted.
 fn completed(art: &Image, scene: &Image) -> Output {
-    let half =
-        |left: f32| Image::from_fn(art.width, art.height, |x, _| [if 2 * x < art.width { left } else { 1.0 - left }]);
-    let (painted, rest) = (half(1.0).unwrap(), half(0.0).unwrap());
-    let guides = [guide(scene, scene)];
-    let masks = Input { source_mask: Some(&painted), target_mask: Some(&rest), ..input(art, &guides) };
-    stylise(&Input { known: Some(art), ..masks }, &Params { levels: 3, ..Params::default() }).unwrap()
+    completed_by(art, &[guide(scene, scene)], &Params { levels: 3, ..Params::default() })
+}
+
+fn completed_by(art: &Image, guides: &[Guide], params: &Params) -> Output {
+    let (painted, rest) = (half(art, 1.0), half(art, 0.0));
+    let masks = Input { source_mask: Some(&painted), target_mask: Some(&rest), ..input(art, guides) };
+    stylise(&Input { known: Some(art), ..masks }, params).unwrap()
+}
+
+/// A mask of the size of `art`: `left` in the left half, `1 - left` in the right half.
+fn half(art: &Image, left: f32) -> Image {
+    Image::from_fn(art.width, art.height, |x, _| [if 2 * x < art.width { left } else { 1.0 - left }]).unwrap()
 }
 
 /// Mean difference of the second channel between the columns `x` and `x + 1`.
@@ -58,4 +65,37 @@ fn light_that_the_painted_part_lacks_uses_no_patch_too_often_and_is_named_with_i
     assert!(message(true).contains("painted part") && message(false).contains("exemplar"), "{}", message(true));
     let error = &output.report.guide_error;
     assert!(error.pixel(90, 72)[0] > 0.3 && error.pixel(90, 24)[0] < 0.1);
+
+    // A preview, which compresses six channels to a few components, names the light too. It does not name the data of
+    // the right half, which the left half shows, too.
+    let data = Image::from_fn(120, 96, |x, _| std::array::from_fn::<f32, 5, _>(|c| (x * (c + 1) % 60) as f32 / 60.0));
+    let data = data.unwrap();
+    let guides = [Guide { name: "data", range: Range::Data, ..guide(&data, &data) }, guide(&scene, &scene)];
+    let preview = completed_by(&art, &guides, &Params { levels: 2, ..Params::preview() });
+    assert!(
+        preview.report.halvings == 1 && (preview.report.lack.share - 0.5).abs() < 0.05,
+        "{:?}",
+        preview.report.lack
+    );
+    let warnings = preview.report.warnings(true);
+    let place = warnings[0].place.unwrap();
+    assert!(warnings[0].code == Code::LightNotPainted && lit(place.x as usize, place.y as usize), "{place}");
+}
+
+#[test]
+fn an_update_fades_the_step_at_the_border_as_the_first_run_does() {
+    let of = |v: f32| Image::from_fn(80, 60, |_, _| [v; 3]).unwrap();
+    let (scene, known, painted) = (of(0.5), of(0.2), of(0.6));
+    let (rest, everywhere) = (half(&known, 0.0), Image::from_fn(80, 60, |_, _| [1.0]).unwrap());
+    let guides = [guide(&scene, &scene)];
+    let params = Params { levels: 2, ..Params::fast() };
+    let input = |art| Input { target_mask: Some(&rest), known: Some(&known), ..Input::new(art, &guides) };
+    let first = stylise(&input(&painted), &params).unwrap().image;
+    let [near, far] = [40, 70].map(|x| first.pixel(x, 30)[0]);
+    assert!(near < 0.4 && (far - 0.6).abs() < 1e-4, "{near} {far}");
+
+    let (mut updater, _) = Updater::new(&input(&of(0.9)), &params, &|_| (), Monitor::default().job()).unwrap();
+    let updated = updater.repaint(&painted, &everywhere, Monitor::default().job()).unwrap();
+    let differs = updated.data.iter().zip(&first.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(differs < 1e-5, "{differs}");
 }
