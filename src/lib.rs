@@ -51,6 +51,7 @@
     )
 )]
 
+pub mod accel;
 pub mod error;
 pub mod exec;
 pub mod geometry;
