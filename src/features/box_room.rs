@@ -83,6 +83,11 @@ const MARGIN: f64 = 1.05;
 
 /// Pixels share a face of the room if at least this share of them lies on it. [convention]
 const SHARED: f64 = 0.9;
+/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the
+/// room stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain, because strokes for the plane
+/// are missing, or because the photo's lines do not determine the camera. [bench photos:tune, photos:real]
+const MAX_GROWTH: f64 = 1.25;
+const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
 impl Layout {
     /// Returns the face on which most of the given pixels lie.
@@ -105,10 +110,30 @@ impl Layout {
         (Face::ALL[most], counts[most] as f64 / counts.iter().sum::<usize>().max(1) as f64)
     }
 
+    /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns
+    /// `None` if a face would have to move by a factor that is too large to be plausible. If the layout is uncertain,
+    /// larger factors are plausible.
+    pub fn plausibly_enlarged(
+        &self,
+        face: Face,
+        perspective: &Perspective,
+        pixels: impl Iterator<Item = DVec2>,
+        is_uncertain: bool,
+    ) -> Option<Self> {
+        let (layout, growth) = self.enlarged(face, perspective, pixels);
+        let max_growth = if is_uncertain { MAX_GROWTH_UNCERTAIN } else { MAX_GROWTH };
+        (growth <= max_growth).then_some(layout)
+    }
+
     /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns the
     /// new room, and the largest factor by which a face has moved away. Pixels whose rays do not meet the plane of
     /// `face` are ignored.
-    pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
+    pub(super) fn enlarged(
+        &self,
+        face: Face,
+        perspective: &Perspective,
+        pixels: impl Iterator<Item = DVec2>,
+    ) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;
         let mut back = 1.0f64;

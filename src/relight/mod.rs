@@ -21,6 +21,7 @@
 mod band;
 mod bins;
 mod bounded;
+mod clipping;
 mod descent;
 mod estimate;
 mod groups;
@@ -28,6 +29,7 @@ mod importance;
 mod lamps;
 mod line_search;
 mod params;
+mod photo_colour;
 mod placement;
 mod primaries;
 mod responses;
@@ -44,6 +46,7 @@ pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, MAX_WEIGHT, Out
 pub use importance::{Importance, ImportanceParams, Response};
 pub use lamps::Lamps;
 pub use params::{Fit, Params, Quantity, TargetGeometry};
+pub use photo_colour::{PhotoColour, TargetColour, photo_colour};
 pub use placement::{Aim, Placement, PlacementParams, Pose};
 pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};

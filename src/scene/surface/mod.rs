@@ -11,6 +11,7 @@
 
 mod bounding_rectangle;
 mod candidates;
+mod coverage;
 mod facing;
 mod name;
 mod patch;
