@@ -92,17 +92,17 @@ const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 impl Layout {
     /// Returns the face on which most of the given pixels lie.
     pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
-        self.most_hit(perspective, pixels).0
+        self.most_common_face(perspective, pixels).0
     }
 
     /// Returns the face on which nearly all of the given pixels lie; `None` if there is no such face.
     pub fn shared_face(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Option<Face> {
-        let (face, share) = self.most_hit(perspective, pixels);
+        let (face, share) = self.most_common_face(perspective, pixels);
         (share >= SHARED).then_some(face)
     }
 
     /// Returns the face on which most of the given pixels lie, and the share of the pixels that lie on it.
-    fn most_hit(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Face, f64) {
+    fn most_common_face(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Face, f64) {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
         pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);

@@ -88,7 +88,7 @@ enum IntensityBound {
 pub struct FaceEmission {
     measured: Measured,
     opening: Opening,
-    least_area: f64,
+    min_area: f64,
     colour: Vec3,
 }
 
@@ -97,7 +97,7 @@ impl FaceEmission {
     /// faces that the viewer sees have the same luminance.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let local = self.measured.local(direction);
-        let area = self.opening.projected_area(local).max(self.least_area);
+        let area = self.opening.projected_area(local).max(self.min_area);
         (self.colour * (self.measured.candela(local) / area) as f32).min(Vec3::splat(MAX_LIGHT))
     }
 
@@ -116,8 +116,8 @@ impl Luminaires {
             let PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } = *kind else { continue };
             let Some(opening) = kind.opening(&scene.distributions) else { continue };
             let measured = Measured::new(axis, c0, scene.distributions[distribution].clone());
-            let least_area = opening.largest_area() * EDGE_ON;
-            let emission = FaceEmission { measured, opening, least_area, colour };
+            let min_area = opening.largest_area() * EDGE_ON;
+            let emission = FaceEmission { measured, opening, min_area, colour };
             let position = position.as_dvec3() - centre;
             let gap = *known_gap.get_or_insert_with(|| gap(scene, centre));
             shapes.resize(scene.distributions.len(), None);
@@ -218,14 +218,14 @@ impl Shape {
         let faces = Faces::new(opening, emits, gap);
         // Compute the luminance in a grid of directions over the whole sphere.
         let measured = Measured::new(Vec3::Z, Vec3::X, luminaire.clone());
-        let least = opening.largest_area() * EDGE_ON;
+        let min_area = opening.largest_area() * EDGE_ON;
         let directions =
             (0..=180).step_by(STEP[1]).flat_map(|gamma| (0..360).step_by(STEP[0]).map(move |c| [c, gamma]));
         let samples: Vec<(DVec3, f64)> = directions
             .map(|angles| {
                 let [c, gamma] = angles.map(|degrees| f64::from(degrees as u32).to_radians());
                 let local = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
-                (local, measured.candela(local) / opening.projected_area(local).max(least))
+                (local, measured.candela(local) / opening.projected_area(local).max(min_area))
             })
             .collect();
         let mut intensity_bounds: Vec<_> = faces
@@ -275,9 +275,9 @@ impl IntensityBound {
         }
     }
 
-    fn raise(&mut self, least: f64) {
+    fn raise(&mut self, min_peak: f64) {
         match self {
-            Self::Cosine(peak) | Self::Cone { peak, .. } => *peak = peak.max(least),
+            Self::Cosine(peak) | Self::Cone { peak, .. } => *peak = peak.max(min_peak),
         }
     }
 }

@@ -61,7 +61,7 @@ pub use aov::Aov;
 pub use contribution::{LightSource, PathSink};
 pub use film::pilot::{self, Pilot};
 pub use layers::{Layer, Outputs};
-pub use light::Reach;
+pub use light::LampVisibility;
 pub use output::Film;
 pub use overview::overview_camera;
 pub use params::Params;

@@ -4,7 +4,7 @@ use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
-use super::light::{Lights, Reach};
+use super::light::{LampVisibility, Lights};
 use super::luminaires::{Luminaires, Source};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
@@ -180,9 +180,9 @@ impl World {
         self.vicinity.as_deref()
     }
 
-    /// Counts the lamps that do not reach the surfaces in view (see [`Lights::reach`]).
-    pub(super) fn reach(&self) -> Result<Option<Reach>> {
-        self.lights.reach()
+    /// Counts the lamps that do not reach the surfaces in view (see [`Lights::lamp_visibility`]).
+    pub(super) fn lamp_visibility(&self) -> Result<Option<LampVisibility>> {
+        self.lights.lamp_visibility()
     }
 
     pub fn scene(&self) -> &Arc<Scene> {

@@ -111,8 +111,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut kept: Vec<&Site> = Vec::new();
     for site in order {
         let is_over = |other: &&Site| {
-            let reach = (site.lamps[0].size + other.lamps[0].size) * (OVERLAP / 2.0);
-            sites.residual(site.at - other.at).abs().cmple(reach).all()
+            let max_offset = (site.lamps[0].size + other.lamps[0].size) * (OVERLAP / 2.0);
+            sites.residual(site.at - other.at).abs().cmple(max_offset).all()
         };
         if !kept.iter().any(is_over) {
             kept.push(site);

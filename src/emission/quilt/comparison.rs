@@ -114,7 +114,7 @@ impl<'a> Comparison<'a> {
         };
         // The number of usable pixels that a shift shows in the whole block, filled pixels included, is an upper bound
         // for the number of empty pixels that it fills.
-        let most_of = |shift: &Shift| {
+        let max_fill = |shift: &Shift| {
             let working = self.guide.working;
             let side = |at: usize, by: i32, length: usize, side: usize| {
                 let start = at as i64 - i64::from(by);
@@ -125,7 +125,7 @@ impl<'a> Comparison<'a> {
             let (v, rows) = side(y, shift.working[1], h, working.height);
             if columns * rows == 0 { 0 } else { self.usable.count(u, v, columns, rows) }
         };
-        let bounds: Vec<usize> = shifts.iter().map(most_of).collect();
+        let bounds: Vec<usize> = shifts.iter().map(max_fill).collect();
         let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
         let exact = |(shift, bound): (&Shift, usize)| {
             if bound == w * h {
@@ -143,7 +143,7 @@ impl<'a> Comparison<'a> {
 
     /// Scores how well shifts agree with the known pixels of a block.
     ///
-    /// - Leaves out shifts that fill fewer than `least` empty pixels. If `least` is `None`, the minimum is
+    /// - Leaves out shifts that fill fewer than `min_fill` empty pixels. If `min_fill` is `None`, the minimum is
     ///   [`ENOUGH_COVERAGE`] times the largest number that any shift fills.
     /// - Stops comparing a shift early, and gives it an infinite error, as soon as it cannot be equally good as the
     ///   error `limit`, or as the lowest error found so far.
@@ -151,15 +151,15 @@ impl<'a> Comparison<'a> {
         &self,
         block: &Block,
         shifts: &[Shift],
-        least: Option<usize>,
+        min_fill: Option<usize>,
         limit: f32,
         balance: &Balance,
         job: Job,
     ) -> Result<Vec<Scored>> {
         let fills = self.fills(block, shifts);
         let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
-        let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
-        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
+        let min_fill = min_fill.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
+        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= min_fill).collect();
         let filled = count(&block.filled);
         let mut excess = vec![0.0; shifts.len()];
         let of_covering = self.excess(block, covering.iter().map(|&n| shifts[n]));

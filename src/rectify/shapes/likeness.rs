@@ -143,15 +143,15 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
 /// they have equal size and form. Infinite if the camera sees a shape beyond the plane's horizon or at too small an
 /// angle.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    least_cost(shapes, normal, focal, 1)
+    min_cost(shapes, normal, focal, 1)
 }
 
 /// Like [`cost`], but faster: tries only every third width of bloom.
 pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    least_cost(shapes, normal, focal, 3)
+    min_cost(shapes, normal, focal, 3)
 }
 
-fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
+fn min_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
     let cost = |bloom: usize| (BLOOMS[bloom] / BLOOM_SPREAD).powi(2) + cost_without(shapes, normal, focal, bloom);
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
