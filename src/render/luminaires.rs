@@ -10,7 +10,7 @@ use super::light::bounds::Bounds;
 use super::measured::Measured;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
-use crate::photometry::faces::{Emits, Faces, Patch};
+use crate::photometry::faces::{Emits, FacePatch, Faces};
 use crate::photometry::opening::Opening;
 use crate::scene::{MAX_LIGHT, Mesh, PunctualLight, Scene, c90};
 use glam::{DVec3, Vec3};
@@ -186,7 +186,7 @@ impl Source {
         })
     }
 
-    fn bounds(&self, patch: &Patch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
+    fn bounds(&self, patch: &FacePatch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
         let Faces { points, triangles, .. } = &self.shape.faces;
         let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area_vector(t).length()).sum();
         let of_triangle = |t: usize| {
@@ -244,7 +244,7 @@ impl Shape {
 impl IntensityBound {
     /// Bounds the intensity of a patch. `samples` are directions over the whole sphere, with the luminance of the faces
     /// in each. The luminaire emits only at angles γ between the two `limits` in degrees.
-    fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
+    fn new(faces: &Faces, patch: &FacePatch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
         let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area_vector(t)).collect();
         let area: f64 = normals.iter().map(|n| n.length()).sum();
         let whole: DVec3 = normals.iter().sum();

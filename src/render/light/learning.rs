@@ -4,7 +4,7 @@
 
 use super::Lights;
 use super::lamp_visibility::{LampVisibility, Split, unlikely_share, weights};
-use super::lamps::Lamps;
+use super::luminous_surfaces::LuminousSurfaces;
 use super::survey::{ENOUGH, Progress, SampleCounts, Survey};
 use crate::error::Result;
 use crate::render::vicinity::PositionReservoir;
@@ -92,7 +92,7 @@ impl Lights {
         let lamps = match self.lamps.get() {
             Some(lamps) => lamps,
             None => {
-                own = Lamps::new(&self.emitters, self.inventory.pieces)?;
+                own = LuminousSurfaces::new(&self.emitters, self.inventory.pieces)?;
                 self.lamps.get_or_init(|| own)
             }
         };

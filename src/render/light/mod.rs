@@ -12,8 +12,8 @@
 
 pub(super) mod bounds;
 mod lamp_visibility;
-mod lamps;
 mod learning;
+mod luminous_surfaces;
 mod punctual;
 mod selector;
 mod survey;
@@ -29,7 +29,7 @@ use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
 use lamp_visibility::Split;
-use lamps::Lamps;
+use luminous_surfaces::LuminousSurfaces;
 use punctual::Punctual;
 use selector::{Inventory, Selector};
 use std::f64::consts::PI;
@@ -56,7 +56,7 @@ pub struct Lights {
     /// Whether renders may learn which lights reach the surfaces in view.
     pub learns: bool,
     /// The surfaces of the scene grouped into lamps; computed when a render first reports its [`LampVisibility`].
-    lamps: Arc<OnceLock<Lamps>>,
+    lamps: Arc<OnceLock<LuminousSurfaces>>,
 }
 
 /// A sample of the light that reaches a receiver.
