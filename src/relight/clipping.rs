@@ -32,8 +32,8 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
     let mut count = 0.0;
     for rgb in pixels.clone() {
         count += 1.0;
-        let whole = !clipped(rgb);
-        for (x, y) in pairs().filter(|(x, y)| whole.test(*x) && whole.test(*y)) {
+        let unclipped = !clipped(rgb);
+        for (x, y) in pairs().filter(|(x, y)| unclipped.test(*x) && unclipped.test(*y)) {
             moments[y][x].add(f64::from(rgb[x]), f64::from(rgb[y]));
         }
     }

@@ -86,12 +86,12 @@ impl Ellipsoid {
 
 /// Returns the mean over all pixels of how far a pixel lies outside the nearest ellipsoid: 0 inside, `1 - e^(1 - d)`
 /// outside, where the distance d from the centre is 1 on the ellipsoid.
-pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
+pub fn mean_unseen(pixels: &Table, columns: &[usize], ellipsoids: &[Ellipsoid]) -> f64 {
     let mut sum = 0.0;
     for (rows, block) in pixels.blocks() {
         let mut nearest = [f64::INFINITY; BLOCK];
-        for region in regions {
-            let distances = region.squared_distances(block, columns);
+        for ellipsoid in ellipsoids {
+            let distances = ellipsoid.squared_distances(block, columns);
             nearest.iter_mut().zip(distances).for_each(|(n, d)| *n = n.min(d));
         }
         sum += nearest[..rows.len()].iter().map(|n| 1.0 - (1.0 - n.max(1.0).sqrt()).exp()).sum::<f64>();
@@ -172,6 +172,6 @@ mod tests {
         let (x, y) = (region.centre[0], region.centre[1]);
         let (along, across) = (at(x + 18.0, y), at(x, y + 6.0 * 0.51));
         assert!((along / across).ln().abs() < 0.3, "{along} {across}");
-        assert_eq!(mean_beyond(&Table::of(&[x, 0.0, y], 3).unwrap(), &[0, 2], &[region]), 0.0);
+        assert_eq!(mean_unseen(&Table::of(&[x, 0.0, y], 3).unwrap(), &[0, 2], &[region]), 0.0);
     }
 }

@@ -123,7 +123,7 @@ pub fn choose(input: &SelectionInput, job: Job) -> Result<Chosen> {
     let spreads = [negative, positive];
     let unseen = exec::map(subsets.len(), job.part(0.0, 0.1), |k| {
         let columns = &subsets[k];
-        ellipsoid::mean_beyond(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
+        ellipsoid::mean_unseen(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
     })?;
 
     let candidate = cheapest(&trial, subsets, &unseen, job.part(0.1, 0.9))?;

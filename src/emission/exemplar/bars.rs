@@ -206,9 +206,9 @@ impl<'a> Lines<'a> {
     }
 
     /// Removes a bar from the light mask. Sections that show no bar stay lit if the photo is sharp enough there, that
-    /// is, if its sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
-    pub fn cut(&self, bar: &Bar, sections: &[Section], bluntest: f64, light: &mut Image) -> bool {
-        let is_absent = |s: &Section| s.sharpness >= bluntest && s.depth < MIN_SECTION_DEPTH * bar.depth;
+    /// is, if its sharpness is at least `lowest_sharpness`. Returns whether any lit pixel was removed.
+    pub fn cut(&self, bar: &Bar, sections: &[Section], lowest_sharpness: f64, light: &mut Image) -> bool {
+        let is_absent = |s: &Section| s.sharpness >= lowest_sharpness && s.depth < MIN_SECTION_DEPTH * bar.depth;
         let absent: Vec<bool> = sections.iter().map(is_absent).collect();
         // Where another bar crosses, this bar seems absent, because the pixels on both sides of it belong to the other
         // bar and are as dark. So a section without a bar is removed as well if the bar shows close by on both sides.
@@ -243,7 +243,7 @@ pub struct Section {
 
 /// The lowest sharpness of those sections in which the bar is clearly visible, that is, in which its depth is at least
 /// half of the whole bar's depth. Infinite if there is no such section.
-pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
+pub fn lowest_sharpness(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }

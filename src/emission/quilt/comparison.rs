@@ -52,7 +52,7 @@ pub struct Scored {
 pub struct Comparison<'a> {
     pub guide: &'a Guide<'a>,
     pub features: Vec<Feature>,
-    pub turns: Vec4,
+    pub channel_periods: Vec4,
     /// `usable`: summed-area table of the exemplar's usable pixels. `light`: summed-area table of the lit share of its
     /// pixels, in units of 1 / [`LIGHT_STEPS`].
     pub usable: AreaSums,
@@ -79,7 +79,7 @@ impl<'a> Comparison<'a> {
         Ok(Self {
             guide,
             features: guide.features(),
-            turns: guide.turns(),
+            channel_periods: guide.channel_periods(),
             usable,
             light: AreaSums::of(|i| (working.coverage[i] * LIGHT_STEPS).round() as u32, working.width, working.height)?,
             lit_share: lit / all.max(1) as f64,
@@ -206,7 +206,7 @@ impl<'a> Comparison<'a> {
             let (old, new) = (run.source + skipped, y * working.width + x);
             let mut add = |from: usize, to: usize| {
                 let (a, b) = (&self.features[old + from..old + to], &self.features[new + from..new + to]);
-                sum += f64::from(squares(a, b, self.turns));
+                sum += f64::from(squares(a, b, self.channel_periods));
                 compared += to - from;
             };
             if is_whole || self.usable.count(x, y, length, 1) == length {

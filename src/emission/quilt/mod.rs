@@ -326,7 +326,7 @@ impl Quilt<'_> {
                 squares(
                     &self.comparison.features[old..=old],
                     &self.comparison.features[new..=new],
-                    self.comparison.turns,
+                    self.comparison.channel_periods,
                 ) + lamp
             }
         };

@@ -49,7 +49,7 @@ fn inside() -> Camera {
 fn worlds(scene: Scene) -> [World; 2] {
     let learns = world(scene);
     let mut alike = learns.clone();
-    alike.without_learning();
+    alike.disable_learning();
     [learns, alike]
 }
 
@@ -138,7 +138,7 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     (6..30).for_each(|i| add_room(&mut scene, 3.0 * i as f32, [0.0; 2], 3));
     let surroundings = world(scene);
     let mut whole = surroundings.clone();
-    whole.without_vicinity();
+    whole.disable_vicinity();
     let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
     let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
     assert!(a.beauty == b.beauty && a.variance == b.variance && a.lamp_visibility == b.lamp_visibility);
