@@ -9,8 +9,9 @@ pub fn max_side(crumb: f64) -> usize {
 }
 
 /// Removes every connected piece of light whose area is below `crumb` texels and whose bounding box is at most
-/// [`max_side`] texels wide and high. Keeps a piece for which `is_cut` returns true, because it is the visible part of a
-/// larger light. The arguments of `is_cut` are `[first column, first row]` and `[last column, last row]` of the piece.
+/// [`max_side`] texels wide and high. Keeps a piece for which `is_cut` returns true, because it is the visible part of
+/// a larger light. The arguments of `is_cut` are `[first column, first row]` and `[last column, last row]` of the
+/// piece.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
