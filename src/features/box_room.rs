@@ -106,8 +106,8 @@ impl Layout {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
         pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
-        let most = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
-        (Face::ALL[most], counts[most] as f64 / counts.iter().sum::<usize>().max(1) as f64)
+        let fullest = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
+        (Face::ALL[fullest], counts[fullest] as f64 / counts.iter().sum::<usize>().max(1) as f64)
     }
 
     /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns

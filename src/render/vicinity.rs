@@ -90,8 +90,7 @@ impl Vicinity {
         let low = Vec3::from_array(sorted.each_ref().map(|values| values[skipped]));
         let high = Vec3::from_array(sorted.each_ref().map(|values| values[values.len() - 1 - skipped]));
         let (lowest, highest) = all.bounds();
-        let largest =
-            [low, high, lowest, highest].into_iter().fold(0.0, |most: f32, p| most.max(p.abs().max_element()));
+        let largest = [low, high, lowest, highest].into_iter().fold(0.0, |max: f32, p| max.max(p.abs().max_element()));
         // Move the sides of the box outwards. In a room, the sides coincide with the walls, and vertices on the walls
         // must count as inside in spite of rounding.
         let margin = largest * MARGIN;

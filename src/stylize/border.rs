@@ -78,16 +78,16 @@ impl<'a> Border<'a> {
 /// target patches with the smallest distances, up to the maximum number of uses.
 pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<()> {
     let mean = level.wanted.len() as f64 / level.allowed.len() as f64;
-    let most = (MAX_USES * mean.max(1.0)) as usize;
+    let max_uses = (MAX_USES * mean.max(1.0)) as usize;
     let mut free = level.allowed.try_clone()?;
     for round in 0..ROUNDS {
         let mut users = try_collect((0..field.at.len()).filter(|&i| field.at[i] != NONE))?;
         users.sort_unstable_by_key(|&i| (field.at[i], field.error[i], i));
         let mut beyond = try_vec(field.at.len(), false)?;
-        for group in users.chunk_by(|&a, &b| field.at[a] == field.at[b]).filter(|group| group.len() >= most) {
+        for group in users.chunk_by(|&a, &b| field.at[a] == field.at[b]).filter(|group| group.len() >= max_uses) {
             let (x, y) = unpack(field.at[group[0]]);
             free.remove(y * free.width + x);
-            group[most..].iter().for_each(|&i| beyond[i] = true);
+            group[max_uses..].iter().for_each(|&i| beyond[i] = true);
         }
         if !beyond.contains(&true) {
             break;

@@ -122,9 +122,9 @@ impl<'a> Lines<'a> {
     }
 
     /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness up to 1
-    /// photo pixel per unwarped pixel. `None` if fewer than `least` pixels have light on both sides. Bars that cross do
-    /// not change the median, because they cover only a few of these pixels.
-    fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
+    /// photo pixel per unwarped pixel. `None` if fewer than `min_known` pixels have light on both sides. Bars that cross
+    /// do not change the median, because they cover only a few of these pixels.
+    fn median_depth(&self, u: usize, along: Range<usize>, min_known: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.section_length()) {
             let end = (start + self.section_length()).min(along.end);
@@ -132,7 +132,7 @@ impl<'a> Lines<'a> {
             let known = (start..end).map(|v| self.depth[self.index(u, v)]).filter(|depth| depth.is_finite());
             depths.extend(known.map(|depth| (f64::from(depth), sharpness)));
         }
-        let depth = if depths.len() < least { None } else { weighted_median(depths) };
+        let depth = if depths.len() < min_known { None } else { weighted_median(depths) };
         depth.map(|depth| depth as f32)
     }
 
@@ -142,8 +142,9 @@ impl<'a> Lines<'a> {
 
     /// Finds the bars that the photo shows.
     pub fn bars(&self) -> Vec<Bar> {
-        let least = (self.along as f64 * MIN_LENGTH) as usize;
-        let profile: Vec<Option<f32>> = (0..self.across).map(|u| self.median_depth(u, 0..self.along, least)).collect();
+        let min_known = (self.along as f64 * MIN_LENGTH) as usize;
+        let profile: Vec<Option<f32>> =
+            (0..self.across).map(|u| self.median_depth(u, 0..self.along, min_known)).collect();
         let mut known: Vec<f32> = profile.iter().flatten().copied().collect();
         known.sort_by(f32::total_cmp);
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };

@@ -128,7 +128,7 @@ fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
     let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();
     let any_design = whole().any(has_design);
     let clear = || whole().filter(|l| !any_design || has_design(l));
-    let most = clear().map(|l| l.weight).fold(0.0, f64::max);
-    let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * most).map(|l| l.component).collect();
+    let max_weight = clear().map(|l| l.weight).fold(0.0, f64::max);
+    let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * max_weight).map(|l| l.component).collect();
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }
 }

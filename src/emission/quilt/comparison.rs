@@ -126,16 +126,16 @@ impl<'a> Comparison<'a> {
             if columns * rows == 0 { 0 } else { self.usable.count(u, v, columns, rows) }
         };
         let bounds: Vec<usize> = shifts.iter().map(max_fill).collect();
-        let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
+        let mut max_fills = if bounds.contains(&(w * h)) { empty } else { 0 };
         let exact = |(shift, bound): (&Shift, usize)| {
             if bound == w * h {
                 return (empty, true);
             }
-            if (bound as f64) < ENOUGH_COVERAGE * most as f64 {
+            if (bound as f64) < ENOUGH_COVERAGE * max_fills as f64 {
                 return (0, false);
             }
             let fills = usable_of(&block.empty, shift);
-            most = most.max(fills);
+            max_fills = max_fills.max(fills);
             (fills, false)
         };
         shifts.iter().zip(bounds).map(exact).collect()
@@ -157,8 +157,8 @@ impl<'a> Comparison<'a> {
         job: Job,
     ) -> Result<Vec<Scored>> {
         let fills = self.fills(block, shifts);
-        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
-        let min_fill = min_fill.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
+        let max_fills = fills.iter().map(|f| f.0).max().unwrap_or(0);
+        let min_fill = min_fill.unwrap_or((ENOUGH_COVERAGE * max_fills as f64).ceil() as usize).max(1);
         let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= min_fill).collect();
         let filled = count(&block.filled);
         let mut excess = vec![0.0; shifts.len()];
@@ -199,7 +199,7 @@ impl<'a> Comparison<'a> {
     /// `filled` is their number of pixels. `is_whole` states that the shift shows usable pixels in the whole block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
-        let most = f64::from(limit) * filled as f64;
+        let max_sum = f64::from(limit) * filled as f64;
         let (mut sum, mut compared) = (0f64, 0usize);
         for run in known {
             let Some((skipped, length, [x, y])) = self.shown(run, shift) else { continue };
@@ -222,7 +222,7 @@ impl<'a> Comparison<'a> {
             }
             // Stop if the sum so far, divided by `filled`, exceeds `limit`. The final mean would exceed it too: the sum
             // can only grow, and it is divided by at most `filled` pixels.
-            if sum > most {
+            if sum > max_sum {
                 return f32::INFINITY;
             }
         }
